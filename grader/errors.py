@@ -1,0 +1,19 @@
+"""What the grader raises. Every message is written for the person who reads it: seen, expected, what to do."""
+
+from __future__ import annotations
+
+
+class GraderError(Exception):
+    """Base of all errors of the grader; `exit_code` is what a command ends with (design: exit codes)."""
+
+    exit_code = 3
+
+
+class UsageError(GraderError):
+    """The command, the path or the exercise is wrong."""
+
+    exit_code = 2
+
+
+class MachineError(GraderError):
+    """The grader or the machine is broken: never the student's fault, never costs points."""
