@@ -10,6 +10,7 @@ import os
 import re
 import sys
 from dataclasses import dataclass
+from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -131,7 +132,7 @@ def _wheels(prefix: Path) -> Ros | None:
         return None
     return Ros(
         kind="wheels",
-        version=_version(prefix),
+        version=metadata.version("ros-rclpy"),
         prefix=prefix,
         prefixes=(prefix,),
         python=prefix / "bin" / "python3",
