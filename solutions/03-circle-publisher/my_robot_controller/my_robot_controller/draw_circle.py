@@ -3,6 +3,7 @@
 import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
+
 # BEGIN SOLUTION
 from geometry_msgs.msg import Twist
 # END SOLUTION
