@@ -1,0 +1,190 @@
+"""Run a command without trusting it: the one door through which everything of a student's passes.
+
+Two walls, both made by bubblewrap:
+
+- a **room** holds what belongs together and is ours (the simulator of one trial), as an ordinary user, with a
+  network of its own: loopback only;
+- a **cell** holds a student's process: own user, pid, ipc, uts, cgroup and mount namespaces, no network but the
+  room's, nothing of the disk but what `View` names, limits on memory, processes, files, CPU and disk.
+
+These functions only make command lines; whoever runs them owns the process. Input and output travel on pipes.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import MachineError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from grader.ros import Ros
+
+WORKSPACE = Path("/ws")
+"""The workspace inside a cell: a tmpfs of its own."""
+HOME = Path("/tmp/home")  # noqa: S108 - inside the sandbox, where /tmp is a tmpfs of its own
+"""HOME inside room and cell: empty, and gone with it."""
+USER_ID = 65530
+"""Who a root caller becomes: in no range that systemd or Debian's policy gives to users or services."""
+
+MIB = 1024 * 1024
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a cell may use. `memory` is the address space of each process, `disk` of each writable tmpfs (bytes)."""
+
+    memory: int = 4096 * MIB
+    processes: int = 600
+    """Processes and threads together; a node that makes 400 timers makes no thread for them."""
+    open_files: int = 1024
+    file_size: int = 256 * MIB
+    disk: int = 256 * MIB
+    cpu_s: int = 120
+
+
+@dataclass(frozen=True)
+class View:
+    """What a room or cell sees of the disk, read-only, each at its own path; `hidden` folders are empty there."""
+
+    read_only: tuple[Path, ...]
+    hidden: tuple[Path, ...] = ()
+
+
+def ros_view(ros: Ros, *more: Path) -> View:
+    """The interpreter, ROS 2 and the folders or files `more`; not the grader, though it may be installed beside."""
+    needed = [Path(sys.base_prefix), Path(sys.prefix), *ros.prefixes, *more]
+    site = Path(sys.prefix) / f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
+    hidden = tuple(site / name for name in ("grader", "course", "solutions") if (site / name).is_dir())
+    return View(read_only=tuple(dict.fromkeys(needed)), hidden=hidden)
+
+
+def bubblewrap() -> str | None:
+    """Where bwrap is, if it is installed."""
+    return shutil.which("bwrap", path="/usr/local/bin:/usr/bin:/bin")
+
+
+def room(argv: Sequence[str], view: View, *, env: Mapping[str, str], cwd: Path | None = None) -> list[str]:
+    """`argv` as an ordinary user in a network of its own, seeing `view`; for our own processes."""
+    command = [_bwrap(), "--unshare-net", "--die-with-parent", *_disk(view), "--bind", "/proc", "/proc"]
+    command += ["--tmpfs", "/tmp", "--dir", str(HOME)]  # noqa: S108
+    return [*_ordinary(command), *_environment(env), "--chdir", str(cwd or HOME), "--", *_stay_ordinary(), *argv]
+
+
+def cell(
+    argv: Sequence[str],
+    view: View,
+    *,
+    env: Mapping[str, str],
+    limits: Limits = Limits(),  # noqa: B008 - frozen
+    network: bool = False,
+    cwd: Path = WORKSPACE,
+    info_fd: int | None = None,
+) -> list[str]:
+    """`argv` confined. `network`: the caller's own (a room's loopback), else none at all.
+
+    A root caller must put the cell in a room, where it is root no longer: root is exempt from the limit on
+    processes, whatever its namespace. `info_fd` gets bubblewrap's JSON with the pid of the cell's first process.
+    """
+    command = [_bwrap(), "--unshare-user", "--disable-userns", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
+    command += ["--unshare-cgroup-try", "--uid", "1000", "--gid", "1000", "--hostname", "robot"]
+    command += ["--die-with-parent", "--new-session", *([] if network else ["--unshare-net"])]
+    command += [*_disk(view), "--proc", "/proc"]
+    # --dev leaves /dev and /dev/shm writable and large.
+    command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev"]  # noqa: S108
+    command += ["--size", str(limits.disk), "--tmpfs", "/tmp", "--dir", str(HOME)]  # noqa: S108
+    command += ["--size", str(limits.disk), "--tmpfs", str(WORKSPACE), "--remount-ro", "/"]
+    command += [] if info_fd is None else ["--info-fd", str(info_fd)]
+    # Set inside: the limit on processes then counts only this cell's.
+    return [*command, *_environment(env), "--chdir", str(cwd), "--", *limited(argv, limits)]
+
+
+def limited(argv: Sequence[str], limits: Limits) -> list[str]:
+    """`argv` under resource limits alone: all that can be had without bubblewrap."""
+    return [
+        "prlimit",
+        f"--nproc={limits.processes}",
+        f"--as={limits.memory}",
+        f"--nofile={limits.open_files}",
+        f"--fsize={limits.file_size}",
+        f"--cpu={limits.cpu_s}",
+        "--core=0",
+        "--",
+        *argv,
+    ]
+
+
+def why_unavailable() -> str | None:
+    """Try a cell; None when it works, else what is wrong and what to do."""
+    if bubblewrap() is None:
+        return "bubblewrap is not installed: `sudo apt-get install bubblewrap`"
+    view = View(read_only=())
+    env = {"PATH": "/usr/bin:/bin"}
+    inner = cell(["true"], view, env=env)
+    tried = room(inner, view, env=env) if os.geteuid() == 0 else inner
+    done = subprocess.run(tried, capture_output=True, text=True, timeout=20, check=False, stdin=subprocess.DEVNULL)
+    if done.returncode == 0:
+        return None
+    said = done.stderr.strip().splitlines()[-1:] or ["no message"]
+    return (
+        f"bubblewrap cannot make its namespaces ({said[0]}). On Ubuntu 24.04 an ordinary user is refused them by "
+        "AppArmor: `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows them until the next start; "
+        "in a container, start it with `--security-opt seccomp=unconfined --security-opt apparmor=unconfined`"
+    )
+
+
+def _bwrap() -> str:
+    path = bubblewrap()
+    if path is None:
+        raise MachineError("bubblewrap is not installed: `sudo apt-get install bubblewrap`.")  # noqa: EM101
+    return path
+
+
+def _ordinary(command: list[str]) -> list[str]:
+    # Root makes mounts and network without a user namespace, and then steps down (_stay_ordinary).
+    return command if os.geteuid() == 0 else [command[0], "--unshare-user", *command[1:]]
+
+
+def _stay_ordinary() -> list[str]:
+    if os.geteuid() != 0:
+        return []
+    # Changing the user clears the signal that --die-with-parent asked for: ask again.
+    return ["setpriv", f"--reuid={USER_ID}", f"--regid={USER_ID}", "--clear-groups", "--inh-caps=-all"] + [
+        "--bounding-set=-all",
+        "--no-new-privs",
+        "--pdeathsig=KILL",
+        "--",
+    ]
+
+
+def _disk(view: View) -> list[str]:
+    command = []
+    for name in ("bin", "sbin", "lib", "lib32", "lib64"):
+        folder = Path("/") / name
+        if folder.is_symlink():
+            command += ["--symlink", os.readlink(folder), str(folder)]
+        elif folder.is_dir():
+            command += ["--ro-bind", str(folder), str(folder)]
+    etc = [Path("/etc") / name for name in ("alternatives", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime")]
+    shown = [Path("/usr"), *(path for path in etc if path.exists())]
+    shown += [path for path in view.read_only if not path.is_relative_to("/usr")]
+    # Parents that bwrap makes by itself are closed to all but their owner; named ones are not.
+    parents = dict.fromkeys(parent for path in shown for parent in reversed(path.parents[:-1]))
+    command += [word for parent in parents for word in ("--dir", str(parent))]
+    command += [word for path in shown for word in ("--ro-bind", str(path), str(path))]
+    command += [word for folder in view.hidden for word in ("--tmpfs", str(folder), "--remount-ro", str(folder))]
+    return [*command, "--dev", "/dev"]
+
+
+def _environment(env: Mapping[str, str]) -> list[str]:
+    command = ["--clearenv"]
+    for key, value in env.items():
+        command += ["--setenv", key, value]
+    return command

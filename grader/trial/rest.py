@@ -1,0 +1,152 @@
+"""Rest: whether a process has done all it can do for now, told from /proc without disturbing it.
+
+Simulated time moves on only when the node rests: every thread sleeps, and none has run between two looks. A thread
+that was woken, ran and slept again between the looks has another count in its schedstat; one that was woken and
+has not run yet is in state R. So two equal looks are enough where the kernel counts, three where it does not.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+# x86-64 numbers of the system calls in which a thread waits for a time to pass.
+_SLEEPS = {35: "nanosleep", 230: "clock_nanosleep"}
+_TIMED = {7: "poll", 271: "ppoll", 23: "select", 270: "pselect6", 232: "epoll_wait", 281: "epoll_pwait"}
+_FUTEX = 202
+
+
+class GoneError(Exception):
+    """The process has ended."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """One look at some threads: whether all sleep, and how often each has run."""
+
+    asleep: bool
+    runs: tuple[bytes, ...]
+
+    @property
+    def counted(self) -> bool:
+        return any(run != b"0 0 0\n" for run in self.runs)
+
+
+@dataclass(frozen=True)
+class Wait:
+    """What a thread waits for: the name of a system call (or "futex", "running", ...), and whether time ends it."""
+
+    thread: str
+    call: str
+    timed: bool
+
+
+class Threads:
+    """The threads of a process, read through kept descriptors; `dds` chooses Fast DDS's own, the others, or all."""
+
+    def __init__(self, pid: int, *, dds: bool | None = None) -> None:
+        self.pid = pid
+        self._dds = dds
+        self._names: dict[int, str] = {}
+        self._files: dict[int, tuple[int, int]] = {}
+        self._main = self._open(pid, "stat")
+        self._count = b""
+
+    def close(self) -> None:
+        for pair in self._files.values():
+            for fd in pair:
+                os.close(fd)
+        os.close(self._main)
+        self._files = {}
+
+    def look(self) -> Look:
+        """Look at every thread once.
+
+        Raises:
+            GoneError: the process has ended.
+        """
+        for _ in range(100):
+            self._refresh()
+            try:
+                states, runs = [], []
+                for stat, schedstat in self._files.values():
+                    states.append(_fields(os.pread(stat, 512, 0))[0])
+                    runs.append(os.pread(schedstat, 64, 0))
+            except ProcessLookupError:  # a thread ended meanwhile
+                self._count = b""
+                continue
+            return Look(asleep=all(state == b"S" for state in states), runs=tuple(runs))
+        raise GoneError
+
+    def run_time_s(self) -> float:
+        """Return the CPU time of all threads so far (s)."""
+        return sum(int(run.split()[0]) for run in self.look().runs) / 1e9
+
+    def waits(self) -> list[Wait]:
+        """Tell what every thread waits for right now; a running one waits for nothing."""
+        self._refresh()
+        found = []
+        for tid in self._files:
+            try:
+                words = (Path("/proc") / str(self.pid) / "task" / str(tid) / "syscall").read_text().split()
+            except OSError:
+                continue
+            found.append(_wait(self._names[tid], words))
+        return found
+
+    def _refresh(self) -> None:
+        try:
+            fields = _fields(os.pread(self._main, 512, 0))
+        except ProcessLookupError:
+            raise GoneError from None
+        if fields[0] in (b"Z", b"X"):
+            raise GoneError
+        if fields[17] == self._count and self._files:
+            return
+        try:
+            tids = {int(name) for name in os.listdir(f"/proc/{self.pid}/task")}
+        except FileNotFoundError:
+            raise GoneError from None
+        for tid in set(self._names) - tids:
+            del self._names[tid]
+            for fd in self._files.pop(tid, ()):
+                os.close(fd)
+        for tid in sorted(tids - set(self._names)):
+            self._add(tid)
+        self._count = fields[17]
+
+    def _add(self, tid: int) -> None:
+        try:
+            name = Path(f"/proc/{self.pid}/task/{tid}/comm").read_text().strip()
+            self._names[tid] = name
+            if self._dds is None or name.startswith("dds.") == self._dds:
+                stat = self._open(tid, "stat")
+                self._files[tid] = (stat, self._open(tid, "schedstat"))
+        except (FileNotFoundError, ProcessLookupError, GoneError):
+            self._names.pop(tid, None)
+
+    def _open(self, tid: int, name: str) -> int:
+        try:
+            return os.open(f"/proc/{self.pid}/task/{tid}/{name}", os.O_RDONLY | os.O_CLOEXEC)
+        except (FileNotFoundError, ProcessLookupError):
+            raise GoneError from None
+
+
+def _fields(stat: bytes) -> list[bytes]:
+    # A thread may call itself anything, ") R" too: what follows the last parenthesis is the kernel's. [0] is the
+    # state, [17] the number of threads.
+    return stat[stat.rindex(b")") + 2 :].split()
+
+
+def _wait(thread: str, words: list[str]) -> Wait:
+    if not words or not words[0].lstrip("-").isdigit():
+        return Wait(thread, "running", timed=False)
+    number = int(words[0])
+    if number in _SLEEPS:
+        return Wait(thread, _SLEEPS[number], timed=True)
+    if number == _FUTEX:
+        return Wait(thread, "futex", timed=int(words[4], 16) != 0)
+    if number in _TIMED:
+        return Wait(thread, _TIMED[number], timed=True)
+    return Wait(thread, f"system call {number}", timed=False)
