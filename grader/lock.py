@@ -1,0 +1,157 @@
+"""The lock file: every version that the set-up installs, for all Pythons, with hashes, in parts.
+
+One file in pip's format. A line `# part: NAME` opens each part, so that a learner's set-up installs what it needs
+and the tests' libraries wait until they are wanted. `python -m grader.lock` (`make lock`) writes it.
+Standard library only: the set-up reads the file before anything is installed.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import MachineError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+ROOT = Path(__file__).parents[1]
+PROJECT = ROOT / "pyproject.toml"
+LOCK_FILE = ROOT / "requirements.lock"
+PARTS = {
+    "setup": "what installs the rest",
+    "grader": "what the grader runs on",
+    "ros": "ROS 2 Jazzy as wheels; left out where a ROS 2 is sourced",
+    "tests": "tests and notebooks",
+}
+"""Name of each part and what it is for, in the file's order; an entry stands in the first part that needs it."""
+
+SOURCED_BRINGS = frozenset({"numpy", "empy"})
+"""Left to a sourced ROS 2: its extensions are built for its own numpy, its generators for its own empy."""
+
+_MARK = "# part: "
+_NAME = re.compile(r"([A-Za-z0-9][A-Za-z0-9._-]*)==(\S+)")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One version of one package. `text` is its lines in the file, hashes included, with the last line break."""
+
+    name: str
+    version: str
+    text: str
+
+
+def parse(text: str) -> dict[str, list[Entry]]:
+    """The entries of each part, in the file's order.
+
+    Raises:
+        UsageError: a line belongs to no part or to no entry.
+    """
+    parts: dict[str, list[Entry]] = {}
+    for line in text.splitlines(keepends=True):
+        if line.startswith(_MARK):
+            name = line[len(_MARK) :].split(maxsplit=1)[0].rstrip(":")
+            entries = parts.setdefault(name, [])
+        elif line.startswith("#") or not line.strip():
+            continue
+        elif not parts:
+            message = f"requirements.lock: this line stands before the first '{_MARK}NAME': {line.strip()}"
+            raise UsageError(message)
+        elif match := _NAME.match(line):
+            entries.append(Entry(match.group(1), match.group(2), line))
+        elif entries and line.startswith(" "):
+            last = entries[-1]
+            entries[-1] = Entry(last.name, last.version, last.text + line)
+        else:
+            message = f"requirements.lock: expected 'name==version' or an indented hash, seen: {line.strip()}"
+            raise UsageError(message)
+    return parts
+
+
+def select(text: str, parts: Collection[str], without: Collection[str] = ()) -> str:
+    """The requirements of `parts`, as pip reads them, without the packages named in `without`."""
+    chosen = (entry for part, entries in parse(text).items() if part in parts for entry in entries)
+    return "".join(entry.text for entry in chosen if entry.name not in without)
+
+
+def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str:
+    """The lock file's text: each entry below the first part whose needs name it, else below the last one."""
+    below: dict[str, list[str]] = {part: [] for part in PARTS}
+    for entry in entries:
+        part = next((part for part in PARTS if entry.name in needs.get(part, ())), list(PARTS)[-1])
+        below[part].append(entry.text)
+    head = "# Made by `make lock` from pyproject.toml, not to be edited: every version, with hashes, for all Pythons.\n"
+    return head + "".join(f"\n{_MARK}{part}: {PARTS[part]}\n{''.join(texts)}" for part, texts in below.items())
+
+
+def make(uv: str, *, upgrade: bool = False) -> str:
+    """The text of a new lock file for pyproject.toml, resolved by uv (needs the network).
+
+    Versions in the present lock file are kept where they still fit, unless `upgrade`.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        whole = Path(folder, "whole.txt")
+        if LOCK_FILE.exists():
+            shutil.copyfile(LOCK_FILE, whole)
+        _compile(uv, whole, ["--all-extras", *(["--upgrade"] if upgrade else [])])
+        entries = parse(f"{_MARK}all\n" + whole.read_text(encoding="utf-8"))["all"]
+        needs = {}
+        for part, requirements, arguments in [
+            ("setup", "\n".join(_requirements("setup")), []),
+            ("grader", None, []),
+            ("ros", None, ["--extra", "ros"]),
+        ]:
+            # Compiling a part keeps to the versions that stand in its output file: the whole's.
+            path = shutil.copyfile(whole, Path(folder, f"{part}.txt"))
+            _compile(uv, path, arguments, requirements)
+            needs[part] = {name for name, _ in _NAME.findall(path.read_text(encoding="utf-8"))}
+    return split(entries, needs)
+
+
+def _requirements(extra: str) -> list[str]:
+    """What an extra of the project names, without the project's own dependencies."""
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib
+    project = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]
+    return [str(requirement) for requirement in project["optional-dependencies"][extra]]
+
+
+def _compile(uv: str, output: Path, arguments: list[str], requirements: str | None = None) -> None:
+    """Resolve the project, or `requirements` (one a line) instead of it, into `output`."""
+    command = [
+        *(uv, "pip", "compile", str(PROJECT) if requirements is None else "-"),
+        *("--output-file", str(output), "--quiet", *arguments),
+        *("--universal", "--python-version", "3.10", "--no-python-downloads"),
+        # Where a package is downloaded from is each machine's own business: no index, no addresses.
+        *("--generate-hashes", "--no-emit-index-url", "--no-annotate", "--no-header"),
+    ]
+    done = subprocess.run(command, cwd=ROOT, check=False, input=requirements, text=True)
+    if done.returncode != 0:
+        message = f"uv could not make the lock file (its exit code is {done.returncode}; what it said stands above)."
+        raise MachineError(message)
+
+
+def main(arguments: list[str]) -> int:
+    """Write the lock file; `--upgrade` takes the newest versions that fit."""
+    uv = str(Path(sys.prefix, "bin", "uv"))
+    text = make(uv, upgrade="--upgrade" in arguments)
+    parts = parse(text)
+    unchanged = LOCK_FILE.exists() and LOCK_FILE.read_text(encoding="utf-8") == text
+    if not unchanged:
+        LOCK_FILE.write_text(text, encoding="utf-8")
+    counts = ", ".join(f"{part} {len(entries)}" for part, entries in parts.items())
+    print(f"requirements.lock: {'unchanged' if unchanged else 'written'}; packages by part: {counts}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
