@@ -1,0 +1,39 @@
+"""Drive the turtle of turtlesim in a circle."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+
+# TODO 1: import the message type of /turtle1/cmd_vel. It is called Twist and lives in geometry_msgs.msg.
+
+
+class DrawCircleNode(Node):
+    """Publishes a velocity command for the turtle twice a second."""
+
+    def __init__(self):
+        super().__init__("draw_circle")
+        # TODO 2: create a publisher and keep it in self. It wants three things: the message type, the
+        # name of the topic, and how many messages may wait in the queue (10).
+        # TODO 3: create a timer and keep it in self. It wants the period in seconds and the method to call.
+        self.get_logger().info("Draw circle node has been started")
+
+    def send_velocity_command(self):
+        # TODO 4: make a Twist, set the two numbers that matter for the turtle (forwards in m/s, turning in
+        # rad/s; the lesson says how much), and publish it.
+        pass
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = DrawCircleNode()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # Ctrl-C is the way this node is meant to end.
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,177 @@
+"""Release: make exercises/ from solutions/, so that each has one source.
+
+    python -m grader.release [--check]
+
+Marked regions (grader/markers.py) are replaced by their starting point, notebooks lose their output, every other
+file is copied as it is. A file of which nothing is left is one that the student makes: it is not written.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import json
+import sys
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from grader import tree
+from grader.errors import GraderError, UsageError
+from grader.markers import ANGLE, HASH, MEANT, stripped, syntax_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+
+@dataclass(frozen=True)
+class ReleasedFile:
+    """A file as the student gets it."""
+
+    data: bytes
+    executable: bool
+
+
+def released(solution: Path) -> dict[str, ReleasedFile]:
+    """What the student starts from, by POSIX path; `solution` is one step's folder in solutions/.
+
+    Raises UsageError, with file and line, where markers are amiss or what is left does not parse.
+    """
+    files: dict[str, ReleasedFile] = {}
+    found = _read(solution)
+    for path in sorted(found.files, key=tree.sort_key):
+        data = release_file(found.files[path], path, f"{solution}/{path}")
+        if data is not None:
+            files[path] = ReleasedFile(data, path in found.executable)
+    return files
+
+
+def release(solution: Path, to: Path) -> None:
+    """Make the folder `to` hold what `released` says and nothing else."""
+    wanted = released(solution)
+    present = _read(to) if to.is_dir() else tree.Tree()
+    for path in present.files.keys() - wanted.keys():
+        (to / path).unlink()
+    for path, file in wanted.items():
+        if present.files.get(path) != file.data:
+            (to / path).parent.mkdir(parents=True, exist_ok=True)
+            (to / path).write_bytes(file.data)
+        (to / path).chmod(0o755 if file.executable else 0o644)
+
+
+def stale(solutions: Path, exercises: Path) -> tuple[str, ...]:
+    """How exercises/ differs from what `release` would make of solutions/; a sentence a file."""
+    steps = sorted({folder.name for root in (solutions, exercises) for folder in root.iterdir() if folder.is_dir()})
+    return tuple(line for step in steps for line in _stale_step(solutions / step, exercises / step))
+
+
+def _stale_step(solution: Path, exercise: Path) -> list[str]:
+    wanted = released(solution) if solution.is_dir() else {}
+    present = _read(exercise) if exercise.is_dir() else tree.Tree()
+    lines = []
+    for path in sorted(wanted.keys() | present.files.keys()):
+        if path not in present.files:
+            lines.append(f"{exercise}/{path} is missing.")
+        elif path not in wanted:
+            lines.append(f"{exercise}/{path} comes from no solution: delete it.")
+        elif present.files[path] != wanted[path].data:
+            lines.append(f"{exercise}/{path} is not what its solution makes.")
+        elif (path in present.executable) != wanted[path].executable:
+            lines.append(f"{exercise}/{path} has another executable bit than its solution.")
+    return lines
+
+
+def release_file(data: bytes, path: str, name: str) -> bytes | None:
+    """One file as it is released, None for a file that the student makes. `name` stands in messages."""
+    if path.endswith(".ipynb"):
+        return _release_notebook(data, name)
+    syntax = syntax_of(path)
+    if syntax is None:
+        if MEANT.search(data.decode("utf-8", "replace")):
+            message = (
+                f"{name}: a marker in a file whose comments are not known; grader/markers.py lists the known endings."
+            )
+            raise UsageError(message)
+        return data
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        message = f"{name}: is not UTF-8 ({error.reason} at byte {error.start})."
+        raise UsageError(message) from error
+    result = stripped(text, syntax, name)
+    if result == text:
+        return data
+    if not result.strip():
+        return None
+    _must_parse(result, path, name)
+    return result.encode()
+
+
+def _must_parse(text: str, path: str, name: str) -> None:
+    parsers: dict[str, Callable[[str], object]] = {".py": ast.parse, ".xml": ET.fromstring, ".toml": tomllib.loads}
+    parse = parsers.get(Path(path).suffix)
+    if parse is None:
+        return
+    try:
+        parse(text)
+    except (SyntaxError, ET.ParseError, tomllib.TOMLDecodeError) as error:
+        message = f"{name}: what is released does not parse: {error}. Let a STARTER block below the region mend it."
+        raise UsageError(message) from error
+
+
+def _release_notebook(data: bytes, name: str) -> bytes:
+    try:
+        notebook: dict[str, Any] = json.loads(data)
+        for number, cell in enumerate(notebook["cells"], 1):
+            is_code = cell["cell_type"] == "code"
+            source = "".join(cell["source"])
+            cell["source"] = stripped(source, HASH if is_code else ANGLE, f"{name}, cell {number}").splitlines(
+                keepends=True
+            )
+            if is_code:
+                cell["outputs"] = []
+                cell["execution_count"] = None
+    except (ValueError, KeyError, TypeError) as error:
+        message = f"{name}: is no notebook ({error!r})."
+        raise UsageError(message) from error
+    # As nbformat writes it, so that opening and saving changes nothing.
+    return (json.dumps(notebook, indent=1, sort_keys=True, ensure_ascii=False) + "\n").encode()
+
+
+def _read(folder: Path) -> tree.Tree:
+    with tree.open_folder(str(folder)) as descriptor:
+        found = tree.read_tree(descriptor)
+    for path, why in found.rejected.items():
+        message = f"{folder}/{tree.shown(path)} {why}."
+        raise UsageError(message)
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """The author's command; exit code 1 when --check finds something stale."""
+    parser = argparse.ArgumentParser(prog="python -m grader.release", description="Make exercises/ from solutions/.")
+    parser.add_argument("--check", action="store_true", help="change nothing; fail when exercises/ is stale")
+    parser.add_argument("--root", type=Path, default=Path(__file__).parent.parent, help="the folder that holds both")
+    options = parser.parse_args(arguments)
+    solutions, exercises = options.root / "solutions", options.root / "exercises"
+    try:
+        if options.check:
+            lines = stale(solutions, exercises)
+            print(*lines, "Run: python -m grader.release" if lines else "exercises/ is up to date.", sep="\n")
+            return 1 if lines else 0
+        for step in sorted(folder for folder in solutions.iterdir() if folder.is_dir()):
+            release(step, exercises / step.name)
+    except GraderError as error:
+        print(error, file=sys.stderr)
+        return error.exit_code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
