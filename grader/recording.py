@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+import base64
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 ClockName = Literal["simulated", "wall"]
 Floats = npt.NDArray[np.float64]
@@ -68,7 +72,7 @@ class Endpoint:
 
 @dataclass(frozen=True)
 class Graph:
-    """The ROS graph at time `t_s` of the trial's clock. The grader's own hidden nodes are left out; /turtlesim is in."""
+    """The ROS graph at time `t_s` of the trial's clock, without the grader's own hidden nodes; /turtlesim is in it."""
 
     t_s: float
     nodes: tuple[str, ...]
@@ -93,10 +97,14 @@ class Frames:
 
 @dataclass(frozen=True)
 class Output:
-    """What a process wrote on one stream, decoded with replacement; `dropped` bytes beyond the cap were not kept."""
+    """What a process wrote on one stream, decoded with replacement; `dropped` bytes beyond the cap were not kept.
+
+    `times` are the arrivals of the lines of `text` on the trial's clock (s), one a line.
+    """
 
     text: str
     dropped: int = 0
+    times: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -125,6 +133,8 @@ class Recording:
     duration_s: float
     sigint_t_s: float
     messages: tuple[Message, ...]
+    dropped: int
+    """Messages beyond what a recording keeps."""
     commands: tuple[Command, ...]
     frames: Frames
     log: tuple[LogLine, ...]
@@ -133,12 +143,70 @@ class Recording:
     """Every topic of the graph with its types, whether messages could be recorded or not."""
     stdout: Output
     stderr: Output
-    end: ProcessEnd
+    end: ProcessEnd | None
+    """None only in a trial that was broken off because of a doubt."""
     own_nodes: tuple[str, ...] = ("/turtlesim",)
     """The grader's nodes; every other node of the graph belongs to the submission."""
     interventions: tuple[str, ...] = ()
-    """Services and actions of the simulator that somebody called (reset, teleport, spawn, ...), with their time."""
+    """Services and actions of the simulator that somebody called, in order: "reset", "spawn", "teleport_absolute"."""
     doubts: tuple[str, ...] = ()
     """Why simulated time may have judged wrongly here; empty when it may be trusted."""
     lag_s: float = 0.0
     """The longest time by which the simulator was late in a wall-clock trial (s): how starved the machine was."""
+
+
+def frames_of(rows: Iterable[tuple[float, float, float, float, float, float, bool]]) -> Frames:
+    """Make Frames of rows (t_s, x, y, theta, linear, angular, wall)."""
+    table = np.array([tuple(map(float, row)) for row in rows], dtype=np.float64).reshape(-1, 7)
+    t_s, x, y, theta, linear, angular, wall = table.T
+    return Frames(t_s, x, y, theta, linear, angular, wall.astype(np.bool_))
+
+
+def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
+    """Make plain data of a recording; without the messages where a bag beside it holds them."""
+    plain = {**recording.__dict__, "frames": None, "messages": None}
+    data: dict[str, Any] = asdict(Recording(**plain))
+    frames = recording.frames
+    data["frames"] = {name: getattr(frames, name).tolist() for name in Frames.__dataclass_fields__}
+    data["messages"] = [
+        [m.topic, m.type, base64.b64encode(m.data).decode() if messages else None, m.t_s, m.mono_s]
+        for m in recording.messages
+    ]
+    return data
+
+
+def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> Recording:
+    """Make a recording of what `to_json` gave; `payloads` are the messages' data where they were left out."""
+    contents = iter(payloads) if payloads is not None else (base64.b64decode(row[2]) for row in data["messages"])
+    frames = data["frames"]
+    wall = np.array(frames["wall"], dtype=np.bool_)
+    columns = {name: np.array(frames[name], dtype=np.float64) for name in frames if name != "wall"}
+    return Recording(
+        **{
+            **data,
+            "start": Pose(**data["start"]),
+            "messages": tuple(
+                Message(topic, kind, content, t_s, mono_s)
+                for (topic, kind, _, t_s, mono_s), content in zip(data["messages"], contents, strict=True)
+            ),
+            "commands": tuple(
+                Command(c["t_s"], c["mono_s"], tuple(c["linear"]), tuple(c["angular"])) for c in data["commands"]
+            ),
+            "frames": Frames(**columns, wall=wall),
+            "log": tuple(LogLine(**line) for line in data["log"]),
+            "graphs": tuple(
+                Graph(g["t_s"], tuple(g["nodes"]), tuple(Endpoint(**e) for e in g["endpoints"])) for g in data["graphs"]
+            ),
+            "topics": {topic: tuple(types) for topic, types in data["topics"].items()},
+            "stdout": _output(data["stdout"]),
+            "stderr": _output(data["stderr"]),
+            "end": ProcessEnd(**data["end"]) if data["end"] else None,
+            "own_nodes": tuple(data["own_nodes"]),
+            "interventions": tuple(data["interventions"]),
+            "doubts": tuple(data["doubts"]),
+        }
+    )
+
+
+def _output(data: dict[str, Any]) -> Output:
+    return Output(data["text"], data["dropped"], tuple(data["times"]))

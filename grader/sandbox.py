@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 WORKSPACE = Path("/ws")
 """The workspace inside a cell: a tmpfs of its own."""
-HOME = Path("/tmp/home")  # noqa: S108 - inside the sandbox, where /tmp is a tmpfs of its own
+HOME = Path("/tmp/home")
 """HOME inside room and cell: empty, and gone with it."""
 USER_ID = 65530
 """Who a root caller becomes: in no range that systemd or Debian's policy gives to users or services."""
@@ -74,7 +74,7 @@ def bubblewrap() -> str | None:
 def room(argv: Sequence[str], view: View, *, env: Mapping[str, str], cwd: Path | None = None) -> list[str]:
     """`argv` as an ordinary user in a network of its own, seeing `view`; for our own processes."""
     command = [_bwrap(), "--unshare-net", "--die-with-parent", *_disk(view), "--bind", "/proc", "/proc"]
-    command += ["--tmpfs", "/tmp", "--dir", str(HOME)]  # noqa: S108
+    command += ["--tmpfs", "/tmp", "--dir", str(HOME)]
     return [*_ordinary(command), *_environment(env), "--chdir", str(cwd or HOME), "--", *_stay_ordinary(), *argv]
 
 
@@ -83,7 +83,7 @@ def cell(
     view: View,
     *,
     env: Mapping[str, str],
-    limits: Limits = Limits(),  # noqa: B008 - frozen
+    limits: Limits = Limits(),
     network: bool = False,
     cwd: Path = WORKSPACE,
     info_fd: int | None = None,
@@ -98,8 +98,8 @@ def cell(
     command += ["--die-with-parent", "--new-session", *([] if network else ["--unshare-net"])]
     command += [*_disk(view), "--proc", "/proc"]
     # --dev leaves /dev and /dev/shm writable and large.
-    command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev"]  # noqa: S108
-    command += ["--size", str(limits.disk), "--tmpfs", "/tmp", "--dir", str(HOME)]  # noqa: S108
+    command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev"]
+    command += ["--size", str(limits.disk), "--tmpfs", "/tmp", "--dir", str(HOME)]
     command += ["--size", str(limits.disk), "--tmpfs", str(WORKSPACE), "--remount-ro", "/"]
     command += [] if info_fd is None else ["--info-fd", str(info_fd)]
     # Set inside: the limit on processes then counts only this cell's.
@@ -156,12 +156,8 @@ def _stay_ordinary() -> list[str]:
     if os.geteuid() != 0:
         return []
     # Changing the user clears the signal that --die-with-parent asked for: ask again.
-    return ["setpriv", f"--reuid={USER_ID}", f"--regid={USER_ID}", "--clear-groups", "--inh-caps=-all"] + [
-        "--bounding-set=-all",
-        "--no-new-privs",
-        "--pdeathsig=KILL",
-        "--",
-    ]
+    user = [f"--reuid={USER_ID}", f"--regid={USER_ID}", "--clear-groups"]
+    return ["setpriv", *user, "--inh-caps=-all", "--bounding-set=-all", "--no-new-privs", "--pdeathsig=KILL", "--"]
 
 
 def _disk(view: View) -> list[str]:
@@ -169,7 +165,7 @@ def _disk(view: View) -> list[str]:
     for name in ("bin", "sbin", "lib", "lib32", "lib64"):
         folder = Path("/") / name
         if folder.is_symlink():
-            command += ["--symlink", os.readlink(folder), str(folder)]
+            command += ["--symlink", str(folder.readlink()), str(folder)]
         elif folder.is_dir():
             command += ["--ro-bind", str(folder), str(folder)]
     etc = [Path("/etc") / name for name in ("alternatives", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime")]

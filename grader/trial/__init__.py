@@ -1,0 +1,1 @@
+"""A trial: one run of simulator and node under one clock."""

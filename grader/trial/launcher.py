@@ -44,8 +44,10 @@ def _without_us(kind: type[BaseException], error: BaseException, trace: types.Tr
 
 
 def main() -> None:
+    """Import, wait for the order, become the node."""
     sys.path.pop(0)
     _import_ahead()
+    os.write(1, b"\x00ready\n")
     order = json.loads(sys.stdin.buffer.readline())
     with tarfile.open(fileobj=sys.stdin.buffer, mode="r|") as tree:
         # A cell holds nothing that a bad member could harm; and Debian 12's Python does not know filters yet.

@@ -13,8 +13,17 @@ from pathlib import Path
 
 # x86-64 numbers of the system calls in which a thread waits for a time to pass.
 _SLEEPS = {35: "nanosleep", 230: "clock_nanosleep"}
-_TIMED = {7: "poll", 271: "ppoll", 23: "select", 270: "pselect6", 232: "epoll_wait", 281: "epoll_pwait"}
-_FUTEX = 202
+# Which argument is the time-out (the system call's number itself is word 0), and what it is when there is none.
+_FOREVER = {0xFFFFFFFF, 0xFFFFFFFFFFFFFFFF}
+_MAY_END = {
+    202: ("futex", 4, {0}),
+    7: ("poll", 3, _FOREVER),
+    271: ("ppoll", 3, {0}),
+    23: ("select", 5, {0}),
+    270: ("pselect6", 5, {0}),
+    232: ("epoll_wait", 4, _FOREVER),
+    281: ("epoll_pwait", 4, _FOREVER),
+}
 
 
 class GoneError(Exception):
@@ -30,6 +39,7 @@ class Look:
 
     @property
     def counted(self) -> bool:
+        """Whether this kernel counts how often a thread ran."""
         return any(run != b"0 0 0\n" for run in self.runs)
 
 
@@ -37,6 +47,7 @@ class Look:
 class Wait:
     """What a thread waits for: the name of a system call (or "futex", "running", ...), and whether time ends it."""
 
+    tid: int
     thread: str
     call: str
     timed: bool
@@ -54,6 +65,7 @@ class Threads:
         self._count = b""
 
     def close(self) -> None:
+        """Close the kept descriptors."""
         for pair in self._files.values():
             for fd in pair:
                 os.close(fd)
@@ -92,7 +104,7 @@ class Threads:
                 words = (Path("/proc") / str(self.pid) / "task" / str(tid) / "syscall").read_text().split()
             except OSError:
                 continue
-            found.append(_wait(self._names[tid], words))
+            found.append(_wait(tid, self._names[tid], words))
         return found
 
     def _refresh(self) -> None:
@@ -105,7 +117,7 @@ class Threads:
         if fields[17] == self._count and self._files:
             return
         try:
-            tids = {int(name) for name in os.listdir(f"/proc/{self.pid}/task")}
+            tids = {int(task.name) for task in Path(f"/proc/{self.pid}/task").iterdir()}
         except FileNotFoundError:
             raise GoneError from None
         for tid in set(self._names) - tids:
@@ -139,14 +151,13 @@ def _fields(stat: bytes) -> list[bytes]:
     return stat[stat.rindex(b")") + 2 :].split()
 
 
-def _wait(thread: str, words: list[str]) -> Wait:
+def _wait(tid: int, thread: str, words: list[str]) -> Wait:
     if not words or not words[0].lstrip("-").isdigit():
-        return Wait(thread, "running", timed=False)
+        return Wait(tid, thread, "running", timed=False)
     number = int(words[0])
     if number in _SLEEPS:
-        return Wait(thread, _SLEEPS[number], timed=True)
-    if number == _FUTEX:
-        return Wait(thread, "futex", timed=int(words[4], 16) != 0)
-    if number in _TIMED:
-        return Wait(thread, _TIMED[number], timed=True)
-    return Wait(thread, f"system call {number}", timed=False)
+        return Wait(tid, thread, _SLEEPS[number], timed=True)
+    if number in _MAY_END:
+        name, argument, never = _MAY_END[number]
+        return Wait(tid, thread, name, timed=int(words[argument], 16) not in never)
+    return Wait(tid, thread, f"system call {number}", timed=False)

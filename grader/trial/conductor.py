@@ -1,0 +1,101 @@
+"""Conduct one trial: the process that holds the simulator, the recorder and the clock.
+
+It lives in a room (sandbox.py), speaks JSON lines with the grader's own process over its standard streams, and
+holds the student's node in a cell. First line in: what the trial is. It answers {"ready": true} once simulator and
+launcher wait. Second line in: what to start, followed by the install tree. Last line out: {"recording": {...}}, or
+{"fault": "..."} for a fault of the machine.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from grader import ros, sandbox
+from grader.recording import Pose, Recording, frames_of, to_json
+from grader.trial.node_process import LaunchError, NodeProcess
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+LAUNCHER = Path(__file__).with_name("launcher.py")
+
+
+def main() -> None:
+    """Conduct the trial that standard input asks for."""
+    order = json.loads(sys.stdin.buffer.readline())
+    try:
+        _conduct(order)
+    except LaunchError as error:
+        _say({"fault": f"The node's process could not be started: {error}"})
+
+
+def _conduct(order: dict[str, Any]) -> None:
+    here = ros.find_ros()
+    underlay = Path(order["underlay"]) if order["underlay"] else None
+    with NodeProcess(lambda info_fd: _command(here, underlay, order, info_fd), in_cell=order["in_cell"]) as node:
+        # Imported here: while it takes its time, the launcher imports too.
+        from grader.trial.simulated import SimulatedTrial
+        from grader.trial.wall import WallTrial
+
+        trial: type[SimulatedTrial | WallTrial] = SimulatedTrial if order["clock"] == "simulated" else WallTrial
+        start = Pose(*order["start"])
+        stage = trial(node, start, [*here.prefixes, *([underlay] if underlay else [])])
+        node.await_ready()
+        _say({"ready": True})
+        line = sys.stdin.buffer.readline()
+        if not line:
+            return
+        go = json.loads(line)
+        node.start(go, sys.stdin.buffer.read(go.pop("tree_bytes")))
+        sigint_s = stage.run(order["duration_s"])
+        stdout, stderr = node.output()
+        doubts = tuple(stage.doubts)
+        recorder = stage.recorder
+        recording = Recording(
+            clock=order["clock"],
+            why="",
+            seed=order["seed"],
+            start=start,
+            duration_s=order["duration_s"],
+            sigint_t_s=sigint_s,
+            messages=tuple(recorder.messages),
+            dropped=recorder.dropped,
+            commands=tuple(recorder.commands),
+            frames=frames_of(stage.frames),
+            log=tuple(recorder.log),
+            graphs=tuple(recorder.graphs),
+            topics={topic: tuple(sorted(types)) for topic, types in sorted(recorder.topics.items())},
+            stdout=stdout,
+            stderr=stderr,
+            end=node.end(sigint_s) if node.ended() else None,
+            interventions=tuple(stage.interventions),
+            doubts=doubts,
+            lag_s=stage.lag_s,
+        )
+        _say({"recording": to_json(recording)})
+
+
+def _command(here: ros.Ros, underlay: Path | None, order: dict[str, Any], info_fd: int) -> Sequence[str]:
+    env = ros.environment(here, home=Path(order["home"]), underlay=underlay, domain=order["domain"])
+    launch = [str(here.python), str(LAUNCHER)]
+    if not order["in_cell"]:
+        return [
+            "env",
+            "-i",
+            *(f"{key}={value}" for key, value in env.items()),
+            *sandbox.limited(launch, sandbox.Limits()),
+        ]
+    view = sandbox.ros_view(here, ros.FASTDDS_PROFILE, LAUNCHER, *([underlay] if underlay else []))
+    return sandbox.cell(launch, view, env=env, network=True, info_fd=info_fd)
+
+
+def _say(what: dict[str, Any]) -> None:
+    sys.stdout.write(json.dumps(what) + "\n")
+    sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()

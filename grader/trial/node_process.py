@@ -1,0 +1,182 @@
+"""The student's node as a process: started in a cell, watched, its output kept, ended with Ctrl-C."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import signal
+import subprocess
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from grader.recording import Output, ProcessEnd
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+READY = b"\x00ready\n"
+"""What the launcher writes on standard output before any of the student's code runs."""
+KEPT = 256 * 1024
+"""Bytes kept of each stream."""
+_PIPE = 1024 * 1024
+STOP_S = 3.0
+"""How long SIGINT has, by the exercise; SIGTERM follows, for 1 s, then SIGKILL."""
+
+
+class LaunchError(Exception):
+    """The launcher itself failed: the machine's fault, since nothing of the student's had run."""
+
+
+@dataclass
+class _Stream:
+    fd: int
+    kept: bytearray = field(default_factory=bytearray)
+    times: list[float] = field(default_factory=list)
+    dropped: int = 0
+
+    def read(self, now_s: float) -> bool:
+        """Read what is there; true if anything was."""
+        some = False
+        for _ in range(64):
+            try:
+                chunk = os.read(self.fd, _PIPE)
+            except BlockingIOError:
+                return some
+            if not chunk:
+                return some
+            some = True
+            room = KEPT - len(self.kept)
+            taken = chunk[:room]
+            starts_line = not self.kept or self.kept.endswith(b"\n")
+            self.times += [now_s] * (taken.count(b"\n", 0, -1) + starts_line if taken else 0)
+            self.kept += taken
+            self.dropped += len(chunk) - len(taken)
+        return some
+
+    def output(self) -> Output:
+        return Output(self.kept.decode("utf-8", "replace"), self.dropped, tuple(self.times))
+
+
+class NodeProcess:
+    """One node's process and its pipes. Close it, or leave its `with`, and nothing of it is left."""
+
+    def __init__(self, command: Callable[[int], Sequence[str]], *, in_cell: bool) -> None:
+        """`command(info_fd)` is the launcher's command line; `in_cell`: whether that is a bubblewrap."""
+        info, info_write = os.pipe()
+        self._process = subprocess.Popen(
+            command(info_write),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            pass_fds=(info_write,),
+        )
+        os.close(info_write)
+        assert self._process.stdout is not None
+        assert self._process.stderr is not None
+        self._info = info
+        self._in_cell = in_cell
+        self._streams = [_Stream(self._process.stdout.fileno()), _Stream(self._process.stderr.fileno())]
+        for stream in self._streams:
+            fcntl.fcntl(stream.fd, fcntl.F_SETPIPE_SZ, _PIPE)
+        self.pid = 0
+        self._interrupted: float | None = None
+        self._by = "itself"
+
+    def __enter__(self) -> NodeProcess:  # noqa: PYI034 - typing.Self is Python 3.11's
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._process.poll() is None:
+            self._process.kill()
+            self._process.wait()
+        os.close(self._info)
+
+    def await_ready(self) -> None:
+        """Wait until the launcher waits for its order.
+
+        Raises:
+            LaunchError: it ended instead.
+        """
+        assert self._process.stdout is not None
+        assert self._process.stderr is not None
+        said = b""
+        while not said.endswith(READY):
+            byte = os.read(self._process.stdout.fileno(), 1)
+            if not byte:
+                raise LaunchError((said + self._process.stderr.read()).decode("utf-8", "replace").strip())
+            said += byte
+        self.pid = self._find_pid()
+        for stream in self._streams:
+            os.set_blocking(stream.fd, False)
+
+    def start(self, order: dict[str, object], tree: bytes) -> None:
+        """Send the launcher its order and the install tree."""
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(json.dumps(order).encode() + b"\n" + tree)
+            self._process.stdin.close()
+        except BrokenPipeError:
+            pass  # it ended: `ended` tells
+
+    def read_output(self, now_s: float) -> bool:
+        """Keep what the node wrote, as of `now_s`; true if there was anything."""
+        return any([stream.read(now_s) for stream in self._streams])  # noqa: C419 - both must be read
+
+    def output(self) -> tuple[Output, Output]:
+        """Return standard output and standard error so far."""
+        return self._streams[0].output(), self._streams[1].output()
+
+    def ended(self) -> bool:
+        """Tell whether the process is gone."""
+        return self._process.poll() is not None
+
+    def interrupt(self) -> None:
+        """Do what Ctrl-C does in a terminal."""
+        if not self.ended():
+            self._interrupted = time.monotonic()
+            self._by = "SIGINT"
+            self._signal(signal.SIGINT)
+
+    def escalate(self) -> None:
+        """Call again and again after `interrupt`: sends SIGTERM and SIGKILL when their time has come."""
+        assert self._interrupted is not None
+        passed = time.monotonic() - self._interrupted
+        if passed > STOP_S + 1.0 and self._by != "SIGKILL":
+            self._by = "SIGKILL"
+            self._process.kill()  # with --die-with-parent, all of the cell
+            self._signal(signal.SIGKILL)
+        elif passed > STOP_S and self._by == "SIGINT":
+            self._by = "SIGTERM"
+            self._signal(signal.SIGTERM)
+
+    def end(self, now_s: float) -> ProcessEnd:
+        """Tell how it ended; only after `ended`."""
+        code = self._process.returncode
+        stopped = None if self._interrupted is None else time.monotonic() - self._interrupted
+        # bwrap tells of a signal as a shell does, by 128 + its number.
+        return ProcessEnd(self._by, 128 - code if code > 128 else code, now_s, stopped)  # type: ignore[arg-type]
+
+    def _signal(self, number: int) -> None:
+        try:
+            group = os.getpgid(self.pid)
+            if group == os.getpgid(0):
+                os.kill(self.pid, number)  # the launcher has not made its group yet
+            else:
+                os.killpg(group, number)
+        except ProcessLookupError:
+            pass
+
+    def _find_pid(self) -> int:
+        if not self._in_cell:
+            return self._process.pid
+        data = b""
+        while not data.rstrip().endswith(b"}"):
+            chunk = os.read(self._info, 4096)
+            if not chunk:
+                raise LaunchError("bubblewrap told no pid")  # noqa: EM101
+            data += chunk
+        first = int(json.loads(data)["child-pid"])
+        with open(f"/proc/{first}/task/{first}/children") as file:  # noqa: PTH123
+            return int(file.read().split()[0])

@@ -1,0 +1,200 @@
+"""A trial under simulated time: /clock moves on only when the node rests.
+
+The clock stands at 0 until both sides have found each other (the handshake), then goes in frames of 16 ms. What
+follows wall time instead shows in its threads; every such sign becomes a doubt, and a doubt makes a trial in wall
+time (design, decision 3).
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import TYPE_CHECKING
+
+from builtin_interfaces.msg import Time
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock
+
+from grader.simulator.turtle import FRAME_S
+from grader.trial.rest import GoneError, Look, Threads
+from grader.trial.stage import Stage
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from grader.recording import Pose
+    from grader.trial.node_process import NodeProcess
+
+QUIET_S = 0.03
+"""How long discovery must be silent before it counts as over."""
+HANDSHAKE_S = 20.0
+WAKE_S = 1.0
+"""How long to wait for the node to notice /clock: a create_rate node never wakes at 0."""
+TICK_CPU_S = 1.0
+"""A node that works longer than this on one frame never rests. CPU time, so that a loaded machine changes nothing."""
+TICK_S = 30.0
+GRAPH_EVERY = 31
+"""Frames between two looks at the graph: half a second."""
+WAITS_EVERY = 7
+"""Frames between two looks at what the threads wait for."""
+_POLL_S = 0.00005
+
+
+class SimulatedTrial(Stage):
+    """A stage whose clock the node follows."""
+
+    def __init__(self, node: NodeProcess, start: Pose, prefixes: list[Path]) -> None:
+        self._now_s = 0.0
+        super().__init__(node, start, prefixes)
+        qos = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._clock = self.recorder.create_publisher(Clock, "/clock", qos)
+
+    def now(self) -> float:
+        """Return the time on /clock (s)."""
+        return self._now_s
+
+    def run(self, duration_s: float) -> float:
+        """Run the scenario; return when SIGINT was sent, on the trial's clock (s)."""
+        try:
+            self._handshake()
+            frame = 0
+            while not self.doubts and frame * FRAME_S < duration_s:
+                frame += 1
+                self.tick(frame * FRAME_S)
+                self._settle()
+                if frame % GRAPH_EVERY == 0:
+                    self.recorder.follow_graph()
+                    self.recorder.snapshot()
+                if frame % WAITS_EVERY == 0:
+                    self._doubt_sleepers()
+        except GoneError:
+            self.spin()
+        self.recorder.snapshot()
+        if not self.doubts:
+            stopped_s = self._now_s
+            self.wind_down()
+            return stopped_s
+        return self._now_s
+
+    def tick(self, now_s: float) -> None:
+        """Make one frame and tell the node its time."""
+        self._now_s = now_s
+        self.frame(now_s)
+        self._publish_clock(now_s)
+
+    def _publish_clock(self, now_s: float) -> None:
+        nanoseconds = round(now_s * 1e9)
+        sec, nanosec = divmod(nanoseconds, 1_000_000_000)
+        self._clock.publish(Clock(clock=Time(sec=sec, nanosec=nanosec)))
+
+    # --- rest -------------------------------------------------------------------------------------------------
+
+    def _watch(self) -> None:
+        self._node = Threads(self.node.pid)
+        self._ours = Threads(os.getpid(), dds=True)
+
+    def _rest(self) -> bool:
+        """Wait until nothing more can happen at this instant; false when the node never rests."""
+        deadline = time.monotonic() + TICK_S
+        cpu_s = -1.0
+        before: tuple[Look, Look] | None = None
+        equal = 0
+        while True:
+            look = (self._node.look(), self._ours.look())
+            if not (look[0].asleep and look[1].asleep):
+                equal = 0
+                if cpu_s < 0:
+                    cpu_s = self._node.run_time_s()
+                elif time.monotonic() > deadline or self._node.run_time_s() - cpu_s > TICK_CPU_S:
+                    return False
+                time.sleep(_POLL_S)
+            elif look == before:
+                equal += 1
+                if equal >= (1 if look[0].counted else 2):
+                    if not self.node.read_output(self._now_s):
+                        return True
+                    equal = 0
+            else:
+                equal = 0
+            before = look
+
+    def _settle(self) -> None:
+        """Let the node and the simulator answer each other until both rest."""
+        arrived: tuple[bytes, ...] | None = None
+        while True:
+            if not self._rest():
+                self.doubts.append("the node never comes to rest: it works without waiting")
+                return
+            runs = self._ours.look().runs
+            # Our receiving threads have not run since: nothing has come that is not handled yet.
+            if runs == arrived:
+                return
+            arrived = runs
+            if not self.spin():
+                return
+
+    # --- handshake --------------------------------------------------------------------------------------------
+
+    def _handshake(self) -> None:
+        self._watch()
+        deadline = time.monotonic() + HANDSHAKE_S
+        while not self._found_each_other():
+            if self.node.ended():
+                raise GoneError
+            self.node.read_output(0.0)
+            if time.monotonic() > deadline:
+                self.doubts.append("the node did not come to rest before the clock could start")
+                return
+        self._watch()  # threads name themselves only once they run
+        self._wake()
+        if len(self.recorder.commands) >= 2:
+            self.doubts.append("the node published again and again while the clock stood still")
+        self._doubt_sleepers()
+        self.recorder.follow_graph()
+        self.recorder.snapshot()
+        self.tick(0.0)
+
+    def _found_each_other(self) -> bool:
+        """Wait for 30 ms without anything new; true when the node waits for its clock and discovery is silent."""
+        quiet = Threads(self.node.pid, dds=True)
+        try:
+            before = quiet.look().runs
+            silent_s = time.monotonic()
+            while time.monotonic() - silent_s < QUIET_S:
+                if self.spin(0.004):
+                    return False
+                if quiet.look().runs != before:
+                    return False
+        finally:
+            quiet.close()
+        if not before or self.recorder.follow_graph():
+            return False
+        main = [wait for wait in self._node.waits() if wait.tid == self.node.pid]
+        waits = bool(main) and main[0].call == "futex" and not main[0].timed
+        return waits and bool(self.students_nodes()) and self._clock.get_subscription_count() > 0
+
+    def _wake(self) -> None:
+        """Publish time 0 until the node has woken twice for it: then both sides know each other."""
+        rest = Threads(self.node.pid, dds=False)
+        try:
+            before = rest.look().runs
+            wakes = 0
+            deadline = time.monotonic() + WAKE_S
+            while wakes < 2 and time.monotonic() < deadline:
+                self._publish_clock(0.0)
+                self._settle()
+                runs = rest.look().runs
+                wakes += runs != before
+                before = runs
+                if wakes < 2:
+                    self.spin(0.005)
+        finally:
+            rest.close()
+
+    def _doubt_sleepers(self) -> None:
+        timed = [wait for wait in self._node.waits() if wait.timed and not wait.thread.startswith("dds.")]
+        sleeping = [wait for wait in timed if wait.call in ("nanosleep", "clock_nanosleep")]
+        if sleeping:
+            self.doubts.append("the node sleeps on wall time")
+        elif len(timed) > 1:
+            self.doubts.append("the node waits for wall time")

@@ -1,0 +1,53 @@
+"""A trial in wall time: the reference, and the only judge of a node that does not follow ROS time."""
+
+from __future__ import annotations
+
+import time
+
+from grader.simulator.turtle import FRAME_S
+from grader.trial.stage import Stage
+
+DISCOVERY_S = 10.0
+GRAPH_EVERY = 31
+
+
+class WallTrial(Stage):
+    """A stage on CLOCK_MONOTONIC. Frames keep their schedule: a late one is caught up, never left out."""
+
+    _begun: float | None = None
+
+    def now(self) -> float:
+        """Return the time since the scenario began (s)."""
+        return 0.0 if self._begun is None else time.monotonic() - self._begun
+
+    def run(self, duration_s: float) -> float:
+        """Run the scenario; return when SIGINT was sent, on the trial's clock (s)."""
+        self._discover()
+        self._begun = time.monotonic()
+        frame = 0
+        while frame * FRAME_S < duration_s and not self.node.ended():
+            early_s = frame * FRAME_S - self.now()
+            if early_s > 0:
+                self.spin(early_s)
+                self.node.read_output(self.now())
+                continue
+            self.lag_s = max(self.lag_s, -early_s)
+            self.frame(frame * FRAME_S)
+            frame += 1
+            if frame % GRAPH_EVERY == 0:
+                self.recorder.follow_graph()
+                self.recorder.snapshot()
+        stopped_s = self.now()
+        self.recorder.snapshot()
+        self.wind_down()
+        return stopped_s
+
+    def _discover(self) -> None:
+        """Let the clock start when the node is in the graph and its topics are recorded, or has ended."""
+        deadline = time.monotonic() + DISCOVERY_S
+        while time.monotonic() < deadline and not self.node.ended():
+            self.spin(0.01)
+            self.node.read_output(self.now())
+            if self.students_nodes() and not self.recorder.follow_graph():
+                break
+        self.recorder.snapshot()
