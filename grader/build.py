@@ -16,6 +16,8 @@ class Build:
     exit_code: int
     log: str
     """stdout and stderr of colcon together, capped."""
+    package: str | None = None
+    """The name under which colcon installed it; None when nothing was installed."""
     timed_out: bool = False
     out_of: str | None = None
     """"disk", "memory", ... when a limit of the sandbox was hit."""

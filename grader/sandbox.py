@@ -106,6 +106,12 @@ def cell(
     return [*command, *_environment(env), "--chdir", str(cwd), "--", *limited(argv, limits)]
 
 
+def lone_cell(argv: Sequence[str], view: View, *, env: Mapping[str, str], limits: Limits) -> list[str]:
+    """`argv` in a cell that shares its network with nobody, whoever the caller is."""
+    inner = cell(argv, view, env=env, limits=limits)
+    return room(inner, view, env=env) if os.geteuid() == 0 else inner
+
+
 def limited(argv: Sequence[str], limits: Limits) -> list[str]:
     """`argv` under resource limits alone: all that can be had without bubblewrap."""
     return [
@@ -127,8 +133,7 @@ def why_unavailable() -> str | None:
         return "bubblewrap is not installed: `sudo apt-get install bubblewrap`"
     view = View(read_only=())
     env = {"PATH": "/usr/bin:/bin"}
-    inner = cell(["true"], view, env=env)
-    tried = room(inner, view, env=env) if os.geteuid() == 0 else inner
+    tried = lone_cell(["true"], view, env=env, limits=Limits())
     done = subprocess.run(tried, capture_output=True, text=True, timeout=20, check=False, stdin=subprocess.DEVNULL)
     if done.returncode == 0:
         return None

@@ -1,0 +1,159 @@
+"""Workspace: build a submission with colcon, in a cell, and read what came out without running any of it.
+
+The source goes into the cell as a tar stream and the install tree comes out as one: nothing of the build touches
+this machine's disk, and the same stream goes on into the cell of the trial.
+"""
+
+from __future__ import annotations
+
+import configparser
+import io
+import shutil
+import tarfile
+import tempfile
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+from grader import process, ros, sandbox
+from grader.build import Build
+from grader.errors import MachineError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.submission import Submission
+
+MIB = 1024 * 1024
+LIMITS = sandbox.Limits(processes=200, cpu_s=60)
+TIMEOUT_S = 60.0
+MOST_LOG = 256 * 1024
+MOST_TREE = 64 * MIB
+
+# Standard output is the install tree's alone: colcon and all that it runs write on standard error. --base-paths, since
+# colcon would look for packages everywhere below; sequential, since there is one package and workers cost time.
+_SCRIPT = r"""
+echo cell-is-ready >&2
+cd "$WS" && mkdir -p src && tar -x -f - -C src || exit 90
+"$PYTHON" -c 'import sys; from colcon_core.command import main; sys.exit(main())' build --base-paths src \
+    --executor sequential --event-handlers console_direct+ console_stderr- >&2 </dev/null
+code=$?
+[ -d install ] && tar -c -f - -C install .
+exit $code
+"""
+_READY = b"cell-is-ready\n"
+_LIMITS_HIT = {
+    "disk": (b"No space left on device", b"File too large", b"Disk quota exceeded"),
+    "processes": (b"Resource temporarily unavailable", b"can't start new thread"),
+    "memory": (b"MemoryError", b"Cannot allocate memory"),
+}
+
+
+@dataclass(frozen=True)
+class Built:
+    """A Build, and the install tree that it describes as a tar stream."""
+
+    build: Build
+    tree: bytes
+
+
+def build(submission: Submission, here: ros.Ros, underlay: Path | None, *, in_cell: bool) -> Built:
+    """Build the submission's package; `underlay` is the prefix of the turtlesim interfaces.
+
+    Raises:
+        MachineError: the sandbox or colcon itself does not work here.
+    """
+    with _workspace(in_cell=in_cell) as (workspace, home):
+        env = ros.environment(here, home=home, underlay=underlay)
+        env |= {"WS": str(workspace), "PYTHON": str(here.python)}
+        argv = ["sh", "-c", _SCRIPT]
+        if in_cell:
+            view = sandbox.ros_view(here, *([underlay] if underlay else []))
+            command = sandbox.lone_cell(argv, view, env=env, limits=LIMITS)
+        else:
+            command = sandbox.limited(argv, LIMITS)
+        done = process.run(
+            command, stdin=_pack(submission), env=env, timeout_s=TIMEOUT_S, most_stdout=MOST_TREE, most_stderr=MOST_LOG
+        )
+    return _read(done)
+
+
+@contextmanager
+def _workspace(*, in_cell: bool) -> Iterator[tuple[Path, Path]]:
+    if in_cell:
+        yield sandbox.WORKSPACE, sandbox.HOME
+        return
+    folder = Path(tempfile.mkdtemp(prefix="grader-"))
+    try:
+        (folder / "home").mkdir()
+        yield folder, folder / "home"
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _pack(submission: Submission) -> bytes:
+    """The submission as a tar stream, below a folder of its own name, the same bytes for the same files."""
+    stream = io.BytesIO()
+    with tarfile.open(fileobj=stream, mode="w|", format=tarfile.PAX_FORMAT) as tar:
+        for path, content in submission.files.items():
+            member = tarfile.TarInfo(f"{submission.package_dir.name}/{path}")
+            member.size = len(content)
+            member.mode = 0o755 if path in submission.executable else 0o644
+            tar.addfile(member, io.BytesIO(content))
+    return stream.getvalue()
+
+
+def _read(done: process.Finished) -> Built:
+    if not done.stderr.startswith(_READY):
+        said = done.stderr.decode("utf-8", "replace").strip()
+        message = f"The build could not be started: {said or 'no message'}. `grader doctor` tells what is missing."
+        raise MachineError(message)
+    lines = done.stderr[len(_READY) :].decode("utf-8", "replace").splitlines(keepends=True)
+    # The wheels' prefix is no colcon install tree; that says nothing about the submission.
+    log = "".join(line for line in lines if "colcon_ros.prefix_path.ament" not in line)
+    if "No module named 'colcon_core'" in log:
+        raise MachineError("colcon is not installed in this Python: `make demo` in the course's folder installs it.")  # noqa: EM101
+    out_of = next((name for name, signs in _LIMITS_HIT.items() if any(sign in done.stderr for sign in signs)), None)
+    files = {} if done.timed_out or done.too_much else _files(done.stdout)
+    package = next((path.parts[0] for path in files if len(path.parts) > 1), None)
+    inside = {path.relative_to(package): member for path, member in files.items() if path.parts[0] == package}
+    return Built(
+        Build(
+            exit_code=done.exit_code,
+            log=log,
+            package=package,
+            timed_out=done.timed_out,
+            out_of="disk" if done.too_much else out_of,
+            installed=tuple(sorted(map(str, inside))),
+            executables=tuple(sorted(p.name for p in inside if p.parts[:-1] == ("lib", package))),
+            entry_points=_entry_points(inside, done.stdout),
+            seconds=done.seconds,
+        ),
+        b"" if done.timed_out or done.too_much else done.stdout,
+    )
+
+
+def _files(tree: bytes) -> dict[PurePosixPath, tarfile.TarInfo]:
+    """The regular files of the install tree; a stream that is no tar holds none: it is the student's doing."""
+    try:
+        with tarfile.open(fileobj=io.BytesIO(tree)) as tar:
+            return {PurePosixPath(member.name): member for member in tar if member.isreg() or member.issym()}
+    except (tarfile.TarError, ValueError, OSError):
+        return {}
+
+
+def _entry_points(files: dict[PurePosixPath, tarfile.TarInfo], tree: bytes) -> dict[str, str]:
+    """The console_scripts as they were installed."""
+    for path, member in files.items():
+        if path.name != "entry_points.txt" or not path.parent.name.endswith(("egg-info", "dist-info")):
+            continue
+        text = tree[member.offset_data : member.offset_data + member.size].decode("utf-8", "replace")
+        parser = configparser.ConfigParser(delimiters=("=",), interpolation=None, strict=False)
+        parser.optionxform = str  # type: ignore[assignment,method-assign]  # names of executables keep their case
+        try:
+            parser.read_string(text)
+        except configparser.Error:
+            return {}
+        return dict(parser["console_scripts"]) if parser.has_section("console_scripts") else {}
+    return {}
