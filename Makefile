@@ -1,0 +1,44 @@
+# What there is to type; `make help` lists it. Every target sets up what it needs first, and is quick when that is done.
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test test-all lint lock clean
+
+# Exported, so that it also holds where the caller has no PATH at all (`env -i make demo`).
+export PATH := $(if $(PATH),$(PATH):)/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
+
+BIN := .venv/bin
+# `make demo PYTHON=python3.12` chooses the Python of .venv, and makes it anew if it was another.
+SET_UP := python3 -m grader.bootstrap
+CHOSEN := $(if $(findstring command line,$(origin PYTHON)),--python $(PYTHON))
+
+help: ## this list
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 18
+
+demo: python3 ## set up, grade the solution of step 03, say what to type next
+	@begin=$$(date +%s) && $(SET_UP) learner $(CHOSEN) && $(BIN)/python -m grader.demo --since $$begin
+
+test: lint ## set up, lint, and run the tests but the exhaustive ones
+	@$(BIN)/python -m pytest
+
+test-all: lint ## all tests: in both clocks, with repetition and load (long)
+	@$(BIN)/python -m pytest -m ""
+
+lint: .tests ## ruff and mypy
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+lock: .tests ## resolve pyproject.toml into requirements.lock; UPGRADE=1 takes the newest versions
+	@$(BIN)/python -m grader.lock $(if $(UPGRADE),--upgrade)
+
+clean: ## remove .venv and what the tools left; never anybody's work
+	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis build/demo
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+.PHONY: .tests python3
+.tests: python3
+	@$(SET_UP) tests $(CHOSEN)
+
+python3:
+	@command -v python3 > /dev/null || { echo "There is no python3 here. Install it, then run make again:" \
+	  "sudo apt-get update && sudo apt-get install -y python3 python3-venv python3-dev" >&2; exit 3; }

@@ -1,0 +1,72 @@
+"""The end of `make demo`: grade the solution of a step as a learner would, tell where the time went, say what is next.
+
+`python -m grader.demo --since SECONDS`: when the command began, in seconds since 1970, so that a set-up which it made
+is told and one of another day is not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from grader.bootstrap import ROOT, STAMP, read_stamp, say
+
+STEP = "03-circle-publisher"
+FOLDER = Path("build/demo")
+MACHINE_BROKEN = 3
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Grade `solutions/03-circle-publisher`; returns the exit code of `grader check`."""
+    parser = argparse.ArgumentParser(description="Grade the solution of a step and say what to type next.")
+    parser.add_argument("--since", type=float, default=time.time(), help="when the command began, seconds since 1970")
+    since = parser.parse_args(arguments).since
+
+    image, report = FOLDER / f"{STEP}.png", FOLDER / f"{STEP}.json"
+    (ROOT / FOLDER).mkdir(parents=True, exist_ok=True)
+    (ROOT / report).unlink(missing_ok=True)
+    command = ["grader", "check", f"solutions/{STEP}", "--image", str(image), "--json", str(report)]
+    say("$ " + " ".join(command))
+    done = subprocess.run([Path(sys.prefix, "bin", command[0]), *command[1:]], cwd=ROOT, check=False)
+    if done.returncode != 0:
+        print(closing_words(done.returncode))
+        return done.returncode
+    print()
+    say("Where the time went")
+    for name, seconds in [*set_up_seconds(since), *grading_seconds(ROOT / report)]:
+        print(f"  {name:<40} {seconds:6.1f} s")
+    print(f"  {'in all':<40} {time.time() - since:6.1f} s")
+    print(f"\nThe picture of the turtle's path: {image}")
+    print("\nNext, in this folder: make the environment yours, and grade what you were given to start from.\n")
+    print("    source .venv/bin/activate")
+    print(f"    grader check exercises/{STEP}")
+    return 0
+
+
+def closing_words(exit_code: int) -> str:
+    """What to do when the course's own solution did not pass."""
+    if exit_code == MACHINE_BROKEN:
+        return "\nThe solution could not be graded on this machine. See what it lacks: .venv/bin/grader doctor"
+    return "\nThe course's own solution did not pass: that is the course's fault, not yours. Please report what stands above."
+
+
+def set_up_seconds(since: float) -> list[tuple[str, float]]:
+    """The stages of a set-up that this command made, in seconds; none if it was there before."""
+    stamp = read_stamp()
+    if stamp is None or STAMP.stat().st_mtime < since:
+        return []
+    return [(f"set-up, once: {name}", seconds) for name, seconds in stamp.seconds.items()]
+
+
+def grading_seconds(report: Path) -> list[tuple[str, float]]:
+    """The stages of the grading, in seconds."""
+    seconds = json.loads(report.read_text(encoding="utf-8")).get("seconds", {})
+    return [(str(name), float(value)) for name, value in seconds.items()]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
