@@ -124,6 +124,9 @@ def run(
         in_time = False
         try:
             in_time = pump.serve(begun + timeout_s)
+            child.wait(max(0.0, begun + timeout_s - time.monotonic()))
+        except subprocess.TimeoutExpired:
+            in_time = False
         finally:
             if not in_time or pump.too_much:
                 os.killpg(child.pid, signal.SIGKILL)

@@ -1,0 +1,154 @@
+"""Trial: one run of simulator and node under one clock, seen from the grader's own process."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import subprocess
+import tempfile
+from contextlib import ExitStack, suppress
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from threading import Timer
+from typing import IO, TYPE_CHECKING, Any
+
+import grader
+from grader import ros, sandbox
+from grader.errors import MachineError
+
+if TYPE_CHECKING:
+    from grader.recording import ClockName, Pose, Recording
+
+_FOLDER = Path(grader.__file__).parent
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a trial does: under which clock, from where (m, m, rad), for how long (s)."""
+
+    clock: ClockName
+    start: Pose
+    seed: int | None
+    duration_s: float
+
+
+class Trial:
+    """A context manager: entering starts simulator and launcher, so that both are ready when the build is done."""
+
+    def __init__(self, plan: Plan, here: ros.Ros, underlay: Path | None, *, in_cell: bool) -> None:
+        self._plan = plan
+        self._here = here
+        self._underlay = underlay
+        self._in_cell = in_cell
+        self._stack = ExitStack()
+
+    def __enter__(self) -> Trial:  # noqa: PYI034 - typing.Self is Python 3.11's
+        try:
+            self._start()
+        except BaseException:
+            self._stack.close()
+            raise
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def run(self, package: str, executable: str, tree: bytes) -> Recording:
+        """Run the executable of the install tree (a tar stream) through the whole plan.
+
+        Raises:
+            MachineError: the simulator or the sandbox failed.
+        """
+        from grader.recording import from_json  # numpy takes its time: not before it is needed
+
+        install = self._workspace / "install"
+        prefix = install / package
+        env = ros.environment(
+            self._here, home=self._home, underlay=self._underlay, overlays=[prefix], domain=self._domain
+        )
+        argv = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []
+        order = {
+            "script": str(prefix / "lib" / package / executable),
+            "argv": argv,
+            "python_path": env["PYTHONPATH"].split(os.pathsep)[:1],
+            "env": env,
+            "install": str(install),
+            "tree_bytes": len(tree),
+        }
+        self._answer("ready")
+        self._send(json.dumps(order).encode() + b"\n" + tree)
+        return from_json(self._answer("recording"))
+
+    def _start(self) -> None:
+        if self._in_cell:
+            self._workspace, self._home, self._domain = sandbox.WORKSPACE, sandbox.HOME, 0
+        else:
+            folder = self._stack.enter_context(
+                tempfile.TemporaryDirectory(prefix="grader-", ignore_cleanup_errors=True)
+            )
+            self._workspace, self._home = Path(folder), Path(folder) / "home"
+            self._home.mkdir()
+            self._domain = self._own_domain()
+        self._errors: IO[bytes] = self._stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
+        env = ros.environment(self._here, home=self._home, underlay=self._underlay, domain=self._domain)
+        argv = [str(self._here.python), "-m", "grader.trial.conductor"]
+        more = [self._underlay] if self._underlay else []
+        if self._in_cell:
+            view = sandbox.ros_view(self._here, _FOLDER, *more)
+            argv = sandbox.room(argv, sandbox.View(view.read_only), env=env)
+        self._process = subprocess.Popen(
+            argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, env=env, start_new_session=True
+        )
+        self._stack.callback(self._end)
+        # Whatever happens inside, the grader does not wait for ever; the trial's own deadlines are much tighter.
+        timer = Timer(180.0 + 5 * self._plan.duration_s, self._process.kill)
+        timer.daemon = True
+        timer.start()
+        self._stack.callback(timer.cancel)
+        plan = asdict(self._plan) | {"start": [self._plan.start.x, self._plan.start.y, self._plan.start.theta]}
+        where = {"home": str(self._home), "domain": self._domain, "in_cell": self._in_cell}
+        underlay = {"underlay": str(self._underlay) if self._underlay else None}
+        self._send(json.dumps({**plan, **where, **underlay}).encode() + b"\n")
+
+    def _end(self) -> None:
+        self._process.kill()
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe is not None:
+                with suppress(BrokenPipeError):
+                    pipe.close()
+        self._process.wait()
+
+    def _send(self, data: bytes) -> None:
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(data)
+            self._process.stdin.flush()
+        except BrokenPipeError:
+            pass  # it ended; what it said is told by `_answer`
+
+    def _answer(self, key: str) -> Any:  # noqa: ANN401 - JSON
+        assert self._process.stdout is not None
+        line = self._process.stdout.readline()
+        answer = json.loads(line) if line.endswith(b"\n") else {}
+        if key in answer:
+            return answer[key]
+        self._process.kill()
+        self._errors.seek(0)
+        said = answer.get("fault") or self._errors.read()[-2000:].decode("utf-8", "replace").strip()
+        message = f"The simulator failed: {said or 'it said nothing'}. `grader doctor` tells what is missing."
+        raise MachineError(message)
+
+    def _own_domain(self) -> int:
+        """A ROS domain that no other trial of this machine uses now, for where there is no network of its own."""
+        # Above 101 a domain's ports would lie among those that Linux gives to anybody.
+        for domain in range(1, 102):
+            path = Path(tempfile.gettempdir()) / f"grader-domain-{os.getuid()}-{domain}.lock"
+            file = self._stack.enter_context(path.open("w"))
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                file.close()
+                continue
+            return domain
+        raise MachineError("A hundred trials are running on this machine already: wait, or use --sandbox.")  # noqa: EM101
