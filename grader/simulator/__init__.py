@@ -1,0 +1,1 @@
+"""Headless turtlesim: motion and pen trail as pure Python, and the rclpy node around them."""

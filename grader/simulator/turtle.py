@@ -1,0 +1,234 @@
+"""The motion of one turtle, frame by frame, as turtlesim 1.8 moves it. No ROS, no clock.
+
+Positions in m from the lower left corner, angles in rad counter-clockwise from east, times in s on whatever
+clock the caller passes in. State is kept in doubles; what is published is narrowed to float32 by the message.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, Protocol
+
+FRAME_S = 0.016
+"""One frame: turtlesim steps by this, however late the frame comes."""
+
+PIXELS_PER_M = 45
+SIDE_PX = 500
+# turtlesim keeps the canvas's size in 32-bit floats, so its walls and its start stand where these do.
+SIDE_M = 11.088889122009277
+"""The square canvas, m: float32 of (SIDE_PX - 1) / PIXELS_PER_M."""
+
+TIME_OUT_S = 1.0
+"""A turtle stops when its last command is older than this."""
+
+ROTATE_SPEED = 1.0
+"""rotate_absolute turns at this angular speed, rad/s."""
+ROTATE_TOLERANCE = 0.02
+"""rotate_absolute is done when less than this remains, rad."""
+
+Rgb = tuple[int, int, int]
+
+
+def normalize(angle: float) -> float:
+    """Return the same direction in [-pi, pi); nan for what is no direction (nan, infinity)."""
+    if -math.pi <= angle < math.pi:
+        return angle
+    if not math.isfinite(angle):
+        return math.nan
+    # fmod is exact, so a huge angle still ends in the interval (turtlesim's own formula loses it there).
+    turned = math.fmod(angle + math.pi, math.tau)
+    turned += math.pi if turned < 0.0 else -math.pi
+    return turned if turned < math.pi else -math.pi
+
+
+class Start(NamedTuple):
+    """Where a turtle begins: x, y in m, theta in rad."""
+
+    x: float = SIDE_M / 2
+    y: float = SIDE_M / 2
+    theta: float = 0.0
+
+
+@dataclass(frozen=True)
+class Pen:
+    """What a turtle draws with; `width` in pixels."""
+
+    color: Rgb = (179, 184, 255)
+    width: int = 3
+    down: bool = True
+
+
+class State(NamedTuple):
+    """A turtle after a frame: m, m, rad, m/s (never negative), rad/s; `wall` when the frame was clamped."""
+
+    x: float
+    y: float
+    theta: float
+    linear: float
+    angular: float
+    wall: bool
+
+
+class Paper(Protocol):
+    """What a turtle draws on and looks at; coordinates in m."""
+
+    def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
+        """Draw from (x0, y0) to (x1, y1)."""
+
+    def color_at(self, x: float, y: float) -> Rgb:
+        """Return the colour under (x, y)."""
+
+
+@dataclass
+class Rotation:
+    """A goal of rotate_absolute; `theta`, `start`, `remaining` and `delta` in rad."""
+
+    theta: float
+    start: float
+    remaining: float = 0.0
+    delta: float = 0.0
+    """The turn from now back to the start: turtlesim's result has this sign."""
+    cancel: bool = False
+    """Set by the caller; honoured in the next frame."""
+    end: Literal["succeeded", "canceled", "aborted"] | None = None
+
+
+class _Absolute(NamedTuple):
+    x: float
+    y: float
+    theta: float
+
+
+class _Relative(NamedTuple):
+    linear: float
+    angular: float
+
+
+class Turtle:
+    """One turtle. Requests take effect in the next `update`, velocities at once."""
+
+    def __init__(self, start: Start = Start()) -> None:  # noqa: B008 (a tuple cannot be changed)
+        self.x, self.y, self.theta = start
+        self.pen = Pen()
+        self.color: Rgb = (0, 0, 0)
+        """What the colour sensor saw in the last frame."""
+        self.rotation: Rotation | None = None
+        self.clamped_from: tuple[float, float] | None = None
+        """Where the last frame would have gone if there were no wall."""
+        self.last_command_s: float | None = None
+        self._command_is_new = False
+        self._vx = self._vy = self._spin = 0.0
+        self._teleports: list[_Absolute | _Relative] = []
+
+    def state(self) -> State:
+        """Return the turtle as of the last frame."""
+        speed = math.sqrt(self._vx * self._vx + self._vy * self._vy)
+        return State(self.x, self.y, self.theta, speed, self._spin, self.clamped_from is not None)
+
+    def command(self, linear_x: float, linear_y: float | None, angular_z: float) -> None:
+        """Take a velocity command (m/s, m/s, rad/s); it aborts a rotation.
+
+        None for `linear_y` leaves the sideways velocity as it is: so turtlesim does when it is not holonomic, and
+        a turtle that was, drifts on until it is told to stop or the time-out comes.
+        """
+        self.abort_rotation()
+        self._vx, self._spin = linear_x, angular_z
+        if linear_y is not None:
+            self._vy = linear_y
+        self._command_is_new = True
+
+    def teleport_absolute(self, x: float, y: float, theta: float) -> None:
+        """Ask to stand at (x, y) facing theta."""
+        self._teleports.append(_Absolute(x, y, theta))
+
+    def teleport_relative(self, linear: float, angular: float) -> None:
+        """Ask to turn by `angular`, then to go `linear` forward."""
+        self._teleports.append(_Relative(linear, angular))
+
+    def rotate_to(self, theta: float) -> Rotation:
+        """Accept a goal of rotate_absolute; one that is still going on is aborted."""
+        self.abort_rotation()
+        self.rotation = Rotation(theta=theta, start=self.theta)
+        return self.rotation
+
+    def abort_rotation(self) -> None:
+        """End the rotation that is going on, if any."""
+        if self.rotation is not None:
+            self.rotation.end = "aborted"
+            self.rotation = None
+
+    def update(self, dt: float, now_s: float, paper: Paper) -> None:
+        """Advance by one frame of `dt` s that takes place at `now_s`."""
+        self._take_new_command(now_s)
+        if self._teleports:
+            self._teleport(paper)
+        if self.rotation is not None:
+            self._rotate(self.rotation, now_s)
+        self._time_out(now_s)
+        x, y = self.x, self.y
+        self._move(dt)
+        self._clamp()
+        # The sensor looks before the pen draws: a turtle on fresh ground sees what was there before.
+        self.color = paper.color_at(self.x, self.y)
+        if (self.x != x or self.y != y) and self.pen.down:
+            paper.line(x, y, self.x, self.y, self.pen)
+
+    def _take_new_command(self, now_s: float) -> None:
+        # turtlesim runs its callbacks at the start of a frame, so a command's age counts from there.
+        if self._command_is_new:
+            self.last_command_s = now_s
+            self._command_is_new = False
+
+    def _teleport(self, paper: Paper) -> None:
+        for request in self._teleports:
+            x, y = self.x, self.y
+            if isinstance(request, _Absolute):
+                # Above the canvas turtlesim stops at its edge already here; the other sides are clamped later.
+                self.x, self.y = request.x, min(request.y, SIDE_M)
+                self.theta = normalize(request.theta)
+            else:
+                self.theta = normalize(self.theta + request.angular)
+                self.x += math.cos(self.theta) * request.linear
+                self.y += math.sin(self.theta) * request.linear
+            if self.pen.down:
+                paper.line(x, y, self.x, self.y, self.pen)
+        self._teleports.clear()
+
+    def _rotate(self, rotation: Rotation, now_s: float) -> None:
+        if rotation.cancel:
+            self._end_rotation(rotation, "canceled")
+            return
+        rotation.remaining = normalize(normalize(rotation.theta) - self.theta)
+        rotation.delta = normalize(rotation.start - self.theta)
+        if abs(rotation.remaining) < ROTATE_TOLERANCE:
+            self._end_rotation(rotation, "succeeded")
+            return
+        self._vx = self._vy = 0.0
+        self._spin = -ROTATE_SPEED if rotation.remaining < 0.0 else ROTATE_SPEED
+        # A rotation may last longer than a command lives.
+        self.last_command_s = now_s
+
+    def _end_rotation(self, rotation: Rotation, end: Literal["succeeded", "canceled"]) -> None:
+        rotation.end = end
+        self.rotation = None
+        self._vx = self._vy = self._spin = 0.0
+
+    def _time_out(self, now_s: float) -> None:
+        if self.last_command_s is not None and now_s - self.last_command_s > TIME_OUT_S:
+            self._vx = self._vy = self._spin = 0.0
+
+    def _move(self, dt: float) -> None:
+        self.theta = normalize(self.theta + self._spin * dt)
+        cos, sin = math.cos(self.theta), math.sin(self.theta)
+        self.x += (cos * self._vx - sin * self._vy) * dt
+        self.y += (sin * self._vx + cos * self._vy) * dt
+
+    def _clamp(self) -> None:
+        # Written so that nan passes through, as in turtlesim: a turtle sent nowhere says so in its pose.
+        if self.x < 0.0 or self.x > SIDE_M or self.y < 0.0 or self.y > SIDE_M:
+            self.clamped_from = (self.x, self.y)
+            self.x = min(max(self.x, 0.0), SIDE_M)
+            self.y = min(max(self.y, 0.0), SIDE_M)
+        else:
+            self.clamped_from = None
