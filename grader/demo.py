@@ -51,7 +51,7 @@ def closing_words(exit_code: int) -> str:
     """What to do when the course's own solution did not pass."""
     if exit_code == MACHINE_BROKEN:
         return "\nThe solution could not be graded on this machine. See what it lacks: .venv/bin/grader doctor"
-    return "\nThe course's own solution did not pass: that is the course's fault, not yours. Please report what stands above."
+    return "\nThe course's own solution did not pass: the course's fault, not yours. Please report what stands above."
 
 
 def set_up_seconds(since: float) -> list[tuple[str, float]]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import re
+import ssl
 import subprocess
 import sys
 import time
@@ -19,7 +20,8 @@ from grader.errors import MachineError
 
 BIN = Path(sys.prefix, "bin")
 _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
-_PROGRESS = ("Downloading ", "Downloaded ", "Building ", "Built ", "Prepared ", "Installed ", "Bytecode compiled ")
+_PROGRESS = ("Collecting ", "Downloading ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
+_MOST_LINES = 40
 _NO_NETWORK = (
     "The packages could not be installed; what the installer said stands above. Is this machine online? A proxy is "
     "read from HTTPS_PROXY, a mirror from pip's own configuration. The same command goes on from here: what was "
@@ -53,7 +55,7 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     begin = time.monotonic()
     say("Installing the installer (uv)")
     first = _write("setup", lock.select(text, ["setup"]))
-    if _pip(first, quiet=True) != 0:
+    if _pip(first) != 0:
         raise MachineError(_NO_NETWORK)
 
     say("Installing " + ("what the grader needs" if sourced else "ROS 2 Jazzy and what the grader needs"))
@@ -65,37 +67,49 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
         if _pip(rest) != 0:
             raise MachineError(_NO_NETWORK)
     project = ("--no-deps", "--no-build-isolation", "--editable", str(ROOT))
-    if _uv(*project) is None and subprocess.call([sys.executable, "-m", "pip", "install", *project]) != 0:
+    if _uv(*project) is None:
         message = f"The course's own package could not be installed from {ROOT}; what the installer said stands above."
         raise MachineError(message)
     total = time.monotonic() - begin
     return {"download": downloading or 0.0, "install": total - (downloading or 0.0)}
 
 
-def _pip(requirements: Path, *, quiet: bool = False) -> int:
+def _pip(requirements: Path) -> int:
+    """`pip install` from the lock; returns the exit code."""
     command = [sys.executable, "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--retries", "2"]
-    command += ["--progress-bar", "off", *(["--quiet"] if quiet else []), *_OPTIONS, "-r", str(requirements)]
-    return subprocess.call(command, cwd=ROOT)
+    return _run([*command, "--progress-bar", "off", *_OPTIONS, "-r", str(requirements)])[0]
 
 
 def _uv(*arguments: str) -> float | None:
-    """`uv pip install`: its progress is shown, the rest only if it fails. Returns the seconds of download, or None."""
+    """`uv pip install`; returns the seconds of download, or None if it failed."""
     command = [str(BIN / "uv"), "pip", "install", "--python", sys.executable, *arguments]
-    other: list[str] = []
-    downloading = 0.0
-    # Piped, it prints a line when a download begins and ends: slow lines see progress, logs stay readable.
-    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, errors="replace") as process:
-        for line in process.stderr or ():
+    stores = ssl.get_default_verify_paths()
+    if stores.cafile or (stores.capath and any(Path(stores.capath).iterdir())):
+        command.append("--system-certs")  # As other programs here do; a minimal system has none, and uv brings some.
+    code, shown = _run(command)
+    prepared = next((line for line in shown if line.startswith("Prepared ")), "")
+    return None if code else seconds_of(prepared)
+
+
+def _run(command: list[str]) -> tuple[int, list[str]]:
+    """Run an installer and show its progress as lines, all the rest only if it fails; returns exit code and progress.
+
+    Piped, both installers print a line where a download begins: a slow one is seen, and logs stay readable.
+    """
+    shown: list[str] = []
+    rest: list[str] = []
+    with subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
+    ) as process:
+        for line in process.stdout or ():
             if line.strip().startswith(_PROGRESS):
-                print(f"  {line.strip()}", flush=True)
+                shown.append(line.strip().partition(" (from ")[0])
+                print(f"  {shown[-1]}", flush=True)
             else:
-                other.append(line)
-            if line.startswith("Prepared "):
-                downloading = seconds_of(line)
+                rest.append(line)
     if process.returncode != 0:
-        print("".join(line for line in other if not line.startswith(" + ")), file=sys.stderr, end="")
-        return None
-    return downloading
+        print("".join(rest[-_MOST_LINES:]), end="", flush=True)
+    return process.returncode, shown
 
 
 def seconds_of(line: str) -> float:
