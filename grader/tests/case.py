@@ -1,0 +1,122 @@
+"""A case: a submission as a learner wrote it, and what `grader check` must say about it.
+
+grader/tests/cases/NNN-name/
+  files/           laid over the base; without a base, the whole of what is handed in
+  make.py          make(folder): what a folder in git cannot hold (links, names that are not UTF-8, ...)
+  expected.toml    the keys are the fields of `Case`, below
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+import sys
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from grader.markers import solved, syntax_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROOT = Path(__file__).parent.parent.parent
+CASES = Path(__file__).parent / "cases"
+EXIT_CODES = {"passed": 0, "failed": 1, "usage": 2, "error": 3}
+
+
+@dataclass(frozen=True)
+class Case:
+    """What stands in expected.toml. Checks are named by their id; all that are not named must pass."""
+
+    name: str
+    why: str
+    """What is odd about the submission, for the reader of the tests."""
+    result: str
+    """A key of EXIT_CODES."""
+    base: str = "03-circle-publisher"
+    """The solution that `files` is laid over; empty for none."""
+    remove: tuple[str, ...] = ()
+    """Paths of the base that are taken away."""
+    give: str = "."
+    """What is handed in, relative to the folder that holds the package."""
+    sample: bool = False
+    """Belongs to the sample that `make test` runs."""
+    clock: str = ""
+    """The clock that must judge under `--clock auto`; empty for any."""
+    points: float | None = None
+    failed: tuple[str, ...] = ()
+    skipped: tuple[str, ...] = ()
+    advice: tuple[str, ...] = ()
+    """The advice given: checks worth nothing that did not pass. Whatever they say, they are not among `failed`."""
+    diagnosis: Mapping[str, str] = ()  # type: ignore[assignment]
+    """Check -> the stable id of the cause."""
+    where: Mapping[str, str] = ()  # type: ignore[assignment]
+    """Check -> "file:line"."""
+    says: Mapping[str, tuple[str, ...]] = ()  # type: ignore[assignment]
+    """Check -> what its texts must contain; the key "usage" stands for the message of exit code 2."""
+    never: tuple[str, ...] = ()
+    """What must not be said anywhere."""
+
+
+def read_case(folder: Path) -> Case:
+    """The case in a folder; ValueError for a key that there is not."""
+    values: dict[str, Any] = tomllib.loads((folder / "expected.toml").read_text("utf-8"))
+    unknown = values.keys() - {field.name for field in fields(Case)}
+    if unknown or values["result"] not in EXIT_CODES:
+        message = f"{folder.name}/expected.toml: {unknown or values['result']}"
+        raise ValueError(message)
+    for key in ("remove", "failed", "skipped", "advice", "never"):
+        values[key] = tuple(values.get(key, ()))
+    for key in ("diagnosis", "where", "says"):
+        values[key] = values.get(key, {})
+    return Case(name=folder.name, **values)
+
+
+def read_cases() -> tuple[Case, ...]:
+    """Every case, in the order of their names."""
+    return tuple(read_case(folder) for folder in sorted(CASES.iterdir()) if (folder / "expected.toml").is_file())
+
+
+def make_submission(case: Case, to: Path) -> Path:
+    """Write what is handed in below the new folder `to`, and return its path."""
+    to.mkdir(parents=True)
+    package = to / "my_robot_controller" if case.base else to
+    if case.base:
+        copy_solution(case.base, package)
+    for path in case.remove:
+        target = package / path
+        if target.is_dir():
+            shutil.rmtree(target)
+        else:
+            target.unlink()
+    files = CASES / case.name / "files"
+    if files.is_dir():
+        shutil.copytree(files, package, dirs_exist_ok=True)
+    generator = CASES / case.name / "make.py"
+    if generator.is_file():
+        spec = importlib.util.spec_from_file_location("make", generator)
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        module.make(to)
+    return to / case.give
+
+
+def copy_solution(step: str, to: Path) -> None:
+    """A solution's package as a learner would have written it: no markers in it."""
+    source = ROOT / "solutions" / step / "my_robot_controller"
+    for file in sorted(path for path in source.rglob("*") if path.is_file() and "__pycache__" not in path.parts):
+        target = to / file.relative_to(source)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        syntax = syntax_of(file.name)
+        if syntax is None:
+            shutil.copy(file, target)
+        else:
+            target.write_text(solved(file.read_text("utf-8"), syntax, str(file)), "utf-8")
