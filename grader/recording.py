@@ -143,8 +143,7 @@ class Recording:
     """Every topic of the graph with its types, whether messages could be recorded or not."""
     stdout: Output
     stderr: Output
-    end: ProcessEnd | None
-    """None only in a trial that was broken off because of a doubt."""
+    end: ProcessEnd
     own_nodes: tuple[str, ...] = ("/turtlesim",)
     """The grader's nodes; every other node of the graph belongs to the submission."""
     interventions: tuple[str, ...] = ()
@@ -200,7 +199,7 @@ def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> 
             "topics": {topic: tuple(types) for topic, types in data["topics"].items()},
             "stdout": _output(data["stdout"]),
             "stderr": _output(data["stderr"]),
-            "end": ProcessEnd(**data["end"]) if data["end"] else None,
+            "end": ProcessEnd(**data["end"]),
             "own_nodes": tuple(data["own_nodes"]),
             "interventions": tuple(data["interventions"]),
             "doubts": tuple(data["doubts"]),

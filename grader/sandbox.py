@@ -73,8 +73,8 @@ def bubblewrap() -> str | None:
 
 def room(argv: Sequence[str], view: View, *, env: Mapping[str, str], cwd: Path | None = None) -> list[str]:
     """`argv` as an ordinary user in a network of its own, seeing `view`; for our own processes."""
-    command = [_bwrap(), "--unshare-net", "--die-with-parent", *_disk(view), "--bind", "/proc", "/proc"]
-    command += ["--tmpfs", "/tmp", "--dir", str(HOME)]
+    command = [_bwrap(), "--unshare-net", "--die-with-parent", "--tmpfs", "/tmp", "--perms", "0777", "--dir", str(HOME)]
+    command += [*_disk(view), "--bind", "/proc", "/proc"]
     return [*_ordinary(command), *_environment(env), "--chdir", str(cwd or HOME), "--", *_stay_ordinary(), *argv]
 
 
@@ -96,11 +96,11 @@ def cell(
     command = [_bwrap(), "--unshare-user", "--disable-userns", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
     command += ["--unshare-cgroup-try", "--uid", "1000", "--gid", "1000", "--hostname", "robot"]
     command += ["--die-with-parent", "--new-session", *([] if network else ["--unshare-net"])]
-    command += [*_disk(view), "--proc", "/proc"]
-    # --dev leaves /dev and /dev/shm writable and large.
-    command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev"]
+    # First /tmp, since what `view` names may lie below it.
     command += ["--size", str(limits.disk), "--tmpfs", "/tmp", "--dir", str(HOME)]
-    command += ["--size", str(limits.disk), "--tmpfs", str(WORKSPACE), "--remount-ro", "/"]
+    command += ["--size", str(limits.disk), "--tmpfs", str(WORKSPACE), *_disk(view), "--proc", "/proc"]
+    # --dev leaves /dev and /dev/shm writable and large.
+    command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev", "--remount-ro", "/"]
     command += [] if info_fd is None else ["--info-fd", str(info_fd)]
     # Set inside: the limit on processes then counts only this cell's.
     return [*command, *_environment(env), "--chdir", str(cwd), "--", *limited(argv, limits)]

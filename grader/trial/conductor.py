@@ -2,20 +2,22 @@
 
 It lives in a room (sandbox.py), speaks JSON lines with the grader's own process over its standard streams, and
 holds the student's node in a cell. First line in: what the trial is. It answers {"ready": true} once simulator and
-launcher wait. Second line in: what to start, followed by the install tree. Last line out: {"recording": {...}}, or
-{"fault": "..."} for a fault of the machine.
+launcher wait. Second line in: what to start, followed by the install tree. Last line out: {"recording": {...}},
+{"doubt": "..."} when another clock must judge, or {"fault": "..."} for a fault of the machine.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from grader import ros, sandbox
 from grader.recording import Pose, Recording, frames_of, to_json
 from grader.trial.node_process import LaunchError, NodeProcess
+from grader.trial.rest import DoubtError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,13 +28,18 @@ LAUNCHER = Path(__file__).with_name("launcher.py")
 def main() -> None:
     """Conduct the trial that standard input asks for."""
     order = json.loads(sys.stdin.buffer.readline())
+    # What ROS 2 prints must not come between our lines.
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
     try:
-        _conduct(order)
+        _conduct(order, answers)
+    except DoubtError as doubt:
+        _say(answers, {"doubt": str(doubt)})
     except LaunchError as error:
-        _say({"fault": f"The node's process could not be started: {error}"})
+        _say(answers, {"fault": f"The node's process could not be started: {error}"})
 
 
-def _conduct(order: dict[str, Any]) -> None:
+def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
     here = ros.find_ros()
     underlay = Path(order["underlay"]) if order["underlay"] else None
     with NodeProcess(lambda info_fd: _command(here, underlay, order, info_fd), in_cell=order["in_cell"]) as node:
@@ -40,11 +47,15 @@ def _conduct(order: dict[str, Any]) -> None:
         from grader.trial.simulated import SimulatedTrial
         from grader.trial.wall import WallTrial
 
-        trial: type[SimulatedTrial | WallTrial] = SimulatedTrial if order["clock"] == "simulated" else WallTrial
         start = Pose(*order["start"])
-        stage = trial(node, start, [*here.prefixes, *([underlay] if underlay else [])])
+        prefixes = [*here.prefixes, *([underlay] if underlay else [])]
+        stage: SimulatedTrial | WallTrial
+        if order["clock"] == "simulated":
+            stage = SimulatedTrial(node, start, prefixes, stop_at_doubt=order["stop_at_doubt"])
+        else:
+            stage = WallTrial(node, start, prefixes)
         node.await_ready()
-        _say({"ready": True})
+        _say(answers, {"ready": True})
         line = sys.stdin.buffer.readline()
         if not line:
             return
@@ -70,12 +81,12 @@ def _conduct(order: dict[str, Any]) -> None:
             topics={topic: tuple(sorted(types)) for topic, types in sorted(recorder.topics.items())},
             stdout=stdout,
             stderr=stderr,
-            end=node.end(sigint_s) if node.ended() else None,
+            end=node.end(sigint_s),
             interventions=tuple(stage.interventions),
             doubts=doubts,
             lag_s=stage.lag_s,
         )
-        _say({"recording": to_json(recording)})
+        _say(answers, {"recording": to_json(recording)})
 
 
 def _command(here: ros.Ros, underlay: Path | None, order: dict[str, Any], info_fd: int) -> Sequence[str]:
@@ -92,9 +103,9 @@ def _command(here: ros.Ros, underlay: Path | None, order: dict[str, Any], info_f
     return sandbox.cell(launch, view, env=env, network=True, info_fd=info_fd)
 
 
-def _say(what: dict[str, Any]) -> None:
-    sys.stdout.write(json.dumps(what) + "\n")
-    sys.stdout.flush()
+def _say(answers: IO[str], what: dict[str, Any]) -> None:
+    answers.write(json.dumps(what) + "\n")
+    answers.flush()
 
 
 if __name__ == "__main__":

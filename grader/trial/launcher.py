@@ -21,20 +21,17 @@ _AHEAD = (
     "rclpy.executors",
     "rclpy.callback_groups",
     "rclpy.qos",
-    "geometry_msgs.msg",
     "std_msgs.msg",
-    "rosgraph_msgs.msg",
-    "turtlesim.msg",
     "turtlesim.srv",
 )
+_TYPES_AHEAD = (("geometry_msgs.msg", "Twist"), ("rosgraph_msgs.msg", "Clock"), ("turtlesim.msg", "Pose"))
 
 
 def _import_ahead() -> None:
     for name in _AHEAD:
-        module = importlib.import_module(name)
-        for message in ("Twist", "Clock", "Pose"):
-            if hasattr(module, message):
-                type(getattr(module, message)).__import_type_support__()
+        importlib.import_module(name)
+    for name, message in _TYPES_AHEAD:
+        type(getattr(importlib.import_module(name), message)).__import_type_support__()
 
 
 def _without_us(kind: type[BaseException], error: BaseException, trace: types.TracebackType | None) -> None:

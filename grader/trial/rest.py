@@ -30,6 +30,10 @@ class GoneError(Exception):
     """The process has ended."""
 
 
+class DoubtError(Exception):
+    """The process may follow wall time, so that its rest says nothing; the text says why."""
+
+
 @dataclass(frozen=True)
 class Look:
     """One look at some threads: whether all sleep, and how often each has run."""

@@ -16,7 +16,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
 from grader.simulator.turtle import FRAME_S
-from grader.trial.rest import GoneError, Look, Threads
+from grader.trial.rest import DoubtError, GoneError, Look, Threads
 from grader.trial.stage import Stage
 
 if TYPE_CHECKING:
@@ -33,6 +33,8 @@ WAKE_S = 1.0
 TICK_CPU_S = 1.0
 """A node that works longer than this on one frame never rests. CPU time, so that a loaded machine changes nothing."""
 TICK_S = 30.0
+SLOWEST = 3.0
+"""A trial that takes this much longer than its scenario is better done in wall time."""
 GRAPH_EVERY = 31
 """Frames between two looks at the graph: half a second."""
 WAITS_EVERY = 7
@@ -43,8 +45,9 @@ _POLL_S = 0.00005
 class SimulatedTrial(Stage):
     """A stage whose clock the node follows."""
 
-    def __init__(self, node: NodeProcess, start: Pose, prefixes: list[Path]) -> None:
+    def __init__(self, node: NodeProcess, start: Pose, prefixes: list[Path], *, stop_at_doubt: bool) -> None:
         self._now_s = 0.0
+        self._stop_at_doubt = stop_at_doubt
         super().__init__(node, start, prefixes)
         qos = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._clock = self.recorder.create_publisher(Clock, "/clock", qos)
@@ -54,12 +57,15 @@ class SimulatedTrial(Stage):
         return self._now_s
 
     def run(self, duration_s: float) -> float:
-        """Run the scenario; return when SIGINT was sent, on the trial's clock (s)."""
+        """Run the scenario; return when SIGINT was sent, on the trial's clock (s).
+
+        Raises:
+            DoubtError: the node may follow wall time, and the trial was asked to stop at a doubt.
+        """
+        deadline = time.monotonic() + SLOWEST * duration_s
         try:
             self._handshake()
-            frame = 0
-            while not self.doubts and frame * FRAME_S < duration_s:
-                frame += 1
+            for frame in range(1, round(duration_s / FRAME_S) + 1):
                 self.tick(frame * FRAME_S)
                 self._settle()
                 if frame % GRAPH_EVERY == 0:
@@ -67,14 +73,21 @@ class SimulatedTrial(Stage):
                     self.recorder.snapshot()
                 if frame % WAITS_EVERY == 0:
                     self._doubt_sleepers()
+                if time.monotonic() > deadline:
+                    self._doubt("it works so much that simulated time is slower than the wall's")
+                    break
         except GoneError:
             self.spin()
         self.recorder.snapshot()
-        if not self.doubts:
-            stopped_s = self._now_s
-            self.wind_down()
-            return stopped_s
-        return self._now_s
+        stopped_s = self._now_s
+        self.wind_down()
+        return stopped_s
+
+    def _doubt(self, why: str) -> None:
+        if why not in self.doubts:
+            self.doubts.append(why)
+        if self._stop_at_doubt:
+            raise DoubtError(why)
 
     def tick(self, now_s: float) -> None:
         """Make one frame and tell the node its time."""
@@ -123,7 +136,7 @@ class SimulatedTrial(Stage):
         arrived: tuple[bytes, ...] | None = None
         while True:
             if not self._rest():
-                self.doubts.append("the node never comes to rest: it works without waiting")
+                self._doubt("the node never comes to rest: it works without waiting")
                 return
             runs = self._ours.look().runs
             # Our receiving threads have not run since: nothing has come that is not handled yet.
@@ -143,12 +156,12 @@ class SimulatedTrial(Stage):
                 raise GoneError
             self.node.read_output(0.0)
             if time.monotonic() > deadline:
-                self.doubts.append("the node did not come to rest before the clock could start")
+                self._doubt("the node did not come to rest before the clock could start")
                 return
         self._watch()  # threads name themselves only once they run
         self._wake()
         if len(self.recorder.commands) >= 2:
-            self.doubts.append("the node published again and again while the clock stood still")
+            self._doubt("the node published again and again while the clock stood still")
         self._doubt_sleepers()
         self.recorder.follow_graph()
         self.recorder.snapshot()
@@ -195,6 +208,6 @@ class SimulatedTrial(Stage):
         timed = [wait for wait in self._node.waits() if wait.timed and not wait.thread.startswith("dds.")]
         sleeping = [wait for wait in timed if wait.call in ("nanosleep", "clock_nanosleep")]
         if sleeping:
-            self.doubts.append("the node sleeps on wall time")
+            self._doubt("the node sleeps on wall time")
         elif len(timed) > 1:
-            self.doubts.append("the node waits for wall time")
+            self._doubt("the node waits for wall time")
