@@ -1,0 +1,94 @@
+"""The command blocks of a Markdown text, so that what README and lessons promise can be run.
+
+A block opens with ```console and holds lines `$ command`, each followed by what it prints; a line `...` stands for any
+lines, and so does the end. Numbers may differ.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+FENCE = re.compile(r"^```(\w*) ?([^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+NUMBER = re.compile(r"\d+(?:\.\d+)?")
+END = "--- the end of what one command printed ---"
+
+
+@dataclass(frozen=True)
+class Step:
+    """A command and the lines that it is shown to print."""
+
+    command: str
+    printed: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: its language, what follows it on the line, its text."""
+
+    language: str
+    about: str
+    text: str
+
+    def steps(self) -> tuple[Step, ...]:
+        """The commands of a console block; ValueError for output that no command printed."""
+        steps: list[Step] = []
+        for line in self.text.splitlines():
+            if line.startswith("$ "):
+                steps.append(Step(line.removeprefix("$ "), ()))
+            elif steps:
+                steps[-1] = Step(steps[-1].command, (*steps[-1].printed, line))
+            else:
+                message = f"output without a command: {line!r}"
+                raise ValueError(message)
+        return tuple(steps)
+
+
+def blocks(markdown: str) -> tuple[Block, ...]:
+    """The fenced blocks of a text, in order."""
+    return tuple(Block(*match.groups()) for match in FENCE.finditer(markdown))
+
+
+def run(block: Block, cwd: Path, env: Mapping[str, str], timeout_s: float) -> list[tuple[Step, str, int]]:
+    """Run the block's commands in one shell, as somebody types them; each with what it printed and its exit code."""
+    steps = block.steps()
+    script = "\n".join(f"{step.command}\nprintf '\\n%s %s\\n' {shlex.quote(END)} $?" for step in steps)
+    done = subprocess.run(
+        ["bash", "--norc", "-c", script],
+        cwd=cwd,
+        env=env,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        timeout=timeout_s,
+        check=False,
+    )
+    parts = re.split(rf"\n{END} (\d+)\n", done.stdout.decode("utf-8", "replace"))
+    return [(step, parts[2 * index], int(parts[2 * index + 1])) for index, step in enumerate(steps)]
+
+
+def differs(shown: tuple[str, ...], printed: str) -> str | None:
+    """The first line shown that was not printed where it should be; None if all were. Numbers are not compared."""
+    lines = [_plain(line) for line in printed.splitlines()]
+    at, jump = 0, True
+    for line in shown:
+        if line.strip() == "...":
+            jump = True
+            continue
+        wanted = _plain(line)
+        found = lines.index(wanted, at) if jump and wanted in lines[at:] else at
+        if found >= len(lines) or lines[found] != wanted:
+            return line
+        at, jump = found + 1, False
+    return None
+
+
+def _plain(line: str) -> str:
+    return " ".join(NUMBER.sub("#", line).split())

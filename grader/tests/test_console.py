@@ -1,0 +1,69 @@
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests.console import Block, Step, blocks, differs, run
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+TEXT = """\
+# A text
+```console
+$ echo one; echo two
+one
+two
+$ false
+```
+```python
+print(1)
+```
+```console ros2
+$ ros2 topic list
+```
+"""
+
+
+def test_blocks_are_found_with_their_language() -> None:
+    assert [(block.language, block.about) for block in blocks(TEXT)] == [
+        ("console", ""),
+        ("python", ""),
+        ("console", "ros2"),
+    ]
+
+
+def test_a_block_is_commands_with_what_they_print() -> None:
+    assert blocks(TEXT)[0].steps() == (Step("echo one; echo two", ("one", "two")), Step("false", ()))
+
+
+def test_output_without_a_command_is_an_error() -> None:
+    with pytest.raises(ValueError, match="output without a command"):
+        Block("console", "", "one\n$ echo two\n").steps()
+
+
+def test_commands_share_a_shell(tmp_path: Path) -> None:
+    block = Block("console", "", "$ x=5; cd /\n$ printf $x$PWD\n$ (exit 3)\n")
+    results = run(block, tmp_path, os.environ, 10.0)
+    assert [(printed, code) for _, printed, code in results] == [("", 0), ("5/", 0), ("", 3)]
+
+
+@pytest.mark.parametrize(
+    ("shown", "wrong"),
+    [
+        ((), None),
+        (("a 1", "b"), None),
+        (("b",), None),
+        (("a 2.5",), None),
+        (("a  3", "...", "d"), None),
+        (("...", "c"), None),
+        (("a 1", "c"), "c"),
+        (("b", "a 1"), "a 1"),
+        (("x",), "x"),
+        (("d", "more"), "more"),
+    ],
+)
+def test_what_is_shown_must_be_printed_in_that_order(shown: tuple[str, ...], wrong: str | None) -> None:
+    assert differs(shown, "a 1\nb\nc\nd\n") == wrong
