@@ -1,11 +1,7 @@
 """The node `turtlesim`: a headless turtlesim for ROS 2.
 
-Alone at wall time, until Ctrl-C:
-
-    python -m grader.simulator.node [--image FILE.png] [--ros-args ...]
-
-Driven by a trial: whoever owns it spins it and calls `frame` once a frame with the time on its own clock. The node
-uses no timer and no ROS clock.
+Whoever owns the node spins it and calls `frame` once a frame with the time on its own clock: a trial, or alone.py at
+wall time. The node uses no timer and no ROS clock.
 """
 
 from __future__ import annotations
@@ -21,11 +17,11 @@ from turtlesim.srv import Kill, Spawn
 
 from grader.simulator import parameters
 from grader.simulator.interface import Hooks, TurtleInterface
-from grader.simulator.turtle import SIDE_M, Start
+from grader.simulator.turtle import Start
 from grader.simulator.world import World
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
     from pathlib import Path
 
     from rclpy.parameter import Parameter
@@ -162,7 +158,8 @@ class TurtlesimNode(Node):
         return parameters.refusal(parameter_list) or super().set_parameters_atomically(parameter_list)
 
     def _parameters_of_ours(self) -> list[Parameter]:
-        return self.get_parameters([*parameters.CHANNELS, parameters.HOLONOMIC])
+        ours: list[Parameter] = self.get_parameters([*parameters.CHANNELS, parameters.HOLONOMIC])
+        return ours
 
     def _parameters_set(self, changed: Iterable[Parameter]) -> None:
         self._hooks.on_intervention("set_parameters")

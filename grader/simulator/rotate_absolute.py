@@ -39,7 +39,7 @@ class RotateAbsoluteServer:
     """Connects the goals of one turtle's action to its rotations."""
 
     def __init__(
-        self, node: Node, name: str, find_turtle: Callable[[], Turtle | None], on_goal: Callable[[], None]
+        self, node: Node, name: str, find_turtle: Callable[[], Turtle | None], on_goal: Callable[[], object]
     ) -> None:
         """`find_turtle` gives the turtle of today (none when it was killed); `on_goal` is told of every goal."""
         self._log = node.get_logger()
