@@ -22,12 +22,16 @@ class Where:
     file: str
     line: int | None = None
 
+    def __str__(self) -> str:
+        return self.file if self.line is None else f"{self.file}:{self.line}"
+
 
 @dataclass(frozen=True)
 class Finding:
     """What a check says: one sentence each, for a beginner. `diagnosis` is the stable id of the cause.
 
-    `near_edge`: the measured value lies within a fifth of a tolerance's edge, so wall time must judge.
+    `near_edge`: the measured value lies within a fifth of a tolerance's edge, or the node did not stop under
+    simulated time; so wall time must judge.
     """
 
     status: Status
@@ -39,9 +43,30 @@ class Finding:
     near_edge: bool = False
 
 
+def passed(seen: str, *, near_edge: bool = False) -> Finding:
+    """A finding in the student's favour."""
+    return Finding(Status.PASSED, seen, near_edge=near_edge)
+
+
+def failed(
+    diagnosis: str,
+    seen: str,
+    expected: str,
+    cause: str = "",
+    *,
+    where: Where | None = None,
+    near_edge: bool = False,
+) -> Finding:
+    """A fault of the student's work."""
+    return Finding(Status.FAILED, seen, expected, cause, diagnosis, where, near_edge)
+
+
 @dataclass(frozen=True)
 class Outcome:
-    """A finding with its check's id, kind and points."""
+    """A finding with its check's id, kind and points.
+
+    `advice`: the finding is worth nothing and fails no run, whatever its status.
+    """
 
     id: str
     kind: str
@@ -51,6 +76,11 @@ class Outcome:
     finding: Finding
     hidden: bool = False
     advice: bool = False
+
+    @property
+    def status(self) -> Status:
+        """The finding's status."""
+        return self.finding.status
 
 
 @dataclass(frozen=True)
@@ -72,11 +102,26 @@ class Report:
     seconds: dict[str, float] = field(default_factory=dict)
     """Wall time of each stage; not compared between two reports."""
     recording: str | None = None
+    exercise_digest: str = ""
+    """sha256 of exercise.toml: the checks and numbers that this report was judged by."""
 
     @property
     def points(self) -> float:
+        """The points of all checks together."""
         return sum(outcome.points for outcome in self.outcomes)
 
     @property
     def max(self) -> float:
-        return sum(outcome.max for outcome in self.outcomes)
+        """The points that could be had: those of a check that the machine could not judge are not among them."""
+        return sum(outcome.max for outcome in self.outcomes if outcome.status is not Status.ERROR)
+
+    def with_status(self, status: Status) -> tuple[Outcome, ...]:
+        """The outcomes with this status, advice left out."""
+        return tuple(o for o in self.outcomes if o.status is status and not o.advice)
+
+    @property
+    def exit_code(self) -> int:
+        """0 all passed, 1 some check did not pass, 3 the grader or the machine is broken."""
+        if self.with_status(Status.ERROR):
+            return 3
+        return 1 if self.with_status(Status.FAILED) or self.with_status(Status.SKIPPED) else 0

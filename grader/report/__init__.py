@@ -1,0 +1,1 @@
+"""Report -> terminal, JSON, picture; one module a format."""

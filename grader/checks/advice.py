@@ -1,0 +1,29 @@
+"""Advice: what would be better, and costs nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.checks.kind import Kind, NoParams
+from grader.outcome import Finding, failed, passed
+
+if TYPE_CHECKING:
+    from grader.checks.evidence import Evidence
+
+
+def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
+    """The submission calls create_timer somewhere."""
+    timers = evidence.code.calls("create_timer")
+    if timers:
+        return passed("A timer gives the rhythm.")
+    cause = "In a loop of its own a node hears nothing from other nodes; a timer leaves the waiting to rclpy.spin."
+    return failed(
+        "no-timer",
+        "No timer is used.",
+        "ROS 2 nodes do regular work in a timer.",
+        cause,
+        where=evidence.place("publish", "sleep"),
+    )
+
+
+USES_TIMER = Kind("uses_timer", "source", "A timer gives the rhythm", NoParams, uses_timer, advice=True)

@@ -1,0 +1,153 @@
+"""Code: what the Python files of a submission say, by `ast`, without running any of it."""
+
+from __future__ import annotations
+
+import ast
+import warnings
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from grader.checks.constants import Names, dotted, single_names
+from grader.outcome import Where
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+MAX_BYTES = 400_000
+"""A longer file is not parsed: nobody wrote it by hand."""
+
+
+@dataclass(frozen=True)
+class Unreadable:
+    """Why Python cannot read a file; `line` from 1 where Python names one."""
+
+    message: str
+    line: int | None = None
+
+
+@dataclass(frozen=True)
+class Module:
+    """One Python file: its tree, or why there is none (both None: not looked at, it is too long)."""
+
+    file: str
+    tree: ast.Module | None = None
+    unreadable: Unreadable | None = None
+
+    @cached_property
+    def names(self) -> Names:
+        """The names that are assigned, with their expressions."""
+        return {} if self.tree is None else single_names(self.tree)
+
+    @cached_property
+    def nodes(self) -> tuple[ast.AST, ...]:
+        """Every node of the tree."""
+        return () if self.tree is None else tuple(ast.walk(self.tree))
+
+
+@dataclass(frozen=True)
+class Call:
+    """A call of a function, and the module it stands in."""
+
+    node: ast.Call
+    module: Module
+
+    @property
+    def where(self) -> Where:
+        """The line of the call."""
+        return Where(self.module.file, self.node.lineno)
+
+    def argument(self, place: int, name: str) -> ast.expr | None:
+        """The argument at this place (from 0) or with this name."""
+        for keyword in self.node.keywords:
+            if keyword.arg == name:
+                return keyword.value
+        plain = self.node.args[: place + 1]
+        starred = any(isinstance(argument, ast.Starred) for argument in plain)
+        return plain[place] if len(plain) > place and not starred else None
+
+
+@dataclass(frozen=True)
+class Code:
+    """The modules of a submission (tests and setup.py left out), the node's file first."""
+
+    modules: tuple[Module, ...]
+    node_file: str | None = None
+
+    @property
+    def start(self) -> Where | None:
+        """The node's file as a place to look."""
+        return None if self.node_file is None else Where(self.node_file)
+
+    def module(self, file: str) -> Module | None:
+        """The module in this file."""
+        return next((module for module in self.modules if module.file == file), None)
+
+    @cached_property
+    def _calls(self) -> dict[str, list[Call]]:
+        found: dict[str, list[Call]] = {}
+        for module in self.modules:
+            for node in module.nodes:
+                if isinstance(node, ast.Call):
+                    name = (dotted(node.func) or "").rpartition(".")[2] or getattr(node.func, "attr", "")
+                    found.setdefault(name, []).append(Call(node, module))
+        place = {module.file: index for index, module in enumerate(self.modules)}
+        for calls in found.values():
+            calls.sort(key=lambda call: (place[call.module.file], call.node.lineno, call.node.col_offset))
+        return found
+
+    def calls(self, name: str) -> list[Call]:
+        """The calls of a function or method with this last name, in the order of the source."""
+        return self._calls.get(name, [])
+
+    def assigned(self, *path: str) -> Where | None:
+        """Where an attribute such as ("linear", "x") of something is first set, by assignment or keyword."""
+        for module in self.modules:
+            lines = [line for node in module.nodes for line in _sets(node, path)]
+            if lines:
+                return Where(module.file, min(lines))
+        return None
+
+
+def _sets(node: ast.AST, path: tuple[str, ...]) -> list[int]:
+    if isinstance(node, ast.Assign):
+        targets = node.targets
+    elif isinstance(node, ast.AnnAssign | ast.AugAssign):
+        targets = [node.target]
+    elif isinstance(node, ast.keyword) and node.arg == path[0] and isinstance(node.value, ast.Call):
+        return [node.value.lineno for keyword in node.value.keywords if keyword.arg == path[-1]]
+    else:
+        return []
+    return [
+        target.lineno
+        for target in targets
+        if isinstance(target, ast.Attribute) and (dotted(target) or "").split(".")[-len(path) :] == list(path)
+    ]
+
+
+def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
+    """Parse the Python files of a submission; `first` is the node's file."""
+    paths = [path for path in sorted(files) if path.endswith(".py") and not _left_out(path)]
+    paths.sort(key=lambda path: path != first)
+    return Code(tuple(read_module(path, files[path]) for path in paths), first)
+
+
+def _left_out(path: str) -> bool:
+    folders = path.split("/")[:-1]
+    return path == "setup.py" or path.startswith("launch/") or any(folder in ("test", "tests") for folder in folders)
+
+
+def read_module(file: str, data: bytes) -> Module:
+    """Parse one file; what Python cannot read is told, never raised."""
+    if len(data) > MAX_BYTES:
+        return Module(file)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # an invalid escape sequence is the student's, and no news for the grader
+            return Module(file, ast.parse(data, filename=file))
+    except SyntaxError as error:
+        return Module(file, unreadable=Unreadable(error.msg, error.lineno))
+    except ValueError as error:  # null bytes, in Python before 3.12
+        return Module(file, unreadable=Unreadable(str(error)))
+    except (RecursionError, MemoryError):
+        return Module(file)

@@ -1,0 +1,141 @@
+"""Crash: the exception that ended a student's node, read from what Python wrote to stderr."""
+
+from __future__ import annotations
+
+import re
+import signal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.outcome import Where
+from grader.words import shorten
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from grader.checks.evidence import Evidence
+
+START = "Traceback (most recent call last):"
+FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
+ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
+STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
+"""How a node in the tutorial's shape is told of Ctrl-C."""
+
+MEANINGS = {
+    "AssertionError": "Something that the code, or a message field, takes for granted did not hold.",
+    "AttributeError": "An object has no attribute or method of that name: compare it letter by letter.",
+    "EOFError": "input() waits for somebody to type; here nobody does, so a node must not ask.",
+    "ImportError": "That name cannot be imported from there: compare it letter by letter.",
+    "IndentationError": "The lines of one block must be indented alike.",
+    "IndexError": "A list is shorter than the index that was asked for.",
+    "InvalidNodeNameException": "A node's name may hold letters, digits and underscores only.",
+    "InvalidTopicNameException": "A topic's name may hold letters, digits, underscores and slashes only.",
+    "KeyError": "A dictionary has no such key.",
+    "ModuleNotFoundError": "No module of that name is installed: compare it letter by letter.",
+    "NameError": "A name is used that was never defined: a typing error, or a missing import.",
+    "NotInitializedException": "ROS 2 was used before rclpy.init, or after its shutdown.",
+    "SyntaxError": "Python cannot read that line, or the one before it.",
+    "TabError": "Tabs and blanks are mixed in the indentation.",
+    "TypeError": "A function got another number or kind of arguments than it takes.",
+    "UnboundLocalError": "A name is used before it gets a value.",
+    "ValueError": "An argument has the right kind and a value that is not allowed.",
+    "ZeroDivisionError": "A number was divided by zero.",
+}
+
+
+@dataclass(frozen=True)
+class Crash:
+    """An exception of the student's node: `error` is its class, `where` their own last line on the way to it."""
+
+    error: str
+    message: str
+    where: Where | None = None
+
+    @property
+    def seen(self) -> str:
+        """The exception in a few words, as in 'ZeroDivisionError: division by zero'."""
+        return f"{self.error}: {shorten(self.message, 90)}" if self.message else self.error
+
+    @property
+    def meaning(self) -> str:
+        """What such an error usually means; empty where that is not known."""
+        if self.error == "AssertionError" and "field must be of type 'float'" in self.message:
+            return "This field is a float: write the number with a decimal point."
+        return MEANINGS.get(self.error, "")
+
+
+def crash_of(evidence: Evidence) -> Crash | None:
+    """What ended the node before the scenario was over; None when it ended well, or at Ctrl-C."""
+    end = evidence.trial.end
+    if end.by != "itself" or end.exit_code == 0:
+        return None
+    found = read_traceback(evidence.trial.stderr.text, evidence.submission.files)
+    if found is not None:
+        return found
+    if end.exit_code < 0:
+        return Crash(_signal_name(-end.exit_code), "")
+    return Crash(f"exit code {end.exit_code}", "")
+
+
+def ended_early(evidence: Evidence) -> str:
+    """A sentence on a node that ended before the scenario was over; empty when it did not."""
+    end = evidence.trial.end
+    if end.by != "itself":
+        return ""
+    when = f"after {end.t_s:.1f} s" if end.t_s > 0.0 else "at its start"
+    crash = crash_of(evidence)
+    if crash is None:
+        return f"The node ended by itself {when}."
+    place = f", {crash.where}" if crash.where is not None else ""
+    return f"The node crashed {when} ({crash.seen}{place})."
+
+
+def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
+    """The root of the last exception in a stderr: where exceptions are chained, the first one that is no Ctrl-C."""
+    blocks = list(_blocks(text.splitlines()))
+    last: list[Crash] = []
+    for chained, lines in blocks:
+        crash = _crash(lines, files)
+        if crash is not None:
+            last = [*last, crash] if chained else [crash]
+    roots = [crash for crash in last if crash.error not in STOPS]
+    return roots[0] if roots else None
+
+
+def _blocks(lines: list[str]) -> Iterable[tuple[bool, list[str]]]:
+    """Each traceback's lines after its first, and whether it happened while another one was handled."""
+    starts = [index for index, line in enumerate(lines) if line.strip() == START]
+    for index, start in enumerate(starts):
+        stop = starts[index + 1] if index + 1 < len(starts) else len(lines)
+        before = " ".join(lines[max(start - 3, 0) : start])
+        chained = "another exception occurred" in before or "the direct cause of the following" in before
+        yield chained, lines[start + 1 : stop]
+
+
+def _crash(lines: list[str], files: Mapping[str, bytes]) -> Crash | None:
+    where: Where | None = None
+    for line in lines:
+        frame = FRAME.match(line)
+        if frame is not None:
+            own = _own_file(frame["file"], files)
+            where = where if own is None else Where(own, int(frame["line"]))
+        elif line and not line[0].isspace():
+            error = ERROR.fullmatch(line)
+            if error is None:
+                return None
+            return Crash(error["type"].rpartition(".")[2], (error["message"] or "").strip(), where)
+    return None
+
+
+def _own_file(path: str, files: Mapping[str, bytes]) -> str | None:
+    """The submission's file that was installed or linked at this path: the longest one that ends it."""
+    tail = f"/{path}"
+    ends = [file for file in files if tail.endswith(f"/{file}")]
+    return max(ends, key=len) if ends else None
+
+
+def _signal_name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"

@@ -1,0 +1,113 @@
+"""Evidence: all that a check may look at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from grader.checks.code import Code, read_code
+from grader.checks.manifest import Manifest, read_manifest
+from grader.checks.setup_py import SetupPy, read_setup_py
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from grader.build import Build
+    from grader.checks.kind import Stage
+    from grader.exercise import Exercise
+    from grader.outcome import Where
+    from grader.recording import Recording
+    from grader.submission import Submission
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault of the machine: `stage` and all later ones could not be done. `message` says what to do."""
+
+    stage: Stage
+    message: str
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """A submission and what was seen of it; `build` and `recording` are None as long as they were not made.
+
+    What the source files say is read on first use, from `submission.files` alone.
+    """
+
+    exercise: Exercise
+    submission: Submission
+    build: Build | None = None
+    recording: Recording | None = None
+    fault: Fault | None = None
+
+    @cached_property
+    def manifest(self) -> Manifest | None:
+        """What package.xml says; None when there is no package.xml."""
+        data = self.submission.files.get("package.xml")
+        return None if data is None else read_manifest(data)
+
+    @cached_property
+    def setup_py(self) -> SetupPy | None:
+        """What setup.py says, read without running it; None when there is no setup.py."""
+        data = self.submission.files.get("setup.py")
+        return None if data is None else read_setup_py(data)
+
+    @cached_property
+    def node_file(self) -> str | None:
+        """The file of the exercise's node: where the entry point leads, else the file named after the executable."""
+        target = self.entry_point()
+        files = self.submission.files
+        if target is not None:
+            found = module_file(target.partition(":")[0].strip(), files)
+            if found is not None:
+                return found
+        named = sorted(path for path in files if path.rpartition("/")[2] == f"{self.exercise.executable}.py")
+        return named[0] if named else None
+
+    @cached_property
+    def code(self) -> Code:
+        """The Python modules of the submission, the node's file first."""
+        return read_code(self.submission.files, first=self.node_file)
+
+    def entry_point(self) -> str | None:
+        """Return "module:attribute" of the exercise's executable: as installed, else as setup.py says."""
+        executable = self.exercise.executable
+        if self.build is not None and executable in self.build.entry_points:
+            return self.build.entry_points[executable]
+        declared = self.setup_py.entry_point(executable) if self.setup_py is not None else None
+        return declared.target if declared is not None else None
+
+    @property
+    def trial(self) -> Recording:
+        """The recording; only for checks of the stage "trial", which are not judged without one."""
+        if self.recording is None:
+            message = "a check of a trial was judged without a recording"
+            raise ValueError(message)
+        return self.recording
+
+    @property
+    def built(self) -> Build:
+        """The build; only for checks of the stages "build" and "trial"."""
+        if self.build is None:
+            message = "a check of a build was judged without a build"
+            raise ValueError(message)
+        return self.build
+
+    def place(self, *calls: str) -> Where | None:
+        """Where in the submission one of these functions is called, the first that is; else the node's file."""
+        for name in calls:
+            found = self.code.calls(name)
+            if found:
+                return found[0].where
+        return self.code.start
+
+
+def module_file(module: str, files: Collection[str]) -> str | None:
+    """The file of a dotted module name among the submission's files, None when there is none."""
+    path = module.replace(".", "/")
+    for candidate in (f"{path}.py", f"{path}/__init__.py"):
+        if candidate in files:
+            return candidate
+    return None

@@ -1,0 +1,90 @@
+"""Judge a submission: every check of the exercise, each after those that it needs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.checks.kind import STAGES
+from grader.checks.kinds import KINDS
+from grader.outcome import Finding, Outcome, Status
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from grader.checks.evidence import Evidence
+    from grader.exercise import CheckSpec
+
+
+def judge(evidence: Evidence) -> tuple[Outcome, ...]:
+    """The outcome of every check, in the order of the exercise.
+
+    A check is skipped when one that it needs did not pass, and names the first cause. A check that needs what the
+    machine could not make (`evidence.fault`) is an `error`, and so is what needs that one: neither costs points.
+    """
+    specs = {spec.id: spec for spec in evidence.exercise.checks}
+    findings: dict[str, Finding] = {}
+    causes: dict[str, CheckSpec] = {}
+    for spec in _in_order(specs.values()):
+        cause = next((causes[need] for need in spec.needs if need in causes), None)
+        finding = _judge_one(evidence, spec) if cause is None else _because(cause, findings[cause.id])
+        findings[spec.id] = finding
+        if finding.status is not Status.PASSED and not KINDS[spec.kind].advice:
+            causes[spec.id] = cause or spec
+    return tuple(_outcome(spec, findings[spec.id]) for spec in evidence.exercise.checks)
+
+
+def wants_trial(evidence: Evidence) -> bool:
+    """True when some check of a trial would be judged if there were a recording: else no trial needs to run."""
+    outcomes = {outcome.id: outcome for outcome in judge(evidence)}
+    return any(
+        KINDS[spec.kind].stage == "trial" and not any(_blocked(outcomes[need]) for need in spec.needs)
+        for spec in evidence.exercise.checks
+    )
+
+
+def near_edge(outcomes: Iterable[Outcome]) -> bool:
+    """True when some measured value is so near a tolerance's edge that simulated time must not decide."""
+    return any(outcome.finding.near_edge for outcome in outcomes)
+
+
+def _blocked(outcome: Outcome) -> bool:
+    return outcome.status in (Status.FAILED, Status.SKIPPED)
+
+
+def _in_order(specs: Iterable[CheckSpec]) -> list[CheckSpec]:
+    """Each check after all that it needs, else in the order of the exercise (which was read without circles)."""
+    waiting = list(specs)
+    done: dict[str, CheckSpec] = {}
+    while waiting:
+        ready = [spec for spec in waiting if all(need in done for need in spec.needs)]
+        done |= {spec.id: spec for spec in ready}
+        waiting = [spec for spec in waiting if spec.id not in done]
+    return list(done.values())
+
+
+def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
+    kind = KINDS[spec.kind]
+    made = {"source": True, "build": evidence.build is not None, "trial": evidence.recording is not None}
+    fault = evidence.fault
+    if fault is not None and STAGES.index(kind.stage) >= STAGES.index(fault.stage) and not made[kind.stage]:
+        return Finding(Status.ERROR, fault.message)
+    if not made[kind.stage]:
+        return Finding(Status.SKIPPED, "Not judged, since the node was not run.")
+    try:
+        return kind.judge(evidence, spec.params)
+    except Exception as error:  # (one broken check must not take a class's other outcomes with it)
+        return Finding(
+            Status.ERROR, f"The check itself broke ({type(error).__name__}: {error}). This is a fault of the grader."
+        )
+
+
+def _because(cause: CheckSpec, finding: Finding) -> Finding:
+    if finding.status is Status.ERROR:
+        return finding
+    return Finding(Status.SKIPPED, f'Not judged, since "{cause.title}" did not pass.')
+
+
+def _outcome(spec: CheckSpec, finding: Finding) -> Outcome:
+    points = spec.points if finding.status is Status.PASSED else 0.0
+    advice = KINDS[spec.kind].advice
+    return Outcome(spec.id, spec.kind, spec.title, points, spec.points, finding, spec.hidden, advice)

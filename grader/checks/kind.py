@@ -1,0 +1,133 @@
+"""Kind: a sort of check, with the parameters that exercise.toml may give it.
+
+The parameters of a kind are a dataclass beside the check; the functions `number`, `text`, `texts` and `choice` make its
+fields, so that name, default and what is allowed stand in one place and a new exercise needs no Python.
+"""
+
+# ruff: noqa: ANN401 (the functions below return what dataclasses.field returns)
+from __future__ import annotations
+
+import math
+from dataclasses import MISSING, dataclass, field, fields
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
+
+from grader.words import a_list
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from grader.checks.evidence import Evidence
+    from grader.outcome import Finding
+
+Stage = Literal["source", "build", "trial"]
+"""What a check needs: the submission's files alone, what colcon made of them, or the recording of a trial."""
+
+STAGES: tuple[Stage, ...] = ("source", "build", "trial")
+
+Value = str | float | int | bool | tuple[str, ...]
+"""What a parameter may be."""
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """What a parameter may be: in words, and as a function from the TOML value to ours (None: not allowed)."""
+
+    words: str
+    accept: Callable[[object], Value | None]
+
+
+@dataclass(frozen=True)
+class NoParams:
+    """Parameters of a kind that has none."""
+
+
+P = TypeVar("P")
+
+
+@dataclass(frozen=True)
+class Kind(Generic[P]):
+    """A sort of check. `check` is pure: the same evidence and parameters give the same finding.
+
+    `title` is the line a student reads when exercise.toml gives none. `advice`: worth no points, fails no run.
+    """
+
+    name: str
+    stage: Stage
+    title: str
+    params: type[P]
+    check: Callable[[Evidence, P], Finding]
+    advice: bool = False
+
+    def parameters(self) -> dict[str, Allowed]:
+        """Every parameter's name with what it may be."""
+        return {each.name: each.metadata["allowed"] for each in fields(self.params)}  # type: ignore[arg-type]
+
+    def defaults(self) -> dict[str, Value]:
+        """The parameters that may be left out, with their values."""
+        return {each.name: each.default for each in fields(self.params) if each.default is not MISSING}  # type: ignore[arg-type]
+
+    def judge(self, evidence: Evidence, values: Mapping[str, Value]) -> Finding:
+        """What the check finds with these parameter values (as read from exercise.toml, defaults filled in)."""
+        return self.check(evidence, self.params(**values))
+
+
+def number(
+    default: float | None = None,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+) -> Any:
+    """A finite number; without a default it must be given."""
+
+    def accept(value: object) -> float | None:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            return None
+        out = (
+            (above is not None and not value > above)
+            or (at_least is not None and not value >= at_least)
+            or (at_most is not None and not value <= at_most)
+        )
+        return None if out else float(value)
+
+    limits = [
+        f"{words} {limit:g}"
+        for words, limit in (("above", above), ("at least", at_least), ("at most", at_most))
+        if limit is not None
+    ]
+    words = f"a number {' and '.join(limits)}".rstrip()
+    return _field(Allowed(words, accept), MISSING if default is None else default)
+
+
+def text(words: str = "a text", *, start: str = "") -> Any:
+    """A text that is not empty and begins with `start`."""
+
+    def accept(value: object) -> str | None:
+        return value if isinstance(value, str) and value.strip() and value.startswith(start) else None
+
+    return _field(Allowed(f"{words} beginning with {start}" if start else words, accept))
+
+
+def texts() -> Any:
+    """A list of at least one text."""
+
+    def accept(value: object) -> tuple[str, ...] | None:
+        good = isinstance(value, list) and value and all(isinstance(item, str) and item for item in value)
+        return tuple(value) if good else None  # type: ignore[arg-type]
+
+    return _field(Allowed("a list of texts, at least one", accept))
+
+
+def choice(*options: str) -> Any:
+    """One of the options; the first is the default."""
+
+    def accept(value: object) -> str | None:
+        return value if isinstance(value, str) and value in options else None
+
+    return _field(Allowed(a_list([f'"{option}"' for option in options], "or"), accept), options[0])
+
+
+def _field(allowed: Allowed, default: Any = MISSING) -> Any:
+    if default is MISSING:
+        return field(metadata={"allowed": allowed})
+    return field(default=default, metadata={"allowed": allowed})

@@ -1,0 +1,35 @@
+"""All kinds of checks, by name: what `kind` may be in exercise.toml."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from grader.checks import advice, building, entry_point, node, package_xml, path, rate, stop, topic, values
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from grader.checks.kind import Kind
+
+KINDS: Mapping[str, Kind[Any]] = {
+    kind.name: kind
+    for kind in (
+        building.PLAIN_FILES,
+        package_xml.VALID,
+        package_xml.DEPENDENCIES,
+        package_xml.NAME,
+        building.BUILDS,
+        building.INSTALLS,
+        entry_point.ENTRY_POINT,
+        node.STARTS,
+        node.NAME,
+        topic.PUBLISHES,
+        topic.ONLY_TYPE,
+        rate.RATE,
+        values.VALUES,
+        path.CIRCLE,
+        path.NO_WALL,
+        stop.STOP,
+        advice.USES_TIMER,
+    )
+}

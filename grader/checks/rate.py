@@ -1,0 +1,184 @@
+"""Check of the rate at which commands arrive, by their arrival at the turtle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from grader.checks import seen as seen_in
+from grader.checks.constants import number as constant
+from grader.checks.crash import crash_of, ended_early
+from grader.checks.kind import Kind, number
+from grader.checks.tolerance import Band
+from grader.outcome import Finding, Where, failed, passed
+from grader.words import count
+
+if TYPE_CHECKING:
+    from grader.checks.evidence import Evidence
+    from grader.recording import Recording
+
+FEWEST = 3
+"""Commands: with fewer there is at most one interval, and no rate to speak of."""
+MAX_LAG_S = 0.1
+"""Intervals at wall time are forgiven what the simulator itself was late by, up to this."""
+SAME = 0.1
+"""A number of the source explains a measured interval when they differ by less than this share."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rate:
+    """The mean rate, first to last arrival, and its tolerance; the limits of each single interval.
+
+    The first command may come `first_within_s` after the start, the last one `max_interval_s` before the end.
+    """
+
+    rate_hz: float = number(above=0, at_most=1000)
+    tolerance_percent: float = number(5.0, above=0, at_most=100)
+    min_interval_s: float = number(at_least=0)
+    max_interval_s: float = number(above=0)
+    first_within_s: float = number(3.0, above=0)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Arrivals (s): intervals between them, their mean, the wait before the first and after the last."""
+
+    arrivals: tuple[float, ...]
+    intervals: tuple[float, ...]
+    mean_s: float
+    first_s: float
+    rest_s: float
+
+
+def measure(recording: Recording) -> Measured:
+    """The arrivals of the commands before SIGINT; the mean is 0 when there are fewer than two."""
+    arrivals = tuple(command.t_s for command in seen_in.commands(recording))
+    intervals = tuple(later - earlier for earlier, later in pairwise(arrivals))
+    until = seen_in.end_s(recording)
+    if not arrivals:
+        return Measured((), (), 0.0, until, until)
+    mean = (arrivals[-1] - arrivals[0]) / len(intervals) if intervals else 0.0
+    return Measured(arrivals, intervals, mean, arrivals[0], until - arrivals[-1])
+
+
+def rate(evidence: Evidence, params: Rate) -> Finding:
+    """Commands arrive at the rate: on average, each one, from soon after the start until the end."""
+    recording = evidence.trial
+    measured = measure(recording)
+    period = 1.0 / params.rate_hz
+    expected = f"Every {period:.2f} s ({params.rate_hz:.1f} Hz)."
+    if len(measured.arrivals) < FEWEST:
+        return _few(evidence, measured, f"A command every {period:.2f} s ({params.rate_hz:.1f} Hz) until Ctrl-C.")
+    share = params.tolerance_percent / 100.0
+    mean_hz = 1.0 / measured.mean_s if measured.mean_s > 0.0 else float("inf")
+    mean = Band.around(params.rate_hz, params.rate_hz * share)
+    slack = min(recording.lag_s, MAX_LAG_S) if recording.clock == "wall" else 0.0
+    each = Band.around(period, period - params.min_interval_s + slack, params.max_interval_s - period + slack)
+    first = Band.at_most(params.first_within_s)
+    near = mean.near(mean_hz) or each.near(*_extremes(measured), measured.rest_s) or first.near(measured.first_s)
+    if not mean.holds(mean_hz):
+        return _wrong_mean(evidence, measured, params, expected, near_edge=near)
+    worst = max(measured.intervals, key=lambda interval: abs(interval - period))
+    if not all(each.holds(interval) for interval in measured.intervals):
+        at = measured.arrivals[measured.intervals.index(worst)]
+        seen = f"Commands came unevenly: {worst:.2f} s passed between two of them, {at:.1f} s after the start."
+        wanted = (
+            f"Every {period:.2f} s, each interval from {params.min_interval_s:.2f} to {params.max_interval_s:.2f} s."
+        )
+        cause = _uneven_cause(evidence)
+        return failed("uneven-rate", seen, wanted, cause, where=evidence.place("publish"), near_edge=near)
+    if not first.holds(measured.first_s):
+        seen = f"The first command came {measured.first_s:.1f} s after the start."
+        wanted = f"It comes within {params.first_within_s:.1f} s."
+        return failed(
+            "late-start", seen, wanted, _late_cause(evidence), where=evidence.place("sleep", "publish"), near_edge=near
+        )
+    if not measured.rest_s <= params.max_interval_s + slack:
+        return _stopped(evidence, measured, expected, near_edge=near)
+    return passed(f"Commands arrive every {period:.2f} s ({params.rate_hz:.1f} Hz).", near_edge=near)
+
+
+def _extremes(measured: Measured) -> tuple[float, float]:
+    return min(measured.intervals), max(measured.intervals)
+
+
+def _few(evidence: Evidence, measured: Measured, expected: str) -> Finding:
+    amount = len(measured.arrivals)
+    crash = crash_of(evidence)
+    seen = f"{count(amount, 'command')} arrived in {seen_in.end_s(evidence.trial):.0f} s."
+    if crash is not None:
+        return failed("crash", f"{seen} {ended_early(evidence)}", expected, crash.meaning, where=crash.where)
+    where = evidence.place("publish")
+    if amount == 1:
+        cause = "publish is called once; a timer calls a method again and again."
+        return failed("published-once", seen, expected, cause, where=where)
+    return failed("too-few-commands", seen, expected, ended_early(evidence), where=where)
+
+
+def _wrong_mean(evidence: Evidence, measured: Measured, params: Rate, expected: str, *, near_edge: bool) -> Finding:
+    mean = measured.mean_s
+    if mean < 0.01:
+        seen = f"{count(len(measured.arrivals), 'command')} arrived, one every {1000.0 * mean:.2f} ms."
+    else:
+        seen = f"Commands arrived every {mean:.2f} s ({1.0 / mean:.1f} Hz)."
+    diagnosis, cause, where = _why_mean(evidence, mean)
+    if diagnosis == "timer-period" and abs(mean - params.rate_hz) <= SAME * params.rate_hz:
+        diagnosis, cause = (
+            "rate-for-period",
+            "create_timer wants the period in seconds, not the rate: one is 1 divided by the other.",
+        )
+    return failed(diagnosis, seen, expected, cause, where=where, near_edge=near_edge)
+
+
+def _why_mean(evidence: Evidence, mean: float) -> tuple[str, str, Where | None]:
+    """The diagnosis, in words, and where: a timer with that period, a sleep of that length, or none of them."""
+    code = evidence.code
+    timers = [
+        (call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in code.calls("create_timer")
+    ]
+    for timer, period in timers:
+        if period is not None and abs(period - mean) <= SAME * mean:
+            return "timer-period", "The timer's period is the first argument of create_timer, in seconds.", timer.where
+    for sleep in code.calls("sleep"):
+        length = constant(sleep.argument(0, "secs"), sleep.module.names)
+        if timers and length is not None:
+            cause = "While a method sleeps nothing else of the node runs, its timer neither."
+            return "sleep-in-callback", cause, sleep.where
+        if length is not None and abs(length - mean) <= SAME * mean:
+            return "sleep-period", f"Between two commands the node sleeps {length:g} s.", sleep.where
+    if len(timers) > 1:
+        return (
+            "several-timers",
+            f"There are {len(timers)} timers: each one calls its method on its own.",
+            timers[1][0].where,
+        )
+    where = timers[0][0].where if timers else evidence.place("publish")
+    return "wrong-rate", "The time between two calls of publish is what counts.", where
+
+
+def _uneven_cause(evidence: Evidence) -> str:
+    code = evidence.code
+    if len(code.calls("publish")) > 1 or len(code.calls("create_timer")) > 1:
+        return "More than one line publishes, or more than one timer runs."
+    return "The method that publishes sometimes takes longer than the period." if code.calls("sleep") else ""
+
+
+def _late_cause(evidence: Evidence) -> str:
+    if evidence.code.calls("sleep"):
+        return "The node sleeps before it begins."
+    return "Something before it waits, such as wait_for_service." if evidence.code.calls("wait_for_service") else ""
+
+
+def _stopped(evidence: Evidence, measured: Measured, expected: str, *, near_edge: bool) -> Finding:
+    seen = f"The last command came at {measured.arrivals[-1]:.1f} s, {measured.rest_s:.1f} s before the end."
+    wanted = f"{expected[:-1]}, until Ctrl-C."
+    crash = crash_of(evidence)
+    if crash is not None:
+        return failed("crash", seen, wanted, ended_early(evidence), where=crash.where)
+    return failed(
+        "stopped-early", seen, wanted, ended_early(evidence), where=evidence.place("publish"), near_edge=near_edge
+    )
+
+
+RATE = Kind("rate", "trial", "Commands arrive at the right rate", Rate, rate)

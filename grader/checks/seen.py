@@ -1,0 +1,42 @@
+"""What a recording shows of the submission: its nodes, its publishers, its commands while the scenario ran."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from grader.recording import Command, Endpoint, Recording
+
+ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
+"""Every node publishes on these, or the grader does."""
+
+
+def end_s(recording: Recording) -> float:
+    """When the scenario was over, on the trial's clock (s): SIGINT, or when it would have come."""
+    if recording.end.by == "itself":
+        return max(recording.sigint_t_s, recording.duration_s)
+    return recording.sigint_t_s
+
+
+def commands(recording: Recording) -> tuple[Command, ...]:
+    """The commands that arrived before SIGINT, by arrival."""
+    until = end_s(recording)
+    return tuple(command for command in recording.commands if command.t_s < until)
+
+
+def nodes(recording: Recording) -> tuple[str, ...]:
+    """Full names of the submission's nodes, in order of the alphabet; a name taken twice is there once."""
+    own = Counter(recording.own_nodes)
+    return tuple(sorted({name for graph in recording.graphs for name in Counter(graph.nodes) - own}))
+
+
+def endpoints(recording: Recording, kind: str) -> tuple[Endpoint, ...]:
+    """The submission's publishers or subscriptions, without those that every node has, each once."""
+    found = {
+        endpoint: None
+        for graph in recording.graphs
+        for endpoint in graph.endpoints
+        if endpoint.kind == kind and endpoint.node not in recording.own_nodes and endpoint.topic not in ROS_TOPICS
+    }
+    return tuple(sorted(found, key=lambda endpoint: (endpoint.topic, endpoint.type, endpoint.node)))

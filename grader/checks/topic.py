@@ -1,0 +1,152 @@
+"""Checks of the topic: messages of the right type arrive on it, and no others."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks import seen as seen_in
+from grader.checks.constants import evaluate, number
+from grader.checks.crash import crash_of, ended_early
+from grader.checks.kind import Kind, text
+from grader.outcome import Finding, Where, failed, passed
+from grader.words import a_list, nearest, shorten
+
+if TYPE_CHECKING:
+    from grader.checks.evidence import Evidence
+    from grader.recording import Endpoint, Recording
+
+
+@dataclass(frozen=True, kw_only=True)
+class Topic:
+    """The topic's full name, and its type as in "geometry_msgs/msg/Twist"."""
+
+    topic: str = text("a topic's full name", start="/")
+    type: str = text("a message type, as in geometry_msgs/msg/Twist")
+
+
+COMMANDS = Topic(topic="/turtle1/cmd_vel", type="geometry_msgs/msg/Twist")
+"""What the simulator itself saw: Recording.commands."""
+
+
+def publishes(evidence: Evidence, params: Topic) -> Finding:
+    """Messages of the type arrived on the topic before SIGINT."""
+    recording = evidence.trial
+    if _arrived(recording, params):
+        return passed(f"{params.type} arrives on {params.topic}.")
+    publishers = seen_in.endpoints(recording, "publisher")
+    on_topic = [publisher for publisher in publishers if publisher.topic == params.topic]
+    if any(publisher.type == params.type for publisher in on_topic):
+        return _silent(evidence, params)
+    if on_topic:
+        return _wrong_type(evidence, params, on_topic)
+    if publishers:
+        return _wrong_topic(evidence, params, publishers)
+    return _no_publisher(evidence, params)
+
+
+def _arrived(recording: Recording, params: Topic) -> bool:
+    until = seen_in.end_s(recording)
+    if params.topic == COMMANDS.topic and params.type == COMMANDS.type:
+        return bool(seen_in.commands(recording))
+    return any(
+        each.topic == params.topic and each.type == params.type and each.t_s < until for each in recording.messages
+    )
+
+
+def _expected(params: Topic) -> str:
+    return f"{params.type} arrives on {params.topic}."
+
+
+def _wrong_type(evidence: Evidence, params: Topic, publishers: list[Endpoint]) -> Finding:
+    types = a_list(sorted({shorten(publisher.type) for publisher in publishers}))
+    seen = f"{params.topic} gets messages of the type {types}, which the turtle does not understand."
+    cause = "The type is the first argument of create_publisher."
+    return failed("wrong-type", seen, _expected(params), cause, where=_publisher_line(evidence, params.topic))
+
+
+def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, ...]) -> Finding:
+    same_type = [publisher for publisher in publishers if publisher.type == params.type]
+    topics = sorted({publisher.topic for publisher in same_type or publishers})
+    guess = nearest(params.topic, topics)
+    shown = [guess] if guess is not None else topics
+    seen = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, where no turtle listens."
+    cause = "The topic's name is the second argument of create_publisher; compare it letter by letter."
+    return failed("wrong-topic", seen, _expected(params), cause, where=_publisher_line(evidence, shown[0]))
+
+
+def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
+    crash = crash_of(evidence)
+    if crash is not None:
+        return failed("crash", ended_early(evidence), _expected(params), crash.meaning, where=crash.where)
+    subscribed = [each for each in seen_in.endpoints(evidence.trial, "subscription") if each.topic == params.topic]
+    if subscribed:
+        cause = "A subscription only listens; create_publisher makes what sends."
+        where = evidence.place("create_subscription")
+        return failed(
+            "subscription-instead", f"The node subscribes to {params.topic}.", _expected(params), cause, where=where
+        )
+    seen = ended_early(evidence) or "The node has no publisher."
+    cause = "" if evidence.code.calls("create_publisher") else "create_publisher is called nowhere."
+    return failed("no-publisher", seen, _expected(params), cause, where=evidence.place("create_publisher"))
+
+
+def _silent(evidence: Evidence, params: Topic) -> Finding:
+    """There is a publisher of the right type on the right topic, and nothing came."""
+    seen = f"The publisher on {params.topic} is there, but no message came."
+    crash = crash_of(evidence)
+    if crash is not None:
+        return failed("crash", ended_early(evidence), _expected(params), crash.meaning, where=crash.where)
+    cause, diagnosis, where = _why_silent(evidence)
+    return failed(diagnosis, f"{seen} {ended_early(evidence)}".rstrip(), _expected(params), cause, where=where)
+
+
+def _why_silent(evidence: Evidence) -> tuple[str, str, Where | None]:
+    code = evidence.code
+    if not code.calls("publish"):
+        return "The method publish is called nowhere.", "no-publish", code.start
+    for timer in code.calls("create_timer"):
+        period = number(timer.argument(0, "timer_period_sec"), timer.module.names)
+        if period is not None and period >= evidence.trial.duration_s:
+            cause = f"The timer waits {period:g} s for its first call: the period is in seconds, not milliseconds."
+            return cause, "timer-milliseconds", timer.where
+        if _is_call(timer.argument(1, "callback")):
+            cause = "create_timer wants the method itself; with () behind its name it gets only the method's result."
+            return cause, "callback-called", timer.where
+    if not any(code.calls(name) for name in ("spin", "spin_once", "spin_until_future_complete")):
+        return "Without rclpy.spin no timer is ever called.", "no-spin", code.start
+    return "The line that publishes is never reached.", "never-publishes", evidence.place("publish")
+
+
+def _is_call(argument: ast.expr | None) -> bool:
+    return isinstance(argument, ast.Call) and not ast.unparse(argument.func).endswith(("partial", "callback"))
+
+
+def _publisher_line(evidence: Evidence, topic: str) -> Where | None:
+    """The line that makes the publisher of this topic, as far as that can be told."""
+    calls = evidence.code.calls("create_publisher")
+    for call in calls:
+        value = evaluate(call.argument(1, "topic"), call.module.names)
+        if isinstance(value, str) and topic.endswith(f"/{value.strip('/')}"):
+            return call.where
+    return calls[0].where if calls else evidence.code.start
+
+
+def only_type(evidence: Evidence, params: Topic) -> Finding:
+    """The submission publishes no other type on the topic."""
+    found = seen_in.endpoints(evidence.trial, "publisher")
+    types = {publisher.type for publisher in found if publisher.topic == params.topic}
+    types |= {message.type for message in evidence.trial.messages if message.topic == params.topic}
+    others = sorted(types - {params.type})
+    if others:
+        seen = f"{params.topic} also gets messages of the type {a_list([shorten(other) for other in others])}."
+        cause = "A topic has one type: two publishers on one name, with different types, do not go together."
+        return failed(
+            "second-type", seen, f"Only {params.type} there.", cause, where=_publisher_line(evidence, params.topic)
+        )
+    return passed(f"Only {params.type} is published on {params.topic}.")
+
+
+PUBLISHES = Kind("publishes", "trial", "Messages arrive on the topic", Topic, publishes)
+ONLY_TYPE = Kind("topic_type", "trial", "The topic carries one type", Topic, only_type)

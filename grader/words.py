@@ -1,0 +1,62 @@
+"""Words of the messages that people read: quoting what somebody else wrote, numbers, lists, the nearest name."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import unicodedata
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+UNSAFE_CATEGORIES = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"})
+"""Unicode categories that could move the cursor, colour a terminal, turn the writing direction or hide text."""
+
+
+def printable(text: str) -> str:
+    """The text on one line, with each character that could act on a terminal shown as a question mark."""
+    return "".join("?" if unicodedata.category(char) in UNSAFE_CATEGORIES else char for char in _one_line(text))
+
+
+def _one_line(text: str) -> str:
+    return text if text.isprintable() else " ".join(text.split())
+
+
+def shorten(text: str, limit: int = 60) -> str:
+    """The text on one line, printable, at most `limit` characters long."""
+    line = printable(text[: 4 * limit])
+    return line if len(line) <= limit and len(text) <= 4 * limit else line[: limit - 3].rstrip() + "..."
+
+
+def nearest(name: str, candidates: Iterable[str]) -> str | None:
+    """The candidate most like `name`, or None when none is alike (difflib's ratio below 0.6)."""
+    found = difflib.get_close_matches(name[:200], [candidate[:200] for candidate in candidates], n=1)
+    return found[0] if found else None
+
+
+def a_list(items: Sequence[str], last: str = "and") -> str:
+    """'a', 'a and b', 'a, b and c'; at most six are named."""
+    shown = list(items[:6])
+    if len(items) > len(shown):
+        shown.append(f"{len(items) - len(shown)} more")
+    if len(shown) < 2:
+        return "".join(shown)
+    return f"{', '.join(shown[:-1])} {last} {shown[-1]}"
+
+
+def number(value: float, unlike: float | None = None) -> str:
+    """The number in four digits, or in as many as tell it from `unlike`; NaN and infinity in words."""
+    if math.isnan(value):
+        return "NaN (not a number)"
+    if math.isinf(value):
+        return "infinity" if value > 0 else "minus infinity"
+    text = f"{value:.4g}"
+    if unlike is not None and value != unlike and float(text) == unlike:
+        text = repr(value)
+    return text if any(char in text for char in ".e") else f"{text}.0"
+
+
+def count(amount: int, thing: str) -> str:
+    """'1 command', '20 commands'."""
+    return f"{amount} {thing}" if amount == 1 else f"{amount} {thing}s"
