@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -150,6 +150,8 @@ class Recording:
     """Services and actions of the simulator that somebody called, in order: "reset", "spawn", "teleport_absolute"."""
     doubts: tuple[str, ...] = ()
     """Why simulated time may have judged wrongly here; empty when it may be trusted."""
+    seconds: dict[str, float] = field(default_factory=dict)
+    """Wall time of the trial's parts: discovery, run, stop (s)."""
     lag_s: float = 0.0
     """The longest time by which the simulator was late in a wall-clock trial (s): how starved the machine was."""
 

@@ -85,6 +85,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             interventions=tuple(stage.interventions),
             doubts=doubts,
             lag_s=stage.lag_s,
+            seconds=stage.seconds,
         )
         _say(answers, {"recording": to_json(recording)})
 

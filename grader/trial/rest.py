@@ -95,6 +95,17 @@ class Threads:
             return Look(asleep=all(state == b"S" for state in states), runs=tuple(runs))
         raise GoneError
 
+    def main_asleep(self) -> bool:
+        """Look at the main thread alone.
+
+        Raises:
+            GoneError: the process has ended.
+        """
+        try:
+            return _fields(os.pread(self._main, 512, 0))[0] not in b"RD"
+        except ProcessLookupError:
+            raise GoneError from None
+
     def run_time_s(self) -> float:
         """Return the CPU time of all threads so far (s)."""
         return sum(int(run.split()[0]) for run in self.look().runs) / 1e9

@@ -37,6 +37,8 @@ SLOWEST = 3.0
 """A trial that takes this much longer than its scenario is better done in wall time."""
 GRAPH_EVERY = 31
 """Frames between two looks at the graph: half a second."""
+SPIN_EVERY = 5
+"""Frames between two rounds for what no message announces: our own log lines, the steps of an action."""
 WAITS_EVERY = 7
 """Frames between two looks at what the threads wait for."""
 _POLL_S = 0.00005
@@ -64,10 +66,14 @@ class SimulatedTrial(Stage):
         """
         deadline = time.monotonic() + SLOWEST * duration_s
         try:
+            self.lap("start")
             self._handshake()
+            self.lap("discovery")
             for frame in range(1, round(duration_s / FRAME_S) + 1):
                 self.tick(frame * FRAME_S)
                 self._settle()
+                if frame % SPIN_EVERY == 0:
+                    self.spin()
                 if frame % GRAPH_EVERY == 0:
                     self.recorder.follow_graph()
                     self.recorder.snapshot()
@@ -80,7 +86,9 @@ class SimulatedTrial(Stage):
             self.spin()
         self.recorder.snapshot()
         stopped_s = self._now_s
+        self.lap("run")
         self.wind_down()
+        self.lap("stop")
         return stopped_s
 
     def _doubt(self, why: str) -> None:
@@ -105,16 +113,19 @@ class SimulatedTrial(Stage):
     def _watch(self) -> None:
         self._node = Threads(self.node.pid)
         self._ours = Threads(os.getpid(), dds=True)
+        self._handled: tuple[bytes, ...] = ()
 
     def _rest(self) -> bool:
         """Wait until nothing more can happen at this instant; false when the node never rests."""
         deadline = time.monotonic() + TICK_S
         cpu_s = -1.0
-        before: tuple[Look, Look] | None = None
+        before = look = None
         equal = 0
         while True:
-            look = (self._node.look(), self._ours.look())
-            if not (look[0].asleep and look[1].asleep):
+            # The main thread works longest as a rule: as long as it does, the others need no look.
+            busy = not self._node.main_asleep()
+            look = None if busy else (self._node.look(), self._ours.look())
+            if look is None or not (look[0].asleep and look[1].asleep):
                 equal = 0
                 if cpu_s < 0:
                     cpu_s = self._node.run_time_s()
@@ -133,18 +144,16 @@ class SimulatedTrial(Stage):
 
     def _settle(self) -> None:
         """Let the node and the simulator answer each other until both rest."""
-        arrived: tuple[bytes, ...] | None = None
         while True:
             if not self._rest():
                 self._doubt("the node never comes to rest: it works without waiting")
                 return
             runs = self._ours.look().runs
-            # Our receiving threads have not run since: nothing has come that is not handled yet.
-            if runs == arrived:
+            # Our receiving threads have not run since the last time: nothing has come that is not handled yet.
+            if runs == self._handled:
                 return
-            arrived = runs
-            if not self.spin():
-                return
+            self._handled = runs
+            self.spin()
 
     # --- handshake --------------------------------------------------------------------------------------------
 

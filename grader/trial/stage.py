@@ -43,6 +43,14 @@ class Stage:
         self.frames: list[tuple[float, float, float, float, float, float, bool]] = []
         self.doubts: list[str] = []
         self.lag_s = 0.0
+        self.seconds: dict[str, float] = {}
+        self._since = time.monotonic()
+
+    def lap(self, part: str) -> None:
+        """Note how long the part took that ends now."""
+        now = time.monotonic()
+        self.seconds[part] = now - self._since
+        self._since = now
 
     def close(self) -> None:
         """Leave the ROS graph."""

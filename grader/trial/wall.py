@@ -22,7 +22,9 @@ class WallTrial(Stage):
 
     def run(self, duration_s: float) -> float:
         """Run the scenario; return when SIGINT was sent, on the trial's clock (s)."""
+        self.lap("start")
         self._discover()
+        self.lap("discovery")
         self._begun = time.monotonic()
         frame = 0
         while frame * FRAME_S < duration_s and not self.node.ended():
@@ -39,7 +41,9 @@ class WallTrial(Stage):
                 self.recorder.snapshot()
         stopped_s = self.now()
         self.recorder.snapshot()
+        self.lap("run")
         self.wind_down()
+        self.lap("stop")
         return stopped_s
 
     def _discover(self) -> None:
