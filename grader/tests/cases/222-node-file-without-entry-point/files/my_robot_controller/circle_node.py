@@ -1,0 +1,28 @@
+#!/usr/bin/env python3
+import rclpy
+from rclpy.node import Node
+from geometry_msgs.msg import Twist
+
+
+class CircleNode(Node):
+    def __init__(self):
+        super().__init__("draw_circle")
+        self.cmd_vel_pub = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        self.timer = self.create_timer(0.5, self.send_velocity_command)
+
+    def send_velocity_command(self):
+        msg = Twist()
+        msg.linear.x = 2.0
+        msg.angular.z = 1.0
+        self.cmd_vel_pub.publish(msg)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = CircleNode()
+    rclpy.spin(node)
+    rclpy.shutdown()
+
+
+if __name__ == "__main__":
+    main()

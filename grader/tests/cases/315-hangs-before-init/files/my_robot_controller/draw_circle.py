@@ -1,0 +1,26 @@
+import time
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+
+class DrawCircleNode(Node):
+    def __init__(self):
+        super().__init__("draw_circle")
+        self.pub = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        self.timer = self.create_timer(0.5, self.send)
+
+    def send(self):
+        msg = Twist()
+        msg.linear.x = 2.0
+        msg.angular.z = 1.0
+        self.pub.publish(msg)
+
+
+def main(args=None):
+    ready = False
+    while not ready:
+        time.sleep(0.1)
+    rclpy.init(args=args)
+    rclpy.spin(DrawCircleNode())

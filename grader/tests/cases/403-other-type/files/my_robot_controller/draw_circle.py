@@ -1,0 +1,24 @@
+import rclpy
+from geometry_msgs.msg import TwistStamped
+from rclpy.node import Node
+
+
+class DrawCircleNode(Node):
+    def __init__(self):
+        super().__init__("draw_circle")
+        self.pub = self.create_publisher(TwistStamped, "/turtle1/cmd_vel", 10)
+        self.timer = self.create_timer(0.5, self.send)
+
+    def send(self):
+        msg = TwistStamped()
+        msg.header.stamp = self.get_clock().now().to_msg()
+        msg.twist.linear.x = 2.0
+        msg.twist.angular.z = 1.0
+        self.pub.publish(msg)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = DrawCircleNode()
+    rclpy.spin(node)
+    rclpy.shutdown()

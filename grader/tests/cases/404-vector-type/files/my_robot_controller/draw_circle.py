@@ -1,0 +1,23 @@
+import rclpy
+from geometry_msgs.msg import Vector3
+from rclpy.node import Node
+
+
+class DrawCircleNode(Node):
+    def __init__(self):
+        super().__init__("draw_circle")
+        self.pub = self.create_publisher(Vector3, "/turtle1/cmd_vel", 10)
+        self.timer = self.create_timer(0.5, self.send)
+
+    def send(self):
+        msg = Vector3()
+        msg.x = 2.0
+        msg.z = 1.0
+        self.pub.publish(msg)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = DrawCircleNode()
+    rclpy.spin(node)
+    rclpy.shutdown()

@@ -1,0 +1,35 @@
+import time
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+
+class DrawCircleNode(Node):
+    """Starts slowly: full speed after a second."""
+
+    def __init__(self):
+        super().__init__("draw_circle")
+        self.start = time.time()
+        self.pub = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        self.timer = self.create_timer(0.5, self.send)
+
+    def send(self):
+        msg = Twist()
+        if time.time() - self.start < 1.25:
+            msg.linear.x = 1.0
+            msg.angular.z = 0.5
+        else:
+            msg.linear.x = 2.0
+            msg.angular.z = 1.0
+        self.pub.publish(msg)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = DrawCircleNode()
+    try:
+        rclpy.spin(node)
+    except KeyboardInterrupt:
+        pass
+    rclpy.try_shutdown()

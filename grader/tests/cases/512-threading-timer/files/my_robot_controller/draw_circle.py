@@ -1,0 +1,31 @@
+import threading
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+
+class DrawCircleNode(Node):
+    def __init__(self):
+        super().__init__("draw_circle")
+        self.pub = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        self.send()
+
+    def send(self):
+        if not rclpy.ok():
+            return
+        msg = Twist()
+        msg.linear.x = 2.0
+        msg.angular.z = 1.0
+        self.pub.publish(msg)
+        threading.Timer(0.5, self.send).start()
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = DrawCircleNode()
+    try:
+        rclpy.spin(node)
+    except KeyboardInterrupt:
+        pass
+    rclpy.try_shutdown()

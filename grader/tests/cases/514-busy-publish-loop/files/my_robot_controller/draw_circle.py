@@ -1,0 +1,21 @@
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+
+
+class DrawCircleNode(Node):
+    def __init__(self):
+        super().__init__("draw_circle")
+        self.pub = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        msg = Twist()
+        msg.linear.x = 2.0
+        msg.angular.z = 1.0
+        while True:
+            self.pub.publish(msg)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = DrawCircleNode()
+    rclpy.spin(node)
+    rclpy.shutdown()

@@ -1,0 +1,81 @@
+"""What the lessons show is true: commands are run, recorded answers are ROS 2's own, code works, pictures are there."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from grader.ros import environment, find_ros
+from grader.tests.console import Block, blocks
+
+ROOT = Path(__file__).parent.parent.parent
+GOLDEN = Path(__file__).parent / "golden" / "ros2"
+LESSONS = sorted((ROOT / "course").glob("*/lesson.md"))
+WORDS = range(1200, 2001)
+ENDS = re.compile(r"\n\[exit \d+\].*", re.DOTALL)
+
+
+def blocks_of(language: str, about: str) -> list[object]:
+    """The blocks of this kind in all lessons, each as a parameter named after its lesson."""
+    return [
+        pytest.param(block, id=f"{lesson.parent.name}-{number}")
+        for lesson in LESSONS
+        for number, block in enumerate(blocks(lesson.read_text("utf-8")))
+        if (block.language, block.about) == (language, about)
+    ]
+
+
+@pytest.fixture(params=LESSONS, ids=lambda lesson: lesson.parent.name)
+def lesson(request: pytest.FixtureRequest) -> Path:
+    path: Path = request.param
+    return path
+
+
+def test_a_lesson_is_neither_too_short_nor_too_long(lesson: Path) -> None:
+    assert len(lesson.read_text("utf-8").split()) in WORDS
+
+
+def test_links_and_pictures_are_there(lesson: Path) -> None:
+    links = re.findall(r"\]\(([^)#]+)", lesson.read_text("utf-8"))
+    assert [link for link in links if not link.startswith("https://") and not (lesson.parent / link).exists()] == []
+
+
+def test_every_block_says_what_it_is(lesson: Path) -> None:
+    kinds = {(block.language, block.about) for block in blocks(lesson.read_text("utf-8"))}
+    assert kinds <= {("console", ""), ("console", "ros2"), ("python", ""), ("python", "part")}
+
+
+@pytest.mark.parametrize("block", blocks_of("console", "ros2"))
+def test_answers_of_ros2_are_those_that_were_recorded(block: Block) -> None:
+    recorded = {path.read_text("utf-8").split("\n", 1)[0]: path.read_text("utf-8") for path in GOLDEN.glob("*.txt")}
+    for step in block.steps():
+        answer = ENDS.sub("", recorded[f"$ {step.command}"]).splitlines()[1:]
+        assert list(step.printed) == answer
+
+
+@pytest.mark.parametrize("block", blocks_of("python", "part"))
+def test_parts_of_files_are_in_the_step(block: Block) -> None:
+    """A part is quoted from the solution, which is where it would change."""
+    assert any(block.text in path.read_text("utf-8") for path in (ROOT / "solutions").glob("*/**/*.py"))
+
+
+@pytest.mark.parametrize("block", blocks_of("python", ""))
+def test_the_thermometer_runs_on_the_real_rclpy(block: Block, tmp_path: Path) -> None:
+    ros = find_ros()
+    # What `main` would do in the time of the example's timer.
+    calls = (
+        "rclpy.init()\nnode = ThermometerNode()\nnode.announce()\nprint(node.get_name(), node.timer.timer_period_ns)"
+    )
+    code = f"{block.text}\n{calls}"
+    done = subprocess.run(
+        [ros.python, "-c", code],
+        env=environment(ros, home=tmp_path, domain=91),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (0, "thermometer 2000000000\n"), done.stderr
