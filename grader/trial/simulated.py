@@ -16,7 +16,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
 from grader.simulator.turtle import FRAME_S
-from grader.trial.rest import DoubtError, GoneError, Look, Threads
+from grader.trial.rest import DoubtError, GoneError, Threads
 from grader.trial.stage import Stage
 
 if TYPE_CHECKING:

@@ -1,0 +1,146 @@
+"""Archive: a graded submission as a folder, all that is needed to judge it again without running anything.
+
+    bag/             the messages, a rosbag2 folder (MCAP)
+    trial.json       the rest of the recording
+    build.json       what colcon made
+    submission.json  name, digest and paths
+    source/          the submission's files
+    exercise/        the exercise as it was: exercise.toml
+
+bag/ and trial.json are missing where no trial could be run, build.json where nothing could be built.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+from grader.build import Build
+from grader.checks.evidence import Evidence, Fault
+from grader.errors import MachineError, UsageError
+from grader.exercise import FILE_NAME, load_exercise
+from grader.recording import from_json, to_json
+from grader.submission import Submission, open_submission, write_copy
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from grader.exercise import Exercise
+
+_SCHEMA = 1
+
+
+@dataclass(frozen=True)
+class Archived:
+    """What an archive holds beside the evidence: which ROS 2 ran it (for the report)."""
+
+    evidence: Evidence
+    ros: str
+
+
+def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -> None:
+    """Write `evidence` as the folder, which must not exist or be empty. `prefixes` hold the message types' .msg files.
+
+    Raises:
+        UsageError: there is something in the folder already.
+        MachineError: it cannot be written.
+    """
+    check_free(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        submission = evidence.submission
+        write_copy(submission, folder / "source" / submission.package_dir.name)
+        (folder / "exercise").mkdir()
+        shutil.copyfile(evidence.exercise.folder / FILE_NAME, folder / "exercise" / FILE_NAME)
+        _write(folder / "submission.json", _about(evidence, ros))
+        if evidence.build is not None:
+            _write(folder / "build.json", {"schema": _SCHEMA, **asdict(evidence.build)})
+        if evidence.recording is not None:
+            from grader.bag import write_bag  # rosbags takes its time: only where a bag is written
+
+            write_bag(folder / "bag", evidence.recording.messages, prefixes)
+            _write(folder / "trial.json", {"schema": _SCHEMA, **to_json(evidence.recording, messages=False)})
+    except OSError as error:
+        message = f"The recording could not be written to {folder}: {error.strerror}."
+        raise MachineError(message) from error
+
+
+def check_free(folder: Path) -> None:
+    """See that a recording may be written there, before time is spent on making one.
+
+    Raises:
+        UsageError: it is a file, or there is something in it.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        message = f"{folder} is not an empty folder. A recording needs a folder of its own: name a new one."
+        raise UsageError(message)
+
+
+def load(folder: Path, exercise: Exercise | None = None) -> Archived:
+    """Read an archive; `exercise` judges in place of the one that was kept.
+
+    Raises:
+        UsageError: the folder is no archive of this version of the grader.
+    """
+    try:
+        about = _read(folder / "submission.json")
+        kept = exercise or load_exercise(folder / "exercise" / FILE_NAME)
+        package = folder / "source" / about["package"]
+        opened = open_submission(package)
+        submission = Submission(
+            name=about["name"],
+            package_dir=opened.package_dir,
+            files=opened.files,
+            rejected=tuple(about["rejected"]),
+            digest=about["digest"],
+            executable=opened.executable,
+        )
+        build, recording = None, None
+        if (folder / "build.json").exists():
+            build = _build(_read(folder / "build.json"))
+        if (folder / "trial.json").exists():
+            from grader.bag import read_payloads
+
+            recording = from_json(_read(folder / "trial.json"), read_payloads(folder / "bag"))
+        fault = Fault(**about["fault"]) if about["fault"] else None
+    except (OSError, KeyError, TypeError, ValueError) as error:
+        told = f"{type(error).__name__}: {error}"
+        message = f"{folder} cannot be read as a recording, as `grader check --recording {folder}` writes one ({told})."
+        raise UsageError(message) from error
+    return Archived(Evidence(kept, submission, build, recording, fault), about["ros"])
+
+
+def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
+    submission = evidence.submission
+    return {
+        "schema": _SCHEMA,
+        "name": submission.name,
+        "package": submission.package_dir.name,
+        "digest": submission.digest,
+        "rejected": list(submission.rejected),
+        "files": [os.fsencode(path).decode("utf-8", "backslashreplace") for path in submission.files],
+        "ros": ros,
+        "fault": asdict(evidence.fault) if evidence.fault else None,
+    }
+
+
+def _build(data: dict[str, Any]) -> Build:
+    lists = {name: tuple(data[name]) for name in ("installed", "executables")}
+    return Build(**{**data, **lists})
+
+
+def _write(file: Path, data: dict[str, Any]) -> None:
+    # Not UTF-8 in a name becomes an escape: JSON can be read by everybody.
+    file.write_text(json.dumps(data, indent=1, ensure_ascii=True) + "\n", encoding="ascii")
+
+
+def _read(file: Path) -> dict[str, Any]:
+    data = json.loads(file.read_text(encoding="utf-8"))
+    if not isinstance(data, dict) or data.pop("schema", None) != _SCHEMA:
+        message = f"{file.name} is not of schema {_SCHEMA}"
+        raise ValueError(message)
+    return data

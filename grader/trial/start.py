@@ -1,0 +1,30 @@
+"""Where the turtle starts: turtlesim's own place, or one drawn from a seed."""
+
+from __future__ import annotations
+
+import math
+import random
+
+from grader.recording import Pose
+from grader.simulator.turtle import SIDE_M, Start
+
+MARGIN_M = 0.5
+"""How far the ideal path keeps from every wall."""
+
+
+def start_pose(seed: int | None, radius_m: float) -> Pose:
+    """Return turtlesim's start without a seed, else a pose from which a circle on either side stays clear of the walls.
+
+    `radius_m` is the ideal circle's; both sides, so that a turtle that turns the wrong way fails for that alone.
+    """
+    if seed is None:
+        return Pose(*Start())
+    draw = random.Random(seed)
+    low, high = MARGIN_M + radius_m, SIDE_M - MARGIN_M - radius_m
+    while True:
+        x, y = draw.uniform(MARGIN_M, SIDE_M - MARGIN_M), draw.uniform(MARGIN_M, SIDE_M - MARGIN_M)
+        theta = draw.uniform(-math.pi, math.pi)
+        across = (-radius_m * math.sin(theta), radius_m * math.cos(theta))
+        centres = [(x + side * across[0], y + side * across[1]) for side in (1, -1)]
+        if all(low <= value <= high for centre in centres for value in centre):
+            return Pose(round(x, 3), round(y, 3), round(theta, 3))
