@@ -20,8 +20,10 @@ from grader.errors import MachineError
 
 BIN = Path(sys.prefix, "bin")
 _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
-_PROGRESS = ("Collecting ", "Downloading ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
+_PROGRESS = ("Downloading ", "Using cached ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
 _MOST_LINES = 40
+_FIRST = frozenset({"uv", "setuptools"})
+"""What pip, which is slower, installs; setuptools because uv builds empy with it."""
 _NO_NETWORK = (
     "The packages could not be installed; what the installer said stands above. Is this machine online? A proxy is "
     "read from HTTPS_PROXY, a mirror from pip's own configuration. The same command goes on from here: what was "
@@ -54,12 +56,12 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
 
     begin = time.monotonic()
     say("Installing the installer (uv)")
-    first = _write("setup", lock.select(text, ["setup"]))
+    first = _write("setup", lock.select(text, ["setup"], only=_FIRST))
     if _pip(first) != 0:
         raise MachineError(_NO_NETWORK)
 
     say("Installing " + ("what the grader needs" if sourced else "ROS 2 Jazzy and what the grader needs"))
-    rest = _write("rest", lock.select(text, parts, without))
+    rest = _write("rest", lock.select(text, parts, without=without))
     downloading = _uv("-r", str(rest), *_OPTIONS, "--compile-bytecode")
     if downloading is None:
         # pip knows settings that uv does not read: mirrors, certificates and proxies in pip.conf.

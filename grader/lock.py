@@ -75,10 +75,13 @@ def parse(text: str) -> dict[str, list[Entry]]:
     return parts
 
 
-def select(text: str, parts: Collection[str], without: Collection[str] = ()) -> str:
-    """The requirements of `parts`, as pip reads them, without the packages named in `without`."""
-    chosen = (entry for part, entries in parse(text).items() if part in parts for entry in entries)
-    return "".join(entry.text for entry in chosen if entry.name not in without)
+def select(
+    text: str, parts: Collection[str], *, without: Collection[str] = (), only: Collection[str] | None = None
+) -> str:
+    """The requirements of `parts`, as pip reads them: all packages but `without`, or `only` those named."""
+    entries = (entry for part, entries in parse(text).items() if part in parts for entry in entries)
+    chosen = (entry for entry in entries if entry.name not in without and (only is None or entry.name in only))
+    return "".join(entry.text for entry in chosen)
 
 
 def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str:

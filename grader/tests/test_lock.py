@@ -1,0 +1,166 @@
+from __future__ import annotations
+
+import re
+import sys
+from importlib import metadata
+from itertools import chain
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from grader import lock
+from grader.errors import UsageError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+TEXT = lock.LOCK_FILE.read_text(encoding="utf-8")
+PARTS = lock.parse(TEXT)
+ENTRIES = [entry for entries in PARTS.values() for entry in entries]
+PYTHONS = {"3.10": "3.10.0", "3.11": "3.11.2", "3.12": "3.12.3", "3.13": "3.13.5", "3.14": "3.14.0"}
+LEARNERS = ("setup", "grader", "ros")
+
+SMALL = """\
+# a comment
+
+# part: setup: first
+uv==1.0 ; python_version < '3.15' \\
+    --hash=sha256:aa \\
+    --hash=sha256:bb
+
+# part: grader: second
+numpy==2.0 \\
+    --hash=sha256:cc
+rich==15 \\
+    --hash=sha256:dd
+"""
+
+
+def environment(python: str) -> dict[str, str]:
+    return {
+        "python_version": python,
+        "python_full_version": PYTHONS[python],
+        "implementation_name": "cpython",
+        "platform_python_implementation": "CPython",
+        "sys_platform": "linux",
+        "platform_machine": "x86_64",
+        "platform_system": "Linux",
+        "os_name": "posix",
+        "extra": "",
+    }
+
+
+def requirement(entry: lock.Entry) -> Requirement:
+    return Requirement(entry.text.split("--hash")[0].replace("\\\n", "").strip().rstrip("\\"))
+
+
+def applying(python: str) -> dict[str, str]:
+    """Name -> version of what the lock file installs for a Python; fails if one name has two versions."""
+    found: dict[str, str] = {}
+    for entry in ENTRIES:
+        marker = requirement(entry).marker
+        if marker is None or marker.evaluate(environment(python)):
+            assert entry.name not in found, f"{entry.name} twice for Python {python}"
+            found[entry.name] = entry.version
+    return found
+
+
+def test_every_entry_has_hashes() -> None:
+    assert [entry.name for entry in ENTRIES if not re.search(r"--hash=sha256:[0-9a-f]{64}", entry.text)] == []
+
+
+def test_lock_names_no_addresses() -> None:
+    assert [
+        word for word in ("://", " @ ", "--index", "--extra-index", "--find-links", "--trusted") if word in TEXT
+    ] == []
+
+
+@pytest.mark.parametrize("python", PYTHONS)
+def test_lock_covers_the_project(python: str) -> None:
+    locked = applying(python)
+    project = tomllib.loads(lock.PROJECT.read_text(encoding="utf-8"))
+    extras = project["project"]["optional-dependencies"].values()
+    stated = [*project["project"]["dependencies"], *project["build-system"]["requires"], *chain.from_iterable(extras)]
+    for wanted in map(Requirement, stated):
+        if wanted.marker is None or wanted.marker.evaluate(environment(python)):
+            version = locked.get(canonicalize_name(wanted.name))
+            assert version is not None, f"{wanted} is not in the lock file: run `make lock`"
+            assert wanted.specifier.contains(version), f"{wanted}, but locked is {version}: run `make lock`"
+
+
+def test_parts_stand_in_order() -> None:
+    assert list(PARTS) == list(lock.PARTS)
+
+
+def test_ros_is_a_part_of_its_own() -> None:
+    where = {entry.name: part for part, entries in PARTS.items() for entry in entries}
+    assert {part for name, part in where.items() if name.startswith("ros-")} == {"ros"}
+    assert [where[name] for name in ("uv", "numpy", "colcon-core", "nbgrader", "mypy")] == [
+        "setup",
+        "grader",
+        "grader",
+        "tests",
+        "tests",
+    ]
+
+
+@pytest.mark.parametrize("parts", [("setup",), ("setup", "grader"), LEARNERS, tuple(lock.PARTS)])
+def test_parts_need_nothing_of_later_parts(parts: tuple[str, ...]) -> None:
+    names = {entry.name for part in parts for entry in PARTS[part]}
+    missing = []
+    for name in names:
+        try:
+            needs = metadata.requires(name) or []
+        except metadata.PackageNotFoundError:
+            continue  # For another Python than this one.
+        for need in map(Requirement, needs):
+            applies = need.marker is None or need.marker.evaluate({"extra": ""})
+            if applies and canonicalize_name(need.name) not in names:
+                missing.append(f"{name} needs {need}")
+    assert missing == []
+
+
+def test_no_two_packages_write_the_same_file() -> None:
+    # uv installs in parallel: which of the two files stays would be chance.
+    names = {canonicalize_name(entry.name) for entry in ENTRIES}
+    writers: dict[str, set[str]] = {}
+    for package in metadata.distributions():
+        if canonicalize_name(package.name) in names:
+            for line in (package.read_text("RECORD") or "").splitlines():
+                writers.setdefault(line.partition(",")[0], set()).add(package.name)
+    assert len(writers) > 1000
+    assert {file: packages for file, packages in writers.items() if len(packages) > 1} == {}
+
+
+def test_select_takes_whole_entries_of_the_parts_asked_for() -> None:
+    assert lock.select(SMALL, ["setup"]) == SMALL.split("first\n")[1].split("\n\n")[0] + "\n"
+    assert [entry.name for entry in lock.parse("# part: x\n" + lock.select(SMALL, ["setup", "grader"]))["x"]] == [
+        "uv",
+        "numpy",
+        "rich",
+    ]
+
+
+def test_select_leaves_out_and_picks() -> None:
+    assert "numpy" not in lock.select(SMALL, ["grader"], without={"numpy"})
+    assert lock.select(SMALL, ["setup", "grader"], only={"rich"}) == "rich==15 \\\n    --hash=sha256:dd\n"
+
+
+def test_split_puts_an_entry_below_the_first_part_that_needs_it() -> None:
+    entries = [lock.Entry(name, "1", f"{name}==1\n") for name in ("a", "b", "c", "d")]
+    text = lock.split(entries, {"setup": {"b"}, "grader": {"a", "b"}, "ros": {"a", "c"}})
+    assert {part: [entry.name for entry in found] for part, found in lock.parse(text).items()} == {
+        "setup": ["b"],
+        "grader": ["a"],
+        "ros": ["c"],
+        "tests": ["d"],
+    }
+
+
+@pytest.mark.parametrize("text", ["uv==1.0\n", "# part: setup\n    --hash=sha256:aa\n", "# part: setup\nuv>=1\n"])
+def test_a_line_out_of_place_is_told(text: str) -> None:
+    with pytest.raises(UsageError, match=re.escape(text.splitlines()[-1].strip())):
+        lock.parse(text)
