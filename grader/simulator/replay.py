@@ -9,6 +9,7 @@ update that produces the pose of its frame, in the file's order.
 from __future__ import annotations
 
 import csv
+import itertools
 import struct
 import sys
 from collections import defaultdict
@@ -16,11 +17,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.simulator.turtle import FRAME_S, TIME_OUT_S, State
+from grader.simulator.turtle import FRAME_S, TIME_OUT_S
 from grader.simulator.world import World
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from grader.simulator.turtle import Rotation, State, Turtle
 
 FIELDS = ("x", "y", "theta", "linear_velocity", "angular_velocity")
 _HAIR_S = 1e-6
@@ -38,13 +41,20 @@ class Difference:
 def replay(inputs: Path, poses: Path) -> Difference:
     """Replay the inputs and compare every pose, as published (float32), with the recorded one."""
     worst = Difference(0.0, 0, FIELDS[0])
-    for (frame, recorded), state in zip(_poses(poses), _states(inputs), strict=False):
-        for field, theirs, ours in zip(FIELDS, recorded, _as_published(state), strict=True):
+    for (frame, recorded), (turtle, _) in zip(_poses(poses), _frames(inputs), strict=False):
+        for field, theirs, ours in zip(FIELDS, recorded, _as_published(turtle.state()), strict=True):
             size = abs(theirs - ours)
             # Not `size > worst.size`: nan must count as the worst there is.
             if not size <= worst.size:
                 worst = Difference(size, frame, field)
     return worst
+
+
+def rotations(inputs: Path, frames: int) -> Iterator[Rotation]:
+    """Replay so many frames; yield the rotation as it is after each frame that had one."""
+    for _, rotation in itertools.islice(_frames(inputs), frames):
+        if rotation is not None:
+            yield rotation
 
 
 @dataclass(frozen=True)
@@ -55,21 +65,20 @@ class _Input:
     c: float
 
 
-def _states(inputs: Path) -> Iterator[State]:
-    """Yield turtle1 after every frame, without end."""
+def _frames(inputs: Path) -> Iterator[tuple[Turtle, Rotation | None]]:
+    """Yield turtle1 after every frame, with the rotation that the frame began with, without end."""
     world = World()
+    turtle = world.turtles["turtle1"]
     by_frame = _inputs(inputs)
     now_s = 0.0
-    frame = 0
-    while True:
-        turtle = world.turtles["turtle1"]
+    for frame in itertools.count():
         wanted = by_frame[frame]
         for given in wanted:
             _apply(world, given)
+        rotation = turtle.rotation
         now_s = _frame_time(now_s, turtle.last_command_s, timed_out=any(i.name == "timeout" for i in wanted))
         world.step(now_s)
-        yield turtle.state()
-        frame += 1
+        yield turtle, rotation
 
 
 def _frame_time(before_s: float, last_command_s: float | None, *, timed_out: bool) -> float:
