@@ -128,9 +128,9 @@ def test_no_two_packages_write_the_same_file() -> None:
     names = {canonicalize_name(entry.name) for entry in ENTRIES}
     writers: dict[str, set[str]] = {}
     for package in metadata.distributions():
-        if canonicalize_name(package.name) in names:
-            for line in (package.read_text("RECORD") or "").splitlines():
-                writers.setdefault(line.partition(",")[0], set()).add(package.name)
+        name = canonicalize_name(package.name)
+        for line in (package.read_text("RECORD") or "").splitlines() if name in names else ():
+            writers.setdefault(line.partition(",")[0], set()).add(name)
     assert len(writers) > 1000
     assert {file: packages for file, packages in writers.items() if len(packages) > 1} == {}
 
