@@ -119,6 +119,8 @@ def installs(evidence: Evidence, _: NoParams) -> Finding:
 
 def _package_name(evidence: Evidence) -> str:
     """The name that colcon installs the package by."""
+    if evidence.built.package is not None:
+        return evidence.built.package
     manifest, setup = evidence.manifest, evidence.setup_py
     if manifest is not None and manifest.name:
         return manifest.name

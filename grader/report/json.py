@@ -1,0 +1,136 @@
+"""Report to JSON and back.
+
+Schema 1. Every key is always there; texts are never null unless it says so.
+
+    schema        1
+    exercise      {id, title, sha256 of exercise.toml}
+    submission    {name as the user gave it, sha256 over its files}
+    grader, ros   their versions
+    clock         {used: "simulated" or "wall" ("none" when no trial ran), why: a sentence}
+    seed          the number that drew the turtle's start; null for turtlesim's own start
+    points, max   sums over the outcomes; what the machine could not judge (status "error") is in neither
+    outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
+                  cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,
+                  advice: worth nothing and fails no run, whatever its status, near_edge}]
+    seconds       {stage: wall time in s}; differs from run to run
+    recordings    [paths of the recordings that were kept]
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from grader.errors import UsageError
+from grader.outcome import Finding, Outcome, Report, Status, Where
+
+SCHEMA = 1
+
+
+def to_json(report: Report) -> str:
+    """The report as JSON text, indented, with a newline at its end."""
+    return json.dumps(to_data(report), ensure_ascii=False, indent=2, allow_nan=False) + "\n"
+
+
+def to_data(report: Report) -> dict[str, Any]:
+    """The report as dictionaries and lists, ready for JSON."""
+    return {
+        "schema": SCHEMA,
+        "exercise": {"id": report.exercise, "title": report.exercise_title, "sha256": report.exercise_digest},
+        "submission": {"name": _encodable(report.submission), "sha256": report.digest},
+        "grader": report.grader,
+        "ros": report.ros,
+        "clock": {"used": report.clock, "why": report.clock_why},
+        "seed": report.seed,
+        "points": report.points,
+        "max": report.max,
+        "outcomes": [_outcome(outcome) for outcome in report.outcomes],
+        "seconds": dict(report.seconds),
+        "recordings": [] if report.recording is None else [_encodable(report.recording)],
+    }
+
+
+def _outcome(outcome: Outcome) -> dict[str, Any]:
+    finding = outcome.finding
+    where = finding.where
+    return {
+        "id": outcome.id,
+        "kind": outcome.kind,
+        "title": outcome.title,
+        "status": finding.status.value,
+        "points": outcome.points,
+        "max": outcome.max,
+        "seen": _encodable(finding.seen),
+        "expected": _encodable(finding.expected),
+        "cause": _encodable(finding.cause),
+        "diagnosis": finding.diagnosis,
+        "where": None if where is None else {"file": _encodable(where.file), "line": where.line},
+        "hidden": outcome.hidden,
+        "advice": outcome.advice,
+        "near_edge": finding.near_edge,
+    }
+
+
+def _encodable(text: str) -> str:
+    """The text with lone surrogates (bytes of a file name that are not UTF-8) as escapes: JSON is UTF-8."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+def from_json(text: str) -> Report:
+    """The report in a JSON text. Raises UsageError when it is none of ours, or of a later version."""
+    try:
+        data = json.loads(text)
+        schema = data["schema"]
+    except (ValueError, TypeError, KeyError) as error:
+        message = "This is no report of the grader: it is not JSON with a key schema."
+        raise UsageError(message) from error
+    if schema != SCHEMA:
+        message = f"This report has schema {schema}; this version of the grader reads schema {SCHEMA}."
+        raise UsageError(message)
+    try:
+        return _report(data)
+    except (ValueError, TypeError, KeyError) as error:
+        message = f"This report is damaged: {type(error).__name__} {error}."
+        raise UsageError(message) from error
+
+
+def _report(data: dict[str, Any]) -> Report:
+    recordings = data["recordings"]
+    return Report(
+        exercise=data["exercise"]["id"],
+        exercise_title=data["exercise"]["title"],
+        submission=data["submission"]["name"],
+        digest=data["submission"]["sha256"],
+        grader=data["grader"],
+        ros=data["ros"],
+        clock=data["clock"]["used"],
+        clock_why=data["clock"]["why"],
+        seed=data["seed"],
+        outcomes=tuple(_read_outcome(each) for each in data["outcomes"]),
+        seconds=dict(data["seconds"]),
+        recording=recordings[0] if recordings else None,
+        exercise_digest=data["exercise"]["sha256"],
+    )
+
+
+def _read_outcome(data: dict[str, Any]) -> Outcome:
+    where = data["where"]
+    finding = Finding(
+        status=Status(data["status"]),
+        seen=data["seen"],
+        expected=data["expected"],
+        cause=data["cause"],
+        diagnosis=data["diagnosis"],
+        where=None if where is None else Where(where["file"], where["line"]),
+        near_edge=data["near_edge"],
+    )
+    return Outcome(
+        id=data["id"],
+        kind=data["kind"],
+        title=data["title"],
+        points=data["points"],
+        max=data["max"],
+        finding=finding,
+        hidden=data["hidden"],
+        advice=data["advice"],
+    )

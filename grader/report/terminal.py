@@ -1,0 +1,114 @@
+"""Report to the terminal: every check on a line, what to mend below it, the verdict last, where the eye rests.
+
+On a terminal with colours and a hanging indent; piped, the same words on one line each. All that a student wrote is
+printed as plain text: no markup, no control characters.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.table import Table
+from rich.text import Text
+
+from grader.outcome import Outcome, Report, Status
+from grader.words import count, printable
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+NARROW = 50
+"""Columns: below, texts are not indented under their labels."""
+
+SIGNS = {"passed": "✓", "failed": "✗", "skipped": "-", "error": "!", "advice": "i"}
+ASCII_SIGNS = {"passed": "ok", "failed": "FAIL", "skipped": "skip", "error": "ERROR", "advice": "note"}
+STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "error": "bold magenta", "advice": "cyan"}
+
+
+def render(report: Report, console: Console) -> None:
+    """Print the report."""
+    _line(console, Text(printable(f"{report.exercise_title}: {report.submission}"), style="bold"))
+    for outcome in report.outcomes:
+        _check(outcome, console)
+    console.print()
+    _line(console, _verdict(report))
+    for text in _footnotes(report):
+        _line(console, Text(text, style="dim"))
+
+
+def _look(outcome: Outcome) -> str:
+    """How the outcome is told: its status, or "advice" for advice that was not followed."""
+    if outcome.advice and outcome.status is Status.FAILED:
+        return "advice"
+    return outcome.status.value
+
+
+def _check(outcome: Outcome, console: Console) -> None:
+    look = _look(outcome)
+    signs = SIGNS if console.encoding.lower().startswith("utf") else ASCII_SIGNS
+    head = Text(f"{signs[look]} ", style=STYLES[look])
+    head.append(printable(outcome.title), style="" if look == "passed" else "bold")
+    if outcome.max:
+        points = f"{_points(outcome.points)}/{_points(outcome.max)}" if look != "error" else "not counted"
+        head.append(f"  {points}", style="dim" if look == "passed" else STYLES[look])
+    _line(console, head)
+    if look == "passed" or outcome.hidden:
+        return
+    finding = outcome.finding
+    if look == "skipped":
+        _details(console, [("", finding.seen)])
+        return
+    where = str(finding.where) if finding.where is not None else ""
+    labels = (("seen", finding.seen), ("expected", finding.expected), ("why", finding.cause), ("where", where))
+    _details(console, [(label, text) for label, text in labels if text])
+
+
+def _details(console: Console, rows: list[tuple[str, str]]) -> None:
+    if not console.is_terminal or console.width < NARROW:
+        for label, text in rows:
+            _line(console, Text(f"    {label}: {printable(text)}" if label else f"    {printable(text)}"))
+        return
+    table = Table.grid(padding=(0, 1))
+    table.add_column(width=3)
+    if any(label for label, _ in rows):
+        table.add_column(min_width=8, style="dim")
+    table.add_column(overflow="fold")
+    for label, text in rows:
+        table.add_row("", *([label] if label else []), Text(printable(text)))
+    console.print(table)
+
+
+def _verdict(report: Report) -> Text:
+    points = f"{_points(report.points)} of {_points(report.max)} points"
+    errors, failed = report.with_status(Status.ERROR), report.with_status(Status.FAILED)
+    skipped = report.with_status(Status.SKIPPED)
+    if errors:
+        what = f"{count(len(errors), 'check')} could not be judged, through no fault of the submission"
+        text = f"Not finished: {what}. {points}."
+        return Text(text, style=STYLES["error"])
+    if not failed and not skipped:
+        return Text(f"Passed: {points}.", style="bold green")
+    if not failed:
+        return Text(f"Not passed: {points}, {count(len(skipped), 'check')} not judged.", style=STYLES["failed"])
+    also = f", {len(skipped)} not judged because of that" if skipped else ""
+    return Text(f"Not passed yet: {points}, {count(len(failed), 'check')} failed{also}.", style=STYLES["failed"])
+
+
+def _footnotes(report: Report) -> list[str]:
+    clock = {"simulated": "Judged in simulated time", "wall": "Judged in wall time"}.get(report.clock, "")
+    why = printable(report.clock_why)
+    notes = [f"{clock}: {why}" if clock and why else clock or why]
+    if report.seed is not None:
+        notes.append(f"The turtle's start was drawn with seed {report.seed}.")
+    if report.recording is not None:
+        notes.append(f"Recording: {printable(report.recording)}")
+    return [note for note in notes if note]
+
+
+def _points(points: float) -> str:
+    return f"{points:g}"
+
+
+def _line(console: Console, text: Text) -> None:
+    """One line; piped, it is not wrapped."""
+    console.print(text, soft_wrap=not console.is_terminal, highlight=False, markup=False)
