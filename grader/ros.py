@@ -103,6 +103,18 @@ def environment(
     return {key: value for key, value in env.items() if value}
 
 
+def users_environment(ros: Ros, underlay: Path | None, env: Mapping[str, str] = os.environ) -> dict[str, str]:
+    """The environment of a node that a user starts for themselves: their own, and what ROS 2 needs on top.
+
+    Home, domain, PATH and what else the user has set stay theirs, so that nodes of other terminals are heard.
+    """
+    home = Path(env.get("HOME", "/"))
+    needed = environment(ros, home=home, underlay=underlay)
+    theirs = {"HOME", "PATH", "LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"}
+    del needed["ROS_LOG_DIR"], needed["RCUTILS_COLORIZED_OUTPUT"], needed["PYTHONHASHSEED"]
+    return {**needed, **{key: value for key, value in env.items() if key in theirs or key not in needed}}
+
+
 def _sourced(env: Mapping[str, str]) -> Ros | None:
     if env.get("ROS_DISTRO") != DISTRO:
         return None

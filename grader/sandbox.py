@@ -127,6 +127,11 @@ def limited(argv: Sequence[str], limits: Limits) -> list[str]:
     ]
 
 
+def usable() -> bool:
+    """Whether cells can be made here: a try of a few milliseconds."""
+    return why_unavailable() is None
+
+
 def why_unavailable() -> str | None:
     """Try a cell; None when it works, else what is wrong and what to do."""
     if bubblewrap() is None:

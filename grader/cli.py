@@ -1,0 +1,211 @@
+"""The command `grader`: what its verbs take, and which part of the grader does them. No logic."""
+
+from __future__ import annotations
+
+import os
+import sys
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Optional
+
+import typer
+
+from grader.errors import GraderError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
+
+    from grader.checks.evidence import Evidence
+    from grader.exercise import Exercise
+    from grader.outcome import Report
+
+app = typer.Typer(
+    name="grader",
+    help="Grade ROS 2 packages by running them: built with colcon, run against a headless turtlesim, judged by what "
+    "the turtle did.",
+    epilog="Example: grader check exercises/03-circle-publisher",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+class Clock(str, Enum):
+    """Which clock judges."""
+
+    auto = "auto"
+    simulated = "simulated"
+    wall = "wall"
+
+
+Json = Annotated[Optional[Path], typer.Option("--json", help="Write the report as JSON.", metavar="FILE")]  # noqa: UP045
+Image = Annotated[Optional[Path], typer.Option(help="Draw the turtle's path as a PNG.", metavar="FILE.png")]  # noqa: UP045
+ExerciseId = Annotated[
+    Optional[str],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
+    typer.Option("--exercise", help="Which exercise; in exercises/ and solutions/ it follows from the folder."),
+]
+
+
+@app.command(epilog="Example: grader check ~/ros2_ws/src/my_robot_controller --exercise 03-circle-publisher")
+def check(
+    submission: Annotated[
+        Path, typer.Argument(help="A package's folder, or a folder with one package below it.")
+    ] = Path(),
+    exercise: ExerciseId = None,
+    clock: Annotated[
+        Clock, typer.Option(help="auto: simulated time, and wall time where that may misjudge.")
+    ] = Clock.auto,
+    json: Json = None,
+    image: Image = None,
+    recording: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option(help="Keep all that was seen, to judge it again with `grader regrade`.", metavar="DIR"),
+    ] = None,
+    seed: Annotated[Optional[int], typer.Option(help="Start the turtle at a place drawn from this number.")] = None,  # noqa: UP045
+) -> None:
+    """Build and run one submission, and say what is right and what is not."""
+    from grader import archive, sandbox
+    from grader.grade import Options, grade
+    from grader.submission import open_submission
+
+    for file in (json, image):
+        _writable(file)
+    if recording:
+        archive.check_free(recording)
+    opened = open_submission(submission)
+    asked = _exercise(exercise, opened.package_dir)
+    options = Options(in_cell=sandbox.usable(), clock=clock.value, seed=seed)
+    with _progress() as tell:
+        graded = grade(asked, opened, options, tell)
+        if recording:
+            archive.save(recording, graded.evidence, graded.report.ros, graded.prefixes)
+    _show(graded.report, graded.evidence, json, image)
+
+
+@app.command(epilog="Example: grader regrade my-recording --image path.png")
+def regrade(
+    recording: Annotated[Path, typer.Argument(help="What `grader check --recording` wrote.", metavar="RECORDING")],
+    exercise: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option(help="Judge by this exercise as it is now, instead of as it was then."),
+    ] = None,
+    json: Json = None,
+    image: Image = None,
+) -> None:
+    """Judge a stored recording again; nothing of the student's is run."""
+    from grader import archive
+    from grader.checks.judge import judge
+    from grader.exercise import find_exercise
+    from grader.grade import report_of
+
+    for file in (json, image):
+        _writable(file)
+    kept = archive.load(recording, find_exercise(exercise) if exercise else None)
+    report = report_of(kept.evidence, judge(kept.evidence), kept.ros, {})
+    _show(report, kept.evidence, json, image)
+
+
+@app.command(epilog="Example: grader doctor")
+def doctor() -> None:
+    """See whether this machine can grade: which ROS 2, colcon, compiler, sandbox; and what to do about the rest."""
+    from rich.console import Console
+
+    from grader.doctor import exit_code, render, run_doctor
+
+    lines = run_doctor()
+    render(lines, Console(highlight=False))
+    raise typer.Exit(exit_code(lines))
+
+
+@app.command(
+    context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
+    epilog="Example: grader sim --image path.png",
+)
+def sim(context: typer.Context, image: Image = None) -> None:
+    """Run the headless turtlesim as a node, at wall time, until Ctrl-C."""
+    from grader import underlay
+    from grader.ros import find_ros, users_environment
+
+    _writable(image)
+    here = find_ros()
+    with _progress() as tell:
+        extra = underlay.ensure(here, tell)
+    drawing = ["--image", str(image)] if image else []
+    argv = [str(here.python), "-m", "grader.simulator.node", *drawing, *context.args]
+    os.execve(argv[0], argv, users_environment(here, extra))
+
+
+def main() -> None:
+    """Run the command; an error of ours is a sentence, and its exit code is that of design.md."""
+    try:
+        app()
+    except GraderError as error:
+        typer.secho(f"grader: {error}", err=True, fg=typer.colors.RED if sys.stderr.isatty() else None)
+        sys.exit(error.exit_code)
+    except KeyboardInterrupt:
+        sys.exit(130)
+    except BrokenPipeError:
+        # Whoever read us has gone, as in `grader check | head`.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        sys.exit(1)
+
+
+def _exercise(name: str | None, package: Path) -> Exercise:
+    from grader.exercise import catalogue, exercise_of_folder, find_exercise
+
+    found = find_exercise(name) if name else exercise_of_folder(package)
+    if found is None:
+        message = (
+            f"Which exercise is {package.name} for? Say it with --exercise, one of: {', '.join(catalogue())}. "
+            "(In exercises/ and solutions/ it follows from the folder.)"
+        )
+        raise UsageError(message)
+    return found
+
+
+def _show(report: Report, evidence: Evidence, json: Path | None, image: Path | None) -> None:
+    from rich.console import Console
+
+    from grader.report import terminal
+
+    if json:
+        from grader.report.json import to_json
+
+        _write(json, to_json(report).encode())
+    if image:
+        from grader.report.picture import draw
+
+        _write(image, draw(report, evidence))
+    console = Console(highlight=False)
+    terminal.render(report, console)
+    raise typer.Exit(report.exit_code)
+
+
+def _progress() -> AbstractContextManager[Callable[[str], None]]:
+    from grader.report.progress import progress
+
+    return progress()
+
+
+def _writable(file: Path | None) -> None:
+    """See that a file can be written before time is spent on what goes into it."""
+    if file is not None and not file.absolute().parent.is_dir():
+        message = f"There is no folder {file.absolute().parent} to write {file.name} to."
+        raise UsageError(message)
+    if file is not None and file.is_dir():
+        message = f"{file} is a folder; name a file."
+        raise UsageError(message)
+
+
+def _write(file: Path, content: bytes) -> None:
+    try:
+        file.write_bytes(content)
+    except OSError as error:
+        message = f"{file} could not be written: {error.strerror}."
+        raise UsageError(message) from error
+
+
+if __name__ == "__main__":
+    main()
