@@ -28,8 +28,7 @@ class Submission:
 
     build/, install/, log/, hidden folders, virtual environments, caches and what is not a regular file inside the
     folder are left out; `rejected` names those that are a fault of the submission (a symlink that leaves it, ...),
-    with the reason. A link to another file of the package is that file. Names that are not UTF-8 are kept as Python
-    keeps them (surrogateescape): print them with `grader.tree.shown`.
+    with the reason. A link to another file of the package is that file. Every path in `files` is printable.
     """
 
     name: str

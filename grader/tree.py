@@ -151,7 +151,10 @@ def _read_folder(tree: Tree, folder: int, prefix: str, depth: int) -> None:
     tree.entries += len(listing)
     for entry in listing:
         path = prefix + entry.name
-        if len(os.fsencode(path)) > MAX_PATH_BYTES:
+        if not entry.name.isprintable():
+            # Python's own tools fail on such names, each in its way; nobody can import or type them.
+            tree.rejected[path] = "has a name with control characters, or one that is not UTF-8"
+        elif len(os.fsencode(path)) > MAX_PATH_BYTES:
             tree.rejected[path] = f"has a path of more than {MAX_PATH_BYTES} bytes"
         elif entry.target is not None:
             tree.links[path] = entry.target

@@ -303,24 +303,33 @@ def test_a_fault_of_the_disk_is_no_fault_of_the_student(package: Path, monkeypat
         open_submission(package)
 
 
-ODD_NAMES = [
-    b"with blank.py",
-    b"caf\xe9.py",
-    "café.py".encode(),
-    "cafe\u0301.py".encode(),
-    b"line\r\nbreak.py",
-    b"Node.py",
-    b"node.py",
-]
+ODD_NAMES = ["with blank.py", "café.py", "cafe\u0301.py", "日本.txt", "Node.py", "node.py", "-rf", "*", "'\""]
 
 
-def test_odd_names_are_kept_and_shown_in_printable_characters(package: Path) -> None:
+def test_odd_names_are_kept_letter_by_letter(package: Path) -> None:
     for name in ODD_NAMES:
-        (package / os.fsdecode(name)).write_bytes(name)
-    (package / os.fsdecode(b"caf\xe9\x1b[31m")).symlink_to("/etc")
+        (package / name).write_text(name)
     submission = open_submission(package)
-    assert {submission.files[os.fsdecode(name)] for name in ODD_NAMES} == set(ODD_NAMES)
-    assert submission.rejected[0].startswith(r"caf\xe9\x1b[31m is a link")
+    assert {name: submission.files[name].decode() for name in ODD_NAMES} == {name: name for name in ODD_NAMES}
+    assert submission.rejected == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        (b"caf\xe9.py", r"caf\xe9.py"),
+        (b"line\r\nbreak.py", r"line\r\nbreak.py"),
+        (b"\x1b[31mred", r"\x1b[31mred"),
+        ("a\u202egnp.py".encode(), r"a\u202egnp.py"),
+    ],
+)
+def test_names_that_cannot_be_printed_are_rejected_in_characters_that_can(
+    package: Path, name: bytes, shown: str
+) -> None:
+    (package / os.fsdecode(name)).write_bytes(b"")
+    submission = open_submission(package)
+    assert set(submission.files) == set(PACKAGE)
+    assert submission.rejected == (f"{shown} has a name with control characters, or one that is not UTF-8.",)
 
 
 def test_contents_are_bytes_and_kept_as_they_are(package: Path) -> None:
@@ -383,7 +392,7 @@ def test_the_digest_forgets_times_permissions_and_what_is_left_out(package: Path
 
 def test_a_copy_is_the_submission_again(package: Path, tmp_path: Path) -> None:
     for name in ODD_NAMES:
-        (package / os.fsdecode(name)).write_bytes(name)
+        (package / name).write_text(name)
     (package / "setup.py").chmod(0o700)
     before = os.umask(0o077)
     try:
