@@ -150,6 +150,12 @@ def main() -> None:
         # Whoever read us has gone, as in `grader check | head`.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.exit(1)
+    except Exception as error:
+        if os.environ.get("GRADER_DEBUG"):
+            raise
+        told = f"grader: a fault of the grader itself, not of your work: {type(error).__name__}: {error}"
+        typer.secho(f"{told}\nGRADER_DEBUG=1 before the command shows where; please report that.", err=True)
+        sys.exit(3)
 
 
 def _exercise(name: str | None, package: Path) -> Exercise:
@@ -175,9 +181,9 @@ def _show(report: Report, evidence: Evidence, json: Path | None, image: Path | N
 
         _write(json, to_json(report).encode())
     if image:
-        from grader.report.picture import draw
+        from grader.report.picture import save_picture
 
-        _write(image, draw(report, evidence))
+        save_picture(evidence, report, image)
     console = Console(highlight=False)
     terminal.render(report, console)
     raise typer.Exit(report.exit_code)
