@@ -78,16 +78,27 @@ def crash_of(evidence: Evidence) -> Crash | None:
 
 
 def ended_early(evidence: Evidence) -> str:
-    """A sentence on a node that ended before the scenario was over; empty when it did not."""
+    """A cause in words: the node ended before the scenario was over; empty when it did not.
+
+    Without the time and the exception's message, since those may differ from run to run, and a cause must not.
+    """
+    if evidence.trial.end.by != "itself":
+        return ""
+    crash = crash_of(evidence)
+    if crash is None:
+        return "The node ended by itself."
+    place = f" at {crash.where}" if crash.where is not None else ""
+    return f"The node crashed: {crash.error}{place}."
+
+
+def end_seen(evidence: Evidence) -> str:
+    """What was seen of a node that ended before the scenario was over, with the time; empty when it did not."""
     end = evidence.trial.end
     if end.by != "itself":
         return ""
     when = f"after {end.t_s:.1f} s" if end.t_s > 0.0 else "at its start"
     crash = crash_of(evidence)
-    if crash is None:
-        return f"The node ended by itself {when}."
-    place = f", {crash.where}" if crash.where is not None else ""
-    return f"The node crashed {when} ({crash.seen}{place})."
+    return f"The node ended by itself {when}." if crash is None else f"The node crashed {when}: {crash.seen}."
 
 
 def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:

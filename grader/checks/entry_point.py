@@ -29,7 +29,8 @@ def entry_point(evidence: Evidence, _: NoParams) -> Finding:
     if target is None:
         return _missing(evidence)
     if executable not in build.executables:
-        seen = f"{executable} was not installed into the package's own folder, lib/{build.package or evidence.exercise.package}."
+        folder = f"lib/{build.package or evidence.exercise.package}"
+        seen = f"{executable} was not installed into the package's own folder, {folder}."
         expected = "setup.cfg says where executables go, so that `ros2 run` finds them."
         cause = (
             "setup.cfg is missing."

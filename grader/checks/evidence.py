@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from grader.checks import seen
 from grader.checks.code import Code, read_code
 from grader.checks.manifest import Manifest, read_manifest
 from grader.checks.setup_py import SetupPy, read_setup_py
@@ -15,9 +16,10 @@ if TYPE_CHECKING:
 
     from grader.build import Build
     from grader.checks.kind import Stage
+    from grader.checks.track import Track
     from grader.exercise import Exercise
     from grader.outcome import Where
-    from grader.recording import Recording
+    from grader.recording import Command, Recording
     from grader.submission import Submission
 
 
@@ -70,6 +72,18 @@ class Evidence:
     def code(self) -> Code:
         """The Python modules of the submission, the node's file first."""
         return read_code(self.submission.files, first=self.node_file)
+
+    @cached_property
+    def commands(self) -> tuple[Command, ...]:
+        """The commands that arrived before SIGINT."""
+        return seen.commands(self.trial)
+
+    @cached_property
+    def track(self) -> Track:
+        """The turtle's way until SIGINT."""
+        from grader.checks.track import track_of  # numpy, 0.1 s
+
+        return track_of(self.trial)
 
     def entry_point(self) -> str | None:
         """Return "module:attribute" of the exercise's executable: as installed, else as setup.py says."""

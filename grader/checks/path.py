@@ -11,8 +11,8 @@ from grader.checks.crash import ended_early
 from grader.checks.kind import Kind, NoParams, choice, number
 from grader.checks.tolerance import Band
 from grader.outcome import Finding, Status, Where, failed, passed
+from grader.words import count, shorten
 from grader.words import number as shown
-from grader.words import shorten
 
 if TYPE_CHECKING:
     from grader.checks.circle import Circle
@@ -25,6 +25,8 @@ MOVED_M = 0.05
 TURNED_RAD = 0.1
 STRAIGHT_RADIUS_M = 50.0
 """A circle larger than this looks straight on a canvas of 11 m."""
+LIVES_S = 1.0
+"""How long a command moves a turtle."""
 POLYGON_SHARE = 0.6
 """A way of which more than this was driven straight is told as sides and corners."""
 
@@ -55,8 +57,6 @@ def expected_centre(start: Pose, params: CircleParams) -> tuple[float, float]:
 
 def circle(evidence: Evidence, params: CircleParams) -> Finding:
     """The turtle drives the circle: round, in the right sense, of the right size, in the right place, all the way."""
-    from grader.checks.track import track_of  # numpy, 0.1 s
-
     turns = "1 turn" if params.turns == 1.0 else f"{params.turns:g} turns"
     expected = f"A circle of radius {params.radius_m:.1f} m, {params.sense}, at least {turns}."
     recording = evidence.trial
@@ -64,7 +64,7 @@ def circle(evidence: Evidence, params: CircleParams) -> Finding:
         seen = f"Something moved the turtle by other means: {shorten(recording.interventions[0])}."
         cause = "The turtle is to be driven by velocity commands alone."
         return failed("intervention", seen, expected, cause, where=evidence.place("create_client", "ActionClient"))
-    track = track_of(recording)
+    track = evidence.track
     return _no_circle(evidence, track, expected) or _measured(evidence, params, track, expected)
 
 
@@ -123,7 +123,7 @@ def _not_round(evidence: Evidence, track: Track, fitted: Circle, expected: str, 
         seen = f"The way is {track.sides} straight sides with corners; {off}."
         cause = "A circle is driven by going forwards and turning at the same time, in every command."
         return failed("polygon", seen, expected, cause, where=_line(evidence), near_edge=near_edge)
-    changed = len({(command.linear, command.angular) for command in seen_in.commands(evidence.trial)}) > 1
+    changed = len({(command.linear, command.angular) for command in evidence.commands}) > 1
     cause = (
         "The commands change on the way; a circle needs the same command all the time."
         if changed
@@ -137,35 +137,25 @@ def _not_round(evidence: Evidence, track: Track, fitted: Circle, expected: str, 
 def _too_short(evidence: Evidence, track: Track, turns: float, expected: str, *, near_edge: bool) -> Finding:
     seen = f"The turtle drove {turns:.2f} of a turn."
     early = ended_early(evidence)
-    commands = seen_in.commands(evidence.trial)
     if early:
-        return failed("ended-early", seen, expected, early, where=_line(evidence), near_edge=near_edge)
+        return failed("ended-early", seen, expected, early, where=evidence.place("publish"), near_edge=near_edge)
     if track.rests:
-        cause = f"It stopped on the way ({track.rests} times): a turtle stops when no command comes for 1 s."
-        return failed(
-            "stops-and-goes",
-            seen,
-            expected,
-            cause.replace("1 times", "once"),
-            where=evidence.place("publish"),
-            near_edge=near_edge,
-        )
-    last = commands[-1].t_s if commands else 0.0
-    if seen_in.end_s(evidence.trial) - last > 1.0:
-        cause = f"The last command came at {last:.1f} s; a turtle stops when no command comes for 1 s."
-        return failed("stopped-early", seen, expected, cause, where=evidence.place("publish"), near_edge=near_edge)
-    speed = _steady(evidence)
-    cause = (
-        f"At angular.z {shown(speed[1])} rad/s a turn takes {2.0 * math.pi / abs(speed[1]):.1f} s."
-        if speed and speed[1]
-        else ""
-    )
-    return failed("too-short", seen, expected, cause, where=_line(evidence), near_edge=near_edge)
+        seen = f"The turtle drove {turns:.2f} of a turn, with {count(track.rests, 'stop')} on the way."
+        diagnosis, cause = "stops-and-goes", "A turtle stops when no command comes for 1 s."
+    elif seen_in.end_s(evidence.trial) - evidence.commands[-1].t_s > LIVES_S:
+        seen = f"The turtle drove {turns:.2f} of a turn; the last command came at {evidence.commands[-1].t_s:.1f} s."
+        diagnosis, cause = "stopped-early", "A turtle stops when no command comes for 1 s."
+    else:
+        speed = _steady(evidence)
+        turn_s = 2.0 * math.pi / abs(speed[1]) if speed and speed[1] else 0.0
+        cause = f"At angular.z {shown(speed[1])} rad/s a turn takes {turn_s:.1f} s." if speed and turn_s else ""
+        return failed("too-short", seen, expected, cause, where=_line(evidence), near_edge=near_edge)
+    return failed(diagnosis, seen, expected, cause, where=evidence.place("publish"), near_edge=near_edge)
 
 
 def _steady(evidence: Evidence) -> tuple[float, float] | None:
     """linear.x (m/s) and angular.z (rad/s) of the commands when they are all the same."""
-    found = {(command.linear[0], command.angular[2]) for command in seen_in.commands(evidence.trial)}
+    found = {(command.linear[0], command.angular[2]) for command in evidence.commands}
     return next(iter(found)) if len(found) == 1 else None
 
 
@@ -181,7 +171,7 @@ def _size(evidence: Evidence) -> str:
 
 
 def _all_zero(evidence: Evidence) -> str:
-    commands = seen_in.commands(evidence.trial)
+    commands = evidence.commands
     zero = commands and not any(command.linear[0] or command.angular[2] for command in commands)
     return "In every command linear.x and angular.z are 0." if zero else ""
 
@@ -198,9 +188,7 @@ def _wall_s(track: Track) -> float:
 
 def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     """No frame was clamped to the canvas; nothing is said of a turtle that never moved."""
-    from grader.checks.track import track_of
-
-    track = track_of(evidence.trial)
+    track = evidence.track
     if track.wall.any():
         seen = f"The turtle ran into a wall after {_wall_s(track):.1f} s."
         expected = "It stays clear of the walls all the time."

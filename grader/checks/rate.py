@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks import seen as seen_in
 from grader.checks.constants import number as constant
-from grader.checks.crash import crash_of, ended_early
+from grader.checks.crash import crash_of, end_seen, ended_early
 from grader.checks.kind import Kind, number
 from grader.checks.tolerance import Band
 from grader.outcome import Finding, Where, failed, passed
@@ -16,7 +16,6 @@ from grader.words import count
 
 if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
-    from grader.recording import Recording
 
 FEWEST = 3
 """Commands: with fewer there is at most one interval, and no rate to speak of."""
@@ -51,11 +50,11 @@ class Measured:
     rest_s: float
 
 
-def measure(recording: Recording) -> Measured:
+def measure(evidence: Evidence) -> Measured:
     """The arrivals of the commands before SIGINT; the mean is 0 when there are fewer than two."""
-    arrivals = tuple(command.t_s for command in seen_in.commands(recording))
+    arrivals = tuple(command.t_s for command in evidence.commands)
     intervals = tuple(later - earlier for earlier, later in pairwise(arrivals))
-    until = seen_in.end_s(recording)
+    until = seen_in.end_s(evidence.trial)
     if not arrivals:
         return Measured((), (), 0.0, until, until)
     mean = (arrivals[-1] - arrivals[0]) / len(intervals) if intervals else 0.0
@@ -65,7 +64,7 @@ def measure(recording: Recording) -> Measured:
 def rate(evidence: Evidence, params: Rate) -> Finding:
     """Commands arrive at the rate: on average, each one, from soon after the start until the end."""
     recording = evidence.trial
-    measured = measure(recording)
+    measured = measure(evidence)
     period = 1.0 / params.rate_hz
     expected = f"Every {period:.2f} s ({params.rate_hz:.1f} Hz)."
     if len(measured.arrivals) < FEWEST:
@@ -108,7 +107,7 @@ def _few(evidence: Evidence, measured: Measured, expected: str) -> Finding:
     crash = crash_of(evidence)
     seen = f"{count(amount, 'command')} arrived in {seen_in.end_s(evidence.trial):.0f} s."
     if crash is not None:
-        return failed("crash", f"{seen} {ended_early(evidence)}", expected, crash.meaning, where=crash.where)
+        return failed("crash", f"{seen} {end_seen(evidence)}", expected, crash.meaning, where=crash.where)
     where = evidence.place("publish")
     if amount == 1:
         cause = "publish is called once; a timer calls a method again and again."

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.crash import crash_of, ended_early
+from grader.checks.crash import crash_of, end_seen
 from grader.checks.kind import Kind, number
 from grader.checks.tolerance import Band
 from grader.outcome import Finding, failed, passed
@@ -43,9 +43,9 @@ def stop(evidence: Evidence, params: Stop) -> Finding:
 def _too_early(evidence: Evidence, expected: str) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
-        return failed("crash", ended_early(evidence), expected, crash.meaning, where=crash.where)
+        return failed("crash", end_seen(evidence), expected, crash.meaning, where=crash.where)
     cause = "" if evidence.code.calls("spin") else "rclpy.spin keeps a node running; it is called nowhere."
-    return failed("ended-early", ended_early(evidence), expected, cause, where=evidence.place("spin", "init"))
+    return failed("ended-early", end_seen(evidence), expected, cause, where=evidence.place("spin", "init"))
 
 
 STOP = Kind("stops", "trial", "The node stops on Ctrl-C", Stop, stop)

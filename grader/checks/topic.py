@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 from grader.checks import seen as seen_in
 from grader.checks.constants import evaluate, number
-from grader.checks.crash import crash_of, ended_early
+from grader.checks.crash import crash_of, end_seen
 from grader.checks.kind import Kind, text
 from grader.outcome import Finding, Where, failed, passed
 from grader.words import a_list, nearest, shorten
 
 if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
-    from grader.recording import Endpoint, Recording
+    from grader.recording import Endpoint
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,7 +33,7 @@ COMMANDS = Topic(topic="/turtle1/cmd_vel", type="geometry_msgs/msg/Twist")
 def publishes(evidence: Evidence, params: Topic) -> Finding:
     """Messages of the type arrived on the topic before SIGINT."""
     recording = evidence.trial
-    if _arrived(recording, params):
+    if _arrived(evidence, params):
         return passed(f"{params.type} arrives on {params.topic}.")
     publishers = seen_in.endpoints(recording, "publisher")
     on_topic = [publisher for publisher in publishers if publisher.topic == params.topic]
@@ -46,10 +46,11 @@ def publishes(evidence: Evidence, params: Topic) -> Finding:
     return _no_publisher(evidence, params)
 
 
-def _arrived(recording: Recording, params: Topic) -> bool:
+def _arrived(evidence: Evidence, params: Topic) -> bool:
+    recording = evidence.trial
     until = seen_in.end_s(recording)
     if params.topic == COMMANDS.topic and params.type == COMMANDS.type:
-        return bool(seen_in.commands(recording))
+        return bool(evidence.commands)
     return any(
         each.topic == params.topic and each.type == params.type and each.t_s < until for each in recording.messages
     )
@@ -79,7 +80,7 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
 def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
-        return failed("crash", ended_early(evidence), _expected(params), crash.meaning, where=crash.where)
+        return failed("crash", end_seen(evidence), _expected(params), crash.meaning, where=crash.where)
     subscribed = [each for each in seen_in.endpoints(evidence.trial, "subscription") if each.topic == params.topic]
     if subscribed:
         cause = "A subscription only listens; create_publisher makes what sends."
@@ -87,7 +88,7 @@ def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
         return failed(
             "subscription-instead", f"The node subscribes to {params.topic}.", _expected(params), cause, where=where
         )
-    seen = ended_early(evidence) or "The node has no publisher."
+    seen = end_seen(evidence) or "The node has no publisher."
     cause = "" if evidence.code.calls("create_publisher") else "create_publisher is called nowhere."
     return failed("no-publisher", seen, _expected(params), cause, where=evidence.place("create_publisher"))
 
@@ -97,9 +98,9 @@ def _silent(evidence: Evidence, params: Topic) -> Finding:
     seen = f"The publisher on {params.topic} is there, but no message came."
     crash = crash_of(evidence)
     if crash is not None:
-        return failed("crash", ended_early(evidence), _expected(params), crash.meaning, where=crash.where)
+        return failed("crash", end_seen(evidence), _expected(params), crash.meaning, where=crash.where)
     cause, diagnosis, where = _why_silent(evidence)
-    return failed(diagnosis, f"{seen} {ended_early(evidence)}".rstrip(), _expected(params), cause, where=where)
+    return failed(diagnosis, f"{seen} {end_seen(evidence)}".rstrip(), _expected(params), cause, where=where)
 
 
 def _why_silent(evidence: Evidence) -> tuple[str, str, Where | None]:

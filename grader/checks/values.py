@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks import seen as seen_in
 from grader.checks.kind import Kind, number
 from grader.checks.tolerance import Band
 from grader.outcome import Finding, Where, failed, passed
@@ -52,31 +52,38 @@ class Values:
 
 def values(evidence: Evidence, params: Values) -> Finding:
     """Every command before SIGINT says what it should, in all six fields."""
-    commands = seen_in.commands(evidence.trial)
     bands = params.bands
-    near = any(band.near(value) for command in commands for band, value in zip(bands, _six(command), strict=True))
-    right = a_list(
-        [f"{field} {shown(value)}{_unit(field)}" for field, value in zip(FIELDS, params.wanted, strict=True) if value]
-    )
-    expected = f"{right or 'All'}, {'all other fields' if right else 'fields'} 0."
-    wrong = [_six(command) for command in commands if not _all_hold(bands, _six(command))]
-    if not commands:
+    amounts = Counter(_six(command) for command in evidence.commands)
+    near = any(band.near(value) for six in amounts for band, value in zip(bands, six, strict=True))
+    expected = _expected(params.wanted)
+    wrong = [six for six in amounts if not _all_hold(bands, six)]
+    if not amounts:
         return failed("no-commands", "No command arrived.", expected)
     if not wrong:
         return passed(f"Every command says {expected[:-1]}.", near_edge=near)
     first = wrong[0]
     off = [index for index, band in enumerate(bands) if not band.holds(first[index])]
-    said = a_list(
-        [f"{FIELDS[index]} {shown(first[index], params.wanted[index])}{_unit(FIELDS[index])}" for index in off]
-    )
+    said = a_list([_said(index, shown(first[index], params.wanted[index])) for index in off])
+    total, bad = sum(amounts.values()), sum(amounts[six] for six in wrong)
     amount = (
-        f"All {len(commands)} commands" if len(wrong) == len(commands) else f"{len(wrong)} of {len(commands)} commands"
+        f"All {total} commands were" if bad == total else f"{bad} of {total} commands {'was' if bad == 1 else 'were'}"
     )
-    seen = f"{amount} were wrong: {said}{'' if len({str(six) for six in wrong}) == 1 else ' in the first of them'}."
+    alike = len({str(six) for six in wrong}) == 1
+    seen = f"{amount} wrong: {said}{'' if alike else ' in the first of them'}."
     diagnosis, cause, field = _why(first, params.wanted, off)
-    if diagnosis == "wrong-value" and len(wrong) < len(commands):
+    if diagnosis == "wrong-value" and bad < total:
         diagnosis, cause = "values-change", "The other commands were right: something changes the values on the way."
     return failed(diagnosis, seen, expected, cause, where=_line(evidence, field), near_edge=near)
+
+
+def _expected(wanted: Six) -> str:
+    right = a_list([_said(index, shown(value)) for index, value in enumerate(wanted) if value])
+    return f"{right}, all other fields 0." if right else "All fields 0."
+
+
+def _said(index: int, value: str) -> str:
+    """A field with its value and unit."""
+    return f"{FIELDS[index]} {value} {'m/s' if FIELDS[index].startswith('linear') else 'rad/s'}"
 
 
 def _six(command: Command) -> Six:
@@ -85,10 +92,6 @@ def _six(command: Command) -> Six:
 
 def _all_hold(bands: tuple[Band, ...], six: Six) -> bool:
     return all(band.holds(value) for band, value in zip(bands, six, strict=True))
-
-
-def _unit(field: str) -> str:
-    return " m/s" if field.startswith("linear") else " rad/s"
 
 
 def _line(evidence: Evidence, field: str) -> Where | None:

@@ -13,7 +13,6 @@ from PIL import Image, ImageDraw, ImageFont
 
 from grader.checks import seen
 from grader.checks.path import CircleParams, expected_centre
-from grader.checks.track import Track, track_of
 from grader.errors import UsageError
 from grader.outcome import Report, Status
 from grader.words import printable
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.checks.evidence import Evidence
+    from grader.checks.track import Track
 
 Point = tuple[float, float]
 Rgb = tuple[int, int, int]
@@ -101,18 +101,18 @@ def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
 
 
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
-    """The picture; where there is no way to draw, it says so."""
+    """The picture as an image; where there is no way to draw, it says so."""
     page = Image.new("RGB", (LEFT + SIDE_PX + RIGHT, TOP + SIDE_PX + BOTTOM), PAPER)
     canvas = Canvas.empty()
     params = _circle_params(evidence)
     legend, facts, empty = _draw_way(evidence, canvas, params)
     page.paste(canvas.image.resize((SIDE_PX, SIDE_PX), Image.Resampling.BOX), (LEFT, TOP))
-    draw = ImageDraw.Draw(page)
-    _axes(draw)
-    _title(draw, report)
-    _legend(draw, legend, facts)
+    pen = ImageDraw.Draw(page)
+    _axes(pen)
+    _title(pen, report)
+    _legend(pen, legend, facts)
     if empty:
-        _middle(draw, empty)
+        _middle(pen, empty)
     return page
 
 
@@ -132,7 +132,7 @@ def _draw_way(evidence: Evidence, canvas: Canvas, params: CircleParams | None) -
     recording = evidence.recording
     if recording is None:
         return [], [], "The node was not run."
-    track = track_of(recording)
+    track = evidence.track
     legend: Legend = []
     facts: list[str] = []
     points = _finite(track)
@@ -152,7 +152,7 @@ def _draw_way(evidence: Evidence, canvas: Canvas, params: CircleParams | None) -
         facts.append(f"centre ({fitted.x:.2f}, {fitted.y:.2f}) m")
         facts.append(f"off the circle {fitted.rms:.3f} m RMS")
         facts.append(f"{abs(track.turns):.2f} turns {'counter-clockwise' if track.turns > 0 else 'clockwise'}")
-    commands = seen.commands(recording)
+    commands = evidence.commands
     ticks = [command.t_s for command in commands[:: len(commands) // MOST_TICKS + 1]]
     if moved and ticks:
         _ticks(canvas, track, ticks)
