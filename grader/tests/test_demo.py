@@ -26,8 +26,8 @@ def test_tells_the_seconds_of_a_set_up_of_this_command_only(tmp_path: Path, monk
 
 def test_reads_the_stages_of_the_grading(tmp_path: Path) -> None:
     report = tmp_path / "report.json"
-    report.write_text(json.dumps({"seconds": {"build": 1.5, "trial": 2}}))
-    assert demo.grading_seconds(report) == [("build", 1.5), ("trial", 2.0)]
+    report.write_text(json.dumps({"seconds": {"build": 1.5, "trial": 2, "run": 1, "in all": 4}}))
+    assert demo.grading_seconds(report) == [("colcon build", 1.5), ("simulator and node", 2.0)]
 
 
 @pytest.mark.parametrize(("code", "words"), [(3, "grader doctor"), (1, "the course's fault, not yours")])
