@@ -29,6 +29,9 @@ _MOST_AT_ONCE = 200
 def main(args: Sequence[str] | None = None) -> int:
     """Run turtlesim; return the exit code: 0 after Ctrl-C, 2 for arguments that are wrong."""
     arguments = list(sys.argv if args is None else ["turtlesim_node", *args])
+    stop = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
     try:
         options = _options(remove_ros_args(arguments)[1:])
         # rclpy's own handler would shut the context down in the middle of a frame.
@@ -37,9 +40,6 @@ def main(args: Sequence[str] | None = None) -> int:
     except (InvalidParameterValueException, InvalidParameterTypeException, RuntimeError) as error:
         rclpy.try_shutdown()
         return _wrong(_first_line(error))
-    stop = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop.set())
     spin(node, stop)
     rclpy.try_shutdown()
     if options.image is not None:

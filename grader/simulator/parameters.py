@@ -39,6 +39,9 @@ def declare(node: Node) -> None:
         node.declare_parameter(
             f"qos_overrides./parameter_events.publisher.{policy}", setting, descriptor, ignore_override=True
         )
+    # A parameter of every node, which rclcpp describes in these words and rclpy in others.
+    every_nodes = node.describe_parameter("start_type_description_service")
+    every_nodes.description = "Start the ~/get_type_description service for this node."
 
 
 def refusal(parameters: Iterable[Parameter]) -> SetParametersResult | None:
