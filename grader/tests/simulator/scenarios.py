@@ -233,8 +233,8 @@ def rotations() -> dict[str, Any]:
         feedback: list[float] = []
         status, delta = rig.result(rig.goal(0.5, feedback))
         found: dict[str, Any] = {"status": status, "delta": delta}
-        rig.until(lambda: abs(feedback[-1]) < 0.02)
-        found["smaller and smaller"] = all(a > b for a, b in itertools.pairwise(feedback))
+        # The last of it may come after the result, when the client listens no more.
+        found["feedback"] = len(feedback) > 5 and all(a > b for a, b in itertools.pairwise(feedback))
         # The goals below turn for seconds: they are still going on when something happens to them.
         goal = rig.goal(3.0, [])
         cancelled = goal.cancel_goal_async()

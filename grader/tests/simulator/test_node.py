@@ -140,7 +140,7 @@ def test_rotate_absolute(in_ros: InRos) -> None:
     found = in_ros.run("simulator.scenarios:rotations").result
     assert found["status"] == "succeeded"
     assert found["delta"] == pytest.approx(-0.5, abs=0.021)
-    assert found["smaller and smaller"]
+    assert found["feedback"]
     assert found["cancel"] == "canceled"
     assert (found["second goal"], found["command"], found["reset"]) == ("aborted", "aborted", "aborted")
     assert found["after kill"] == "turtle1"
