@@ -32,9 +32,8 @@ if TYPE_CHECKING:
 
 ClockChoice = Literal["auto", "simulated", "wall"]
 
-STARVED_S = 0.04
-"""A wall-clock trial in which the simulator was later than this says little about the node."""
 WALL_TRIALS = 3
+"""How often a wall-clock trial is made that failed while the machine stalled."""
 
 
 @dataclass(frozen=True)
@@ -154,17 +153,17 @@ class _Grading:
         return self._not_starved(evidence, why, here, extra)
 
     def _not_starved(self, evidence: Evidence, why: str, here: Ros, extra: Path | None) -> Evidence:
-        """Repeat a wall-clock trial that failed while the machine had no time for it; the least late one counts."""
+        """Repeat a wall-clock trial that failed while the machine stalled; the one with the least stalls counts."""
         for _ in range(WALL_TRIALS - 1):
             recording = evidence.recording
             assert recording is not None
-            if recording.lag_s <= STARVED_S or all(o.status is Status.PASSED for o in judge(evidence) if not o.advice):
+            if not recording.stalls or all(o.status is Status.PASSED for o in judge(evidence) if not o.advice):
                 break
             self.tell("The machine was too busy for wall time: once more")
             with self._trial("wall", here, extra) as trial:
                 again = self._run(evidence, trial, "wall", why)
             assert again.recording is not None
-            evidence = min(evidence, again, key=_lag_s)
+            evidence = min(evidence, again, key=_stalled_s)
         return evidence
 
     def _run(self, evidence: Evidence, trial: Trial, clock: ClockName, why: str) -> Evidence:
@@ -205,6 +204,6 @@ class _Grading:
             self.seconds[stage] = self.seconds.get(stage, 0.0) + time.monotonic() - begun
 
 
-def _lag_s(evidence: Evidence) -> float:
+def _stalled_s(evidence: Evidence) -> float:
     assert evidence.recording is not None
-    return evidence.recording.lag_s
+    return sum(end - begin for begin, end in evidence.recording.stalls)

@@ -12,6 +12,9 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+AFTER_STALL_S = 0.05
+"""How long after a stall things still catch up (s)."""
+
 ClockName = Literal["simulated", "wall"]
 Floats = npt.NDArray[np.float64]
 
@@ -152,8 +155,12 @@ class Recording:
     """Why simulated time may have judged wrongly here; empty when it may be trusted."""
     seconds: dict[str, float] = field(default_factory=dict)
     """Wall time of the trial's parts: discovery, run, stop (s)."""
-    lag_s: float = 0.0
-    """The longest time by which the simulator was late in a wall-clock trial (s): how starved the machine was."""
+    stalls: tuple[tuple[float, float], ...] = ()
+    """When the machine gave simulator or node no time to run in a wall-clock trial: (from, to) on its clock (s)."""
+
+    def stalled(self, t_s: float) -> bool:
+        """Whether an arrival at this time says nothing about the node: it fell in a stall, or right after one."""
+        return any(begin <= t_s <= end + AFTER_STALL_S for begin, end in self.stalls)
 
 
 def frames_of(rows: Iterable[tuple[float, float, float, float, float, float, bool]]) -> Frames:
@@ -205,6 +212,7 @@ def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> 
             "own_nodes": tuple(data["own_nodes"]),
             "interventions": tuple(data["interventions"]),
             "doubts": tuple(data["doubts"]),
+            "stalls": tuple((begin, end) for begin, end in data["stalls"]),
         }
     )
 

@@ -11,7 +11,7 @@ from grader.checks.constants import number as constant
 from grader.checks.crash import crash_of, end_seen, ended_early
 from grader.checks.kind import Kind, number
 from grader.checks.tolerance import Band
-from grader.outcome import Finding, Where, failed, passed
+from grader.outcome import Finding, Status, Where, failed, passed
 from grader.words import count
 
 if TYPE_CHECKING:
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 FEWEST = 3
 """Commands: with fewer there is at most one interval, and no rate to speak of."""
-MAX_LAG_S = 0.1
-"""Intervals at wall time are forgiven what the simulator itself was late by, up to this."""
+TRUSTED = 0.5
+"""A wall-clock trial in which the machine stalled judges the other intervals, if they are at least this share."""
 SAME = 0.1
 """A number of the source explains a measured interval when they differ by less than this share."""
 
@@ -41,10 +41,16 @@ class Rate:
 
 @dataclass(frozen=True)
 class Measured:
-    """Arrivals (s): intervals between them, their mean, the wait before the first and after the last."""
+    """Arrivals (s): intervals between them, their mean, the wait before the first and after the last.
+
+    `intervals` and `mean_s` leave out those that a stall of the machine made longer or shorter; `trusted` is the share
+    of those that were not left out.
+    """
 
     arrivals: tuple[float, ...]
     intervals: tuple[float, ...]
+    begins: tuple[float, ...]
+    trusted: float
     mean_s: float
     first_s: float
     rest_s: float
@@ -52,35 +58,42 @@ class Measured:
 
 def measure(evidence: Evidence) -> Measured:
     """The arrivals of the commands before SIGINT; the mean is 0 when there are fewer than two."""
+    recording = evidence.trial
     arrivals = tuple(command.t_s for command in evidence.commands)
-    intervals = tuple(later - earlier for earlier, later in pairwise(arrivals))
-    until = seen_in.end_s(evidence.trial)
+    until = seen_in.end_s(recording)
     if not arrivals:
-        return Measured((), (), 0.0, until, until)
-    mean = (arrivals[-1] - arrivals[0]) / len(intervals) if intervals else 0.0
-    return Measured(arrivals, intervals, mean, arrivals[0], until - arrivals[-1])
+        return Measured((), (), (), 1.0, 0.0, until, until)
+    pairs = list(pairwise(arrivals))
+    trusted = [pair for pair in pairs if not any(recording.stalled(t_s) for t_s in pair)]
+    intervals = tuple(later - earlier for earlier, later in trusted)
+    mean = sum(intervals) / len(intervals) if intervals else 0.0
+    share = len(trusted) / len(pairs) if pairs else 1.0
+    begins = tuple(earlier for earlier, _ in trusted)
+    return Measured(arrivals, intervals, begins, share, mean, arrivals[0], until - arrivals[-1])
 
 
 def rate(evidence: Evidence, params: Rate) -> Finding:
     """Commands arrive at the rate: on average, each one, from soon after the start until the end."""
-    recording = evidence.trial
     measured = measure(evidence)
     period = 1.0 / params.rate_hz
     expected = f"Every {period:.2f} s ({params.rate_hz:.1f} Hz)."
     if len(measured.arrivals) < FEWEST:
         return _few(evidence, measured, f"A command every {period:.2f} s ({params.rate_hz:.1f} Hz) until Ctrl-C.")
+    if measured.trusted < TRUSTED:
+        return Finding(
+            Status.ERROR, "The machine was too busy to measure a rate in wall time. Try again when it is not."
+        )
     share = params.tolerance_percent / 100.0
     mean_hz = 1.0 / measured.mean_s if measured.mean_s > 0.0 else float("inf")
     mean = Band.around(params.rate_hz, params.rate_hz * share)
-    slack = min(recording.lag_s, MAX_LAG_S) if recording.clock == "wall" else 0.0
-    each = Band.around(period, period - params.min_interval_s + slack, params.max_interval_s - period + slack)
+    each = Band.around(period, period - params.min_interval_s, params.max_interval_s - period)
     first = Band.at_most(params.first_within_s)
     near = mean.near(mean_hz) or each.near(*_extremes(measured), measured.rest_s) or first.near(measured.first_s)
     if not mean.holds(mean_hz):
         return _wrong_mean(evidence, measured, params, expected, near_edge=near)
     worst = max(measured.intervals, key=lambda interval: abs(interval - period))
     if not all(each.holds(interval) for interval in measured.intervals):
-        at = measured.arrivals[measured.intervals.index(worst)]
+        at = measured.begins[measured.intervals.index(worst)]
         seen = f"Commands came unevenly: {worst:.2f} s passed between two of them, {at:.1f} s after the start."
         wanted = (
             f"Every {period:.2f} s, each interval from {params.min_interval_s:.2f} to {params.max_interval_s:.2f} s."
@@ -93,7 +106,7 @@ def rate(evidence: Evidence, params: Rate) -> Finding:
         return failed(
             "late-start", seen, wanted, _late_cause(evidence), where=evidence.place("sleep", "publish"), near_edge=near
         )
-    if not measured.rest_s <= params.max_interval_s + slack:
+    if not measured.rest_s <= params.max_interval_s:
         return _stopped(evidence, measured, expected, near_edge=near)
     return passed(f"Commands arrive every {period:.2f} s ({params.rate_hz:.1f} Hz).", near_edge=near)
 

@@ -84,7 +84,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             end=node.end(sigint_s),
             interventions=tuple(stage.interventions),
             doubts=doubts,
-            lag_s=stage.lag_s,
+            stalls=tuple(stage.stalls),
             seconds=stage.seconds,
         )
         _say(answers, {"recording": to_json(recording)})

@@ -42,7 +42,7 @@ class Stage:
         self.executor.add_node(self.recorder)
         self.frames: list[tuple[float, float, float, float, float, float, bool]] = []
         self.doubts: list[str] = []
-        self.lag_s = 0.0
+        self.stalls: list[tuple[float, float]] = []
         self.seconds: dict[str, float] = {}
         self._since = time.monotonic()
 

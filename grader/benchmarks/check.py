@@ -1,0 +1,84 @@
+"""What `grader check` costs, in F: a bare colcon build of the package and a bare process with one rclpy node.
+
+    python -m grader.benchmarks.check [--times N] [--submission FOLDER]
+
+Everything is measured in one run on the same machine, alternating, so that a busy moment strikes all alike.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+
+from grader import underlay
+from grader.benchmarks.measure import Cost, cost
+from grader.ros import environment, find_ros
+from grader.submission import open_submission, write_copy
+
+_ROOT = Path(__file__).resolve().parents[2]
+_NODE = "import rclpy; rclpy.init(); node = rclpy.create_node('bare'); node.destroy_node(); rclpy.shutdown()"
+_COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
+_GRADER = str(Path(sys.executable).with_name("grader"))
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
+    parser.add_argument("--submission", type=Path, default=_ROOT / "solutions/03-circle-publisher")
+    asked = parser.parse_args()
+    costs: dict[str, list[Cost]] = {}
+    stages: dict[str, list[float]] = {}
+    for _ in range(asked.times):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, measured in _round(asked.submission, Path(folder), stages).items():
+                costs.setdefault(name, []).append(measured)
+    _print(costs, stages)
+
+
+def _round(submission: Path, folder: Path, stages: dict[str, list[float]]) -> dict[str, Cost]:
+    here = find_ros()
+    env = environment(here, home=folder, underlay=underlay.ensure(here))
+    opened = open_submission(submission)
+    write_copy(opened, folder / "ws" / "src" / opened.package_dir.name)
+    python = str(here.python)
+    report = folder / "report.json"
+    check = [_GRADER, "check", str(submission), "--json", str(report)]
+    measured = {
+        "colcon build": cost([python, "-c", _COLCON, "build", "--base-paths", "src"], env=env, cwd=folder / "ws"),
+        "rclpy node": cost([python, "-c", _NODE], env=env),
+        "check, simulated": cost([*check, "--clock", "simulated"]),
+    }
+    for stage, seconds in json.loads(report.read_text())["seconds"].items():
+        stages.setdefault(stage, []).append(seconds)
+    measured["check, wall"] = cost([*check, "--clock", "wall"])
+    measured["grader --help"] = cost([_GRADER, "--help"])
+    return measured
+
+
+def _print(costs: dict[str, list[Cost]], stages: dict[str, list[float]]) -> None:
+    middle = {
+        name: Cost(*(statistics.median(getattr(c, key) for c in of) for key in ("wall_s", "cpu_s", "peak_mb")))
+        for name, of in costs.items()
+    }
+    f_s = middle["colcon build"].wall_s + middle["rclpy node"].wall_s
+    print(f"F = {f_s:.2f} s wall (medians of {len(costs['colcon build'])})\n")
+    print(f"{'':20}{'wall s':>8}{'wall F':>8}{'CPU s':>8}{'CPU F':>8}{'peak MB':>9}")
+    for name, one in middle.items():
+        figures = (one.wall_s, one.wall_s / f_s, one.cpu_s, one.cpu_s / f_s)
+        print(f"{name:20}" + "".join(f"{figure:8.2f}" for figure in figures) + f"{one.peak_mb:9.0f}")
+    print("\nshare of a simulated check")
+    whole = statistics.median(stages.pop("in all"))
+    trial = statistics.median(stages.pop("trial"))
+    for stage, seconds in stages.items():
+        print(f"{stage:20}{statistics.median(seconds):8.2f}{statistics.median(seconds) / whole:8.0%}")
+    print(f"{'(trial in all)':20}{trial:8.2f}{trial / whole:8.0%}")
+    print(f"{'in all':20}{whole:8.2f}")
+
+
+if __name__ == "__main__":
+    main()

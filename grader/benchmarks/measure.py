@@ -1,0 +1,73 @@
+"""Measure a command and all that comes of it: wall time, CPU time, peak memory of its own process."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import resource
+import statistics
+import subprocess
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+_PR_SET_CHILD_SUBREAPER = 36
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Wall and CPU seconds of a command with all its descendants, and the peak memory of the command itself (MB)."""
+
+    wall_s: float
+    cpu_s: float
+    peak_mb: float
+
+
+def cost(argv: Sequence[str], *, env: Mapping[str, str] | None = None, cwd: Path | None = None) -> Cost:
+    """Run a command to its end.
+
+    Raises:
+        RuntimeError: it failed.
+    """
+    # Orphans become ours: what a sandbox leaves to be reaped is counted too.
+    ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    begun = time.monotonic()
+    with subprocess.Popen(argv, env=env, cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as child:
+        peak_mb = 0.0
+        while child.poll() is None:
+            peak_mb = max(peak_mb, _peak_mb(child.pid))
+            time.sleep(0.02)
+        wall_s = time.monotonic() - begun
+        assert child.stdout is not None
+        said = child.stdout.read()
+    with suppress(ChildProcessError):
+        while True:
+            os.waitpid(-1, 0)
+    if child.returncode != 0:
+        message = f"{' '.join(argv)} ended with {child.returncode}:\n{said}"
+        raise RuntimeError(message)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return Cost(wall_s, cpu_s, peak_mb)
+
+
+def median(run: Callable[[], Cost], times: int) -> Cost:
+    """Run `times` times; the median of each figure."""
+    costs = [run() for _ in range(times)]
+    return Cost(*(statistics.median(getattr(c, name) for c in costs) for name in ("wall_s", "cpu_s", "peak_mb")))
+
+
+def _peak_mb(pid: int) -> float:
+    try:
+        for line in Path(f"/proc/{pid}/status").read_text().splitlines():
+            if line.startswith("VmHWM:"):
+                return int(line.split()[1]) / 1024
+    except (FileNotFoundError, ProcessLookupError):
+        pass
+    return 0.0

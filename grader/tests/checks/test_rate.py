@@ -1,0 +1,131 @@
+from __future__ import annotations
+
+from itertools import accumulate
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.outcome import Finding, Status
+from grader.tests.checks.made import NODE_FILE, every, evidence, finding, node, recording
+from grader.tests.checks.shapes import SHAPES
+
+TIMER = "self.create_timer(0.5, self.send)"
+
+
+def rate(shape: str, *changes: tuple[str, str]) -> Finding:
+    return finding("rate", evidence(SHAPES[shape](), node(*changes)))
+
+
+@pytest.mark.parametrize(
+    ("shape", "diagnosis", "seen"),
+    [
+        ("one hertz", "wrong-rate", "Commands arrived every 1.00 s (1.0 Hz)."),
+        ("four hertz", "wrong-rate", "Commands arrived every 0.25 s (4.0 Hz)."),
+        ("ten kilohertz", "wrong-rate", "98999 commands arrived, one every 0.10 ms."),
+        ("once", "published-once", "1 command arrived in 10 s."),
+        ("twice", "too-few-commands", "2 commands arrived in 10 s."),
+        ("late", "late-start", "The first command came 3.7 s after the start."),
+        ("three quarters", "stopped-early", "The last command came at 4.0 s, 6.0 s before the end."),
+        ("crash", "crash", "The last command came at 4.0 s, 6.0 s before the end."),
+    ],
+)
+def test_each_wrong_rhythm_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:
+    found = rate(shape)
+    assert (found.status, found.diagnosis, found.seen) == (Status.FAILED, diagnosis, seen)
+
+
+def test_the_right_rate_is_told_as_the_nominal_one() -> None:
+    found = rate("good")
+    assert (found.status, found.seen) == (Status.PASSED, "Commands arrive every 0.50 s (2.0 Hz).")
+    assert not found.near_edge
+
+
+def test_an_uneven_rhythm_names_the_worst_interval() -> None:
+    found = rate("uneven")
+    assert found.diagnosis == "uneven-rate"
+    assert found.seen.startswith("Commands came unevenly: 0.71 s passed between two of them")
+
+
+def test_a_timer_with_that_period_is_pointed_at() -> None:
+    found = rate("one hertz", (TIMER, "self.create_timer(1.0, self.send)"))
+    assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:10")
+
+
+def test_a_period_by_a_name_is_found() -> None:
+    found = rate(
+        "one hertz",
+        (TIMER, "self.create_timer(self.period, self.send)"),
+        ("def send", "period = 1 / 1\n\n    def send"),
+    )
+    assert found.diagnosis == "wrong-rate"
+    found = rate(
+        "one hertz", (f"self.timer = {TIMER}", f"period = 2 / 2\n        self.timer = {TIMER.replace('0.5', 'period')}")
+    )
+    assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:11")
+
+
+def test_the_rate_given_as_the_period_is_told() -> None:
+    found = rate("two seconds", (TIMER, "self.create_timer(2.0, self.send)"))
+    assert found.diagnosis == "rate-for-period"
+
+
+def test_a_sleep_in_the_timers_method_is_told() -> None:
+    found = rate("one hertz", ("        msg = Twist()", "        time.sleep(0.6)\n        msg = Twist()"))
+    assert (found.diagnosis, str(found.where)) == ("sleep-in-callback", f"{NODE_FILE}:13")
+
+
+def test_a_sleep_without_a_timer_is_told() -> None:
+    found = rate("one hertz", (f"self.timer = {TIMER}", "time.sleep(1.0)"))
+    assert (found.diagnosis, found.cause) == ("sleep-period", "Between two commands the node sleeps 1 s.")
+
+
+@pytest.mark.parametrize(
+    ("period_s", "near", "status"),
+    [
+        (0.5, False, "passed"),
+        (0.478, True, "passed"),
+        (0.472, True, "failed"),
+        (0.46, False, "failed"),
+        (0.54, False, "failed"),
+    ],
+)
+def test_a_mean_near_the_edge_is_for_wall_time_to_judge(period_s: float, near: bool, status: str) -> None:
+    found = finding("rate", evidence(recording(every(period_s, 2.0, 1.0))))
+    assert (found.near_edge, found.status.value) == (near, status)
+
+
+@given(st.lists(st.floats(0.42, 0.62), min_size=15, max_size=20))
+def test_the_mean_from_first_to_last_arrival_decides_where_each_interval_is_allowed(intervals: list[float]) -> None:
+    times = list(accumulate(intervals, initial=0.5))
+    made = recording([(t_s, 2.0, 1.0) for t_s in times], sigint_t_s=times[-1] + 0.5)
+    mean_hz = len(intervals) / (times[-1] - times[0])
+    found = finding("rate", evidence(made))
+    assert (found.status is Status.PASSED) == (1.9 <= mean_hz <= 2.1)
+
+
+@given(st.one_of(st.floats(0.05, 1.89), st.floats(2.11, 40.0)))
+def test_every_rate_outside_the_tolerance_fails(rate_hz: float) -> None:
+    times = [index / rate_hz for index in range(1, int(9.99 * rate_hz) + 1)]
+    found = finding("rate", evidence(recording([(t_s, 2.0, 1.0) for t_s in times])))
+    assert found.status is Status.FAILED
+
+
+def test_what_a_stall_of_the_machine_delayed_is_not_held_against_the_node() -> None:
+    times = [(0.5 * index + (0.18 if index == 9 else 0.0), 2.0, 1.0) for index in range(1, 20)]
+    attentive = recording(times, clock="wall")
+    stalled = recording(times, clock="wall", stalls=((4.4, 4.67),))
+    elsewhere = recording(times, clock="wall", stalls=((7.1, 7.4),))
+    assert finding("rate", evidence(attentive)).diagnosis == "uneven-rate"
+    assert finding("rate", evidence(stalled)).status is Status.PASSED
+    assert finding("rate", evidence(elsewhere)).diagnosis == "uneven-rate"
+
+
+def test_a_machine_that_stalls_all_the_time_judges_no_rate() -> None:
+    times = [(0.5 * index, 2.0, 1.0) for index in range(1, 20)]
+    found = finding("rate", evidence(recording(times, clock="wall", stalls=((0.0, 8.0),))))
+    assert found.status is Status.ERROR
+
+
+def test_a_command_after_ctrl_c_is_not_counted() -> None:
+    assert rate("more after Ctrl-C").status is Status.PASSED
