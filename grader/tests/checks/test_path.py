@@ -1,0 +1,122 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from grader.checks.path import CircleParams, expected_centre
+from grader.outcome import Finding, Status
+from grader.recording import Pose
+from grader.tests.checks.made import every, evidence, finding, node, recording
+from grader.tests.checks.shapes import SHAPES
+
+
+def circle(shape: str) -> Finding:
+    return finding("circle", evidence(SHAPES[shape]()))
+
+
+@pytest.mark.parametrize(
+    "shape", ["good", "good elsewhere", "late", "uneven", "one hertz", "four hertz", "more after Ctrl-C"]
+)
+def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
+    found = circle(shape)
+    assert (found.status, found.diagnosis) == (Status.PASSED, None)
+    assert found.seen == "The turtle drove a circle of radius 2.0 m, counter-clockwise, at least 1 turn."
+
+
+@pytest.mark.parametrize(
+    ("shape", "diagnosis", "seen"),
+    [
+        ("clockwise", "wrong-sense", "The turtle drove its circle clockwise."),
+        ("radius 2.2", "wrong-radius", "The circle's radius is 2.2 m."),
+        ("swapped", "wrong-radius", "The circle's radius is 0.5 m."),
+        ("three quarters", "stopped-early", "The turtle drove 0.72 of a turn; the last command came at 4.0 s."),
+        ("half speed", "too-short", "The turtle drove 0.76 of a turn."),
+        ("stops and goes", "stops-and-goes", "The turtle drove 0.64 of a turn, with 3 stops on the way."),
+        ("crash", "ended-early", "The turtle drove 0.72 of a turn."),
+        (
+            "square",
+            "polygon",
+            "The way is 5 straight sides with corners; it strays 0.13 m (RMS) from the nearest circle.",
+        ),
+        ("straight on", "straight-line", "The turtle drove straight on."),
+        ("turns on the spot", "turns-on-the-spot", "The turtle turned on the spot."),
+        ("all zero", "not-moving", "The turtle did not move."),
+        ("no messages", "not-moving", "The turtle did not move."),
+        ("wall", "wall", "The turtle ran into a wall after 1.7 s."),
+        ("straight into the wall", "wall", "The turtle ran into a wall after 3.3 s."),
+        ("spiral", "not-round", "The way is not round: it strays 0.28 m (RMS) from the nearest circle."),
+        ("beside its place", "wrong-centre", "The circle is right in size, but lies 0.78 m beside its place."),
+        ("nan", "not-a-number", "The turtle's position became NaN (not a number)."),
+        ("infinity", "not-a-number", "The turtle's position became NaN (not a number)."),
+        ("teleported", "intervention", "Something moved the turtle by other means: teleport_absolute."),
+    ],
+)
+def test_each_other_way_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:
+    found = circle(shape)
+    assert (found.status, found.diagnosis, found.seen) == (Status.FAILED, diagnosis, seen)
+
+
+def test_a_polygon_with_sides_nearly_as_short_as_steps_fails_too() -> None:
+    assert circle("many sides").diagnosis == "polygon"
+
+
+def test_the_reason_for_the_size_is_what_was_commanded() -> None:
+    found = circle("radius 2.2")
+    assert found.cause == "The radius is linear.x divided by angular.z: 2.2 / 1.0 = 2.2 m."
+    assert circle("wall").cause == "The radius is linear.x divided by angular.z: 6.0 / 1.0 = 6.0 m."
+    assert circle("straight into the wall").cause == "angular.z is 0, so the turtle drives straight on."
+
+
+def test_points_at_the_line_that_turns() -> None:
+    assert str(circle("clockwise").where) == "my_robot_controller/draw_circle.py:15"
+    keywords = node(("msg = Twist()", "msg = Twist(angular=Vector3(z=-1.0))"), ("        msg.angular.z = 1.0\n", ""))
+    found = finding("circle", evidence(SHAPES["clockwise"](), keywords))
+    assert str(found.where) == "my_robot_controller/draw_circle.py:13"
+
+
+@pytest.mark.parametrize(
+    ("linear", "near", "status"),
+    [
+        (2.0, False, "passed"),
+        (2.045, True, "passed"),
+        (2.055, True, "failed"),
+        (2.2, False, "failed"),
+        (1.955, True, "passed"),
+    ],
+)
+def test_a_radius_near_the_edge_is_for_wall_time_to_judge(linear: float, near: bool, status: str) -> None:
+    found = finding("circle", evidence(recording(every(0.5, linear, 1.0))))
+    assert (found.near_edge, found.status.value) == (near, status)
+
+
+@pytest.mark.parametrize(
+    ("until_s", "near", "status"), [(5.5, True, "failed"), (6.5, True, "passed"), (8.0, False, "passed")]
+)
+def test_a_way_that_is_just_long_enough_is_for_wall_time_to_judge(until_s: float, near: bool, status: str) -> None:
+    found = finding("circle", evidence(recording(every(0.5, 2.0, 1.0, until_s=until_s))))
+    assert (found.near_edge, found.status.value) == (near, status)
+
+
+def test_the_centre_lies_to_the_left_of_the_start_and_clockwise_to_the_right() -> None:
+    start = Pose(3.0, 4.0, math.pi / 2)
+    assert expected_centre(start, CircleParams(radius_m=2.0)) == pytest.approx((1.0, 4.0))
+    assert expected_centre(start, CircleParams(radius_m=2.0, sense="clockwise")) == pytest.approx((5.0, 4.0))
+
+
+def test_driving_backwards_round_the_same_centre_is_clockwise() -> None:
+    found = finding("circle", evidence(recording(every(0.5, -2.0, -1.0))))
+    assert found.diagnosis == "wrong-sense"
+
+
+def test_what_the_turtle_does_after_ctrl_c_does_not_count() -> None:
+    late = recording([*every(0.5, 2.0, 1.0), (9.9, 6.0, 0.0)], sigint_t_s=9.8)
+    assert finding("circle", evidence(late)).status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("shape", "status"),
+    [("good", "passed"), ("wall", "failed"), ("radius 2.2", "passed"), ("all zero", "skipped"), ("nan", "skipped")],
+)
+def test_the_walls(shape: str, status: str) -> None:
+    assert finding("wall", evidence(SHAPES[shape]())).status.value == status

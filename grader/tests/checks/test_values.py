@@ -1,0 +1,64 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from grader.outcome import Finding, Status
+from grader.tests.checks.made import NODE_FILE, every, evidence, finding, recording
+from grader.tests.checks.shapes import SHAPES, fields
+
+
+def values(shape: str) -> Finding:
+    return finding("values", evidence(SHAPES[shape]()))
+
+
+def test_the_right_values_pass_and_what_comes_after_ctrl_c_does_not_count() -> None:
+    assert values("good").seen == "Every command says linear.x 2.0 m/s and angular.z 1.0 rad/s, all other fields 0."
+    assert values("more after Ctrl-C").status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("shape", "diagnosis", "seen", "line"),
+    [
+        ("radius 2.2", "wrong-value", "All 19 commands were wrong: linear.x 2.2 m/s.", 14),
+        ("clockwise", "wrong-sign", "All 19 commands were wrong: angular.z -1.0 rad/s.", 15),
+        ("degrees", "degrees", "All 19 commands were wrong: angular.z 57.3 rad/s.", 15),
+        ("swapped", "values-swapped", "All 19 commands were wrong: linear.x 1.0 m/s and angular.z 2.0 rad/s.", 14),
+        ("angular.x", "wrong-field", "All 19 commands were wrong: angular.x 1.0 rad/s and angular.z 0.0 rad/s.", 13),
+        ("linear.y", "wrong-field", "All 19 commands were wrong: linear.x 0.0 m/s and linear.y 2.0 m/s.", 13),
+        ("all zero", "empty-twist", "All 19 commands were wrong: linear.x 0.0 m/s and angular.z 0.0 rad/s.", 14),
+        ("nan", "not-a-number", "All 19 commands were wrong: linear.x NaN (not a number) m/s.", 14),
+        ("infinity", "not-a-number", "All 19 commands were wrong: angular.z infinity rad/s.", 15),
+        ("one wrong", "values-change", "1 of 19 commands was wrong: angular.z 1.001 rad/s.", 15),
+        ("spiral", "wrong-value", "All 19 commands were wrong: linear.x 1.05 m/s in the first of them.", 14),
+    ],
+)
+def test_each_wrong_value_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str, line: int) -> None:
+    found = values(shape)
+    assert (found.status, found.diagnosis, found.seen) == (Status.FAILED, diagnosis, seen)
+    assert str(found.where) == f"{NODE_FILE}:{line}"
+
+
+@pytest.mark.parametrize("field", range(6))
+@pytest.mark.parametrize("wrong", [math.nan, math.inf, -math.inf, 2e-6, -2e-6])
+def test_every_field_counts(field: int, wrong: float) -> None:
+    six = [2.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+    six[field] += wrong
+    found = finding("values", evidence(fields((six[0], six[1], six[2]), (six[3], six[4], six[5]))))
+    assert found.status is Status.FAILED
+    assert ("linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z")[field] in found.seen
+
+
+def test_rounding_never_hides_the_difference() -> None:
+    found = finding("values", evidence(recording(every(0.5, 2.00001, 1.0))))
+    assert "linear.x 2.00001 m/s" in found.seen
+
+
+@pytest.mark.parametrize(
+    ("off", "near", "status"),
+    [(0.0, False, "passed"), (0.9e-6, True, "passed"), (1.1e-6, True, "failed"), (1.3e-6, False, "failed")],
+)
+def test_near_the_edge(off: float, near: bool, status: str) -> None:
+    found = finding("values", evidence(recording(every(0.5, 2.0 + off, 1.0))))
+    assert (found.near_edge, found.status.value) == (near, status)
