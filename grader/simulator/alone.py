@@ -92,7 +92,3 @@ def _wrong(what: str) -> int:
 
 def _first_line(error: Exception) -> str:
     return str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
-
-
-if __name__ == "__main__":
-    sys.exit(main())

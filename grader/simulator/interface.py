@@ -30,22 +30,19 @@ QOS = QoSProfile(depth=7)
 _FLOAT32_MAX = 3.4028234663852886e38
 
 
-def _nobody(*_: Any) -> None:  # noqa: ANN401
-    """Nobody listens."""
-
-
 @dataclass(frozen=True)
 class Hooks:
-    """Who wants to know what the simulator hears and says.
+    """Who wants to know what the simulator hears and says. `data` is a message's CDR form.
 
-    `on_command(topic, data, twist)`: a command as it arrived, before it moves the turtle; `data` is its CDR form.
+    `on_command(topic, data, twist)`: a command as it arrived, before it moves the turtle.
     `on_publish(topic, type, data)`: a pose or colour as it is sent.
-    `on_intervention(name)`: somebody called a service or an action or set a parameter.
+    `on_intervention(name)`: somebody called a service or an action ("spawn", "rotate_absolute") or set a parameter
+    ("set_parameters").
     """
 
-    on_command: Callable[[str, bytes, Any], object] = _nobody
-    on_publish: Callable[[str, str, bytes], object] = _nobody
-    on_intervention: Callable[[str], object] = _nobody
+    on_command: Callable[[str, bytes, Any], object]
+    on_publish: Callable[[str, str, bytes], object]
+    on_intervention: Callable[[str], object]
 
 
 class TurtleInterface:

@@ -21,7 +21,7 @@ from grader.simulator.turtle import Start
 from grader.simulator.world import World
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
     from pathlib import Path
 
     from rclpy.parameter import Parameter
@@ -36,14 +36,25 @@ _FRAMES_TO_LEAVE = 4
 """A killed turtle's entities stay this long, so that what was already asked of them is answered."""
 
 
+def _nobody(*_: object) -> None:
+    """Nobody listens."""
+
+
 class TurtlesimNode(Node):
     """turtlesim's topics, services, actions and parameters around a `World`."""
 
-    def __init__(self, *, start: Start | Pose | None = None, **hooks_and_node: Any) -> None:  # noqa: ANN401
-        """`start`: where turtle1 begins (m, m, rad), after a reset too. Hooks as in `Hooks`; the rest is Node's."""
-        hooks = {key: hooks_and_node.pop(key) for key in list(hooks_and_node) if key in Hooks.__dataclass_fields__}
-        self._hooks = Hooks(**hooks)
-        super().__init__("turtlesim", **hooks_and_node)
+    def __init__(
+        self,
+        *,
+        start: Start | Pose | None = None,
+        on_command: Callable[[str, bytes, Any], object] = _nobody,
+        on_publish: Callable[[str, str, bytes], object] = _nobody,
+        on_intervention: Callable[[str], object] = _nobody,
+        **node: Any,  # noqa: ANN401 - handed on to rclpy
+    ) -> None:
+        """`start`: where turtle1 begins (m, m, rad), after a reset too; the `on_...` are described in `Hooks`."""
+        self._hooks = Hooks(on_command, on_publish, on_intervention)
+        super().__init__("turtlesim", **node)
         parameters.declare(self)
         self.world = World(Start(start.x, start.y, start.theta) if start is not None else Start())
         self._take_parameters(self._parameters_of_ours())
