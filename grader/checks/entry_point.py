@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
 from grader.checks.building import INSTALLED_MODULE, is_linked
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
 
 FORM = "An entry point reads NAME = PACKAGE.MODULE:FUNCTION, in the list console_scripts of setup.py"
+NOT_UTF8 = re.compile(r"codec can't decode|unicode error|[Nn]on-UTF-8|encoding")
+"""What Python says of a file whose bytes are not the text that they should be."""
 DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
 """Expressions whose value nobody can call."""
 
@@ -106,6 +109,8 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
     if module.unreadable is not None:
         where = Where(file, module.unreadable.line)
         seen = f"Python cannot read {file}: {shorten(module.unreadable.message, 120)}."
+        if NOT_UTF8.search(module.unreadable.message):
+            return failed("not-utf8", seen, "A file saved as UTF-8.", "Say UTF-8 when you save it.", where=where)
         cause = "Often the fault is at the end of the line before: a bracket, a colon, the indentation."
         return failed("syntax-error", seen, "A file that Python can read.", cause, where=where)
     return _attribute(evidence, module, attribute)

@@ -51,9 +51,11 @@ def read_manifest(data: bytes) -> Manifest:
     )
 
 
-def line_of(data: bytes, pattern: str) -> int | None:
-    """The first line (from 1) of a text file that the pattern is found in, None when there is none."""
-    for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), start=1):
-        if re.search(pattern, line):
-            return number
+def line_of(data: bytes, *patterns: str) -> int | None:
+    """The first line (from 1) of a text file with the first of the patterns that is found in it, else None."""
+    lines = data.decode("utf-8", "replace").splitlines()
+    for pattern in patterns:
+        for number, line in enumerate(lines, start=1):
+            if re.search(pattern, line):
+                return number
     return None

@@ -17,8 +17,8 @@ FILE = "package.xml"
 BUILD_TYPE = "ament_python"
 
 
-def _line(evidence: Evidence, pattern: str) -> Where:
-    return Where(FILE, line_of(evidence.submission.files[FILE], pattern))
+def _line(evidence: Evidence, *patterns: str) -> Where:
+    return Where(FILE, line_of(evidence.submission.files[FILE], *patterns))
 
 
 def valid(evidence: Evidence, _: NoParams) -> Finding:
@@ -44,7 +44,7 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
             seen,
             f"A Python package has {BUILD_TYPE}.",
             cause,
-            where=_line(evidence, "<export>|<build_type>"),
+            where=_line(evidence, "<build_type>", "<export>"),
         )
     return passed(f"{FILE} is valid.")
 
@@ -65,7 +65,7 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
     missing = [name for name in params.packages if name not in manifest.run_depends]
     if not missing:
         return passed(f"{FILE} declares {a_list(params.packages)}.")
-    where = _line(evidence, r"<\w*depend\b|</license>")
+    where = _line(evidence, r"<\w*depend\b", "</license>")
     late = [name for name in missing if name in manifest.other_depends]
     if late:
         cause = "<build_depend> and <test_depend> do not count for running; <depend> counts for all."

@@ -1,0 +1,234 @@
+"""The checks of the package: its files, package.xml, its name, the build, what was installed, the entry point."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.outcome import Status
+from grader.tests.checks.made import (
+    BUILD,
+    NODE,
+    NODE_FILE,
+    PACKAGE_XML,
+    SETUP_PY,
+    evidence,
+    finding,
+    submission,
+)
+
+if TYPE_CHECKING:
+    from grader.build import Build
+    from grader.outcome import Finding
+
+POINT = "draw_circle = my_robot_controller.draw_circle:main"
+INIT = "my_robot_controller/__init__.py"
+LINKED = replace(
+    BUILD,
+    installed=(
+        "lib/my_robot_controller/draw_circle",
+        "lib/python3.11/site-packages/my-robot-controller.egg-link",
+        "share/ament_index/resource_index/packages/my_robot_controller",
+        "share/my_robot_controller/package.xml",
+    ),
+)
+BARE = replace(BUILD, installed=("lib/my_robot_controller/draw_circle", "share/my_robot_controller/package.xml"))
+NOTHING = replace(BUILD, executables=(), entry_points={})
+
+
+def xml(old: str = "", new: str = "") -> dict[str, str | bytes | None]:
+    assert old in PACKAGE_XML
+    return {"package.xml": PACKAGE_XML.replace(old, new)}
+
+
+def setup_py(old: str, new: str) -> dict[str, str | bytes | None]:
+    assert old in SETUP_PY
+    return {"setup.py": SETUP_PY.replace(old, new)}
+
+
+def of(check: str, files: dict[str, str | bytes | None] | None = None, build: Build = BUILD) -> Finding:
+    return finding(check, evidence(package=submission(files), build=build))
+
+
+@pytest.mark.parametrize(
+    "check", ["files", "package-xml", "dependencies", "package-name", "build", "installed", "entry-point"]
+)
+@pytest.mark.parametrize("build", [BUILD, LINKED], ids=["copied", "linked"])
+def test_a_good_package_passes(check: str, build: Build) -> None:
+    found = of(check, build=build)
+    assert (found.status, found.diagnosis) == (Status.PASSED, None), found.seen
+
+
+@pytest.mark.parametrize(
+    ("check", "files", "diagnosis", "where"),
+    [
+        ("package-xml", {"package.xml": None}, "package-xml-missing", "None"),
+        ("package-xml", xml("</package>"), "package-xml-invalid", "package.xml:15"),
+        ("package-xml", xml("  <license>MIT</license>\n"), "package-xml-invalid", "package.xml"),
+        ("package-xml", xml('format="3"', 'format="9"'), "package-xml-invalid", "package.xml"),
+        ("package-xml", xml('format="3"', 'format="x"'), "package-xml-invalid", "package.xml"),
+        ("package-xml", {"package.xml": b"\xff\xfe\x00"}, "package-xml-invalid", "package.xml:1"),
+        ("package-xml", {"package.xml": b"<a>" * 100_000}, "package-xml-invalid", "package.xml"),
+        ("package-xml", xml("    <build_type>ament_python</build_type>\n"), "build-type", "package.xml:11"),
+        ("package-xml", xml("ament_python", "ament_cmake"), "build-type", "package.xml:12"),
+        ("dependencies", xml("  <depend>geometry_msgs</depend>\n"), "missing-depend", "package.xml:8"),
+        (
+            "dependencies",
+            xml("depend>rclpy</depend", "build_depend>rclpy</build_depend"),
+            "depend-kind",
+            "package.xml:8",
+        ),
+        ("package-name", xml("my_robot_controller", "my_robot"), "package-name", "package.xml:3"),
+        ("package-name", setup_py('"my_robot_controller"', '"my-robot-controller"'), "package-name", "setup.py:3"),
+        ("package-name", {INIT: None, NODE_FILE: None, "my_robot/x.py": ""}, "package-folder", "None"),
+    ],
+)
+def test_each_fault_of_the_files(check: str, files: dict[str, str | bytes | None], diagnosis: str, where: str) -> None:
+    found = of(check, files)
+    assert (found.status, found.diagnosis, str(found.where)) == (Status.FAILED, diagnosis, where)
+
+
+def test_format_2_is_valid_and_a_byte_order_mark_does_no_harm() -> None:
+    assert of("package-xml", xml('format="3"', 'format="2"')).status is Status.PASSED
+    assert of("package-xml", {"package.xml": b"\xef\xbb\xbf" + PACKAGE_XML.encode()}).status is Status.PASSED
+
+
+def test_a_misspelt_dependency_is_shown() -> None:
+    found = of("dependencies", xml("geometry_msgs", "geometry_msg"))
+    assert found.seen == "package.xml does not declare geometry_msgs."
+    assert found.cause == 'It has "geometry_msg": is that a typing error?'
+
+
+def test_what_was_left_out_of_the_submission_is_told() -> None:
+    given = evidence(package=submission(rejected=("data: a link that leaves the package", "x", "y")))
+    found = finding("files", given)
+    assert found.seen == "Left out: data: a link that leaves the package (and 2 more)."
+
+
+SETUP_TRACEBACK = """\
+--- stderr: my_robot_controller
+Traceback (most recent call last):
+  File "<string>", line 1, in <module>
+  File "/ws/src/my_robot_controller/setup.py", line 5, in <module>
+    raise RuntimeError("no")
+RuntimeError: no
+---
+Failed   <<< my_robot_controller [0.61s, exited with code 1]
+"""
+
+
+@pytest.mark.parametrize(
+    ("files", "build", "diagnosis", "where"),
+    [
+        ({"setup.py": None}, NOTHING, "setup-py-missing", "None"),
+        ({"setup.py": "setup(\n"}, replace(NOTHING, exit_code=1), "setup-py-syntax", "setup.py:1"),
+        ({}, replace(NOTHING, exit_code=1, log=SETUP_TRACEBACK), "setup-py-raises", "setup.py:5"),
+        ({}, replace(NOTHING, exit_code=1, log="error: no such option"), "build-failed", "None"),
+        ({}, replace(NOTHING, exit_code=-9, timed_out=True, seconds=60.0), "build-timeout", "None"),
+        ({}, replace(NOTHING, exit_code=1, out_of="disk"), "build-limit", "None"),
+        (setup_py(":main", ""), replace(NOTHING, exit_code=1), "entry-point-format", "setup.py:14"),
+        ({INIT: None}, BARE, "missing-init", "setup.py:5"),
+        ({INIT: None}, LINKED, "missing-init", "setup.py:5"),
+        ({}, BARE, "nothing-installed", "setup.py:5"),
+        ({}, replace(NOTHING, installed=()), "nothing-installed", "setup.py:5"),
+    ],
+)
+def test_each_fault_of_the_build(
+    files: dict[str, str | bytes | None], build: Build, diagnosis: str, where: str
+) -> None:
+    found = of("build", files, build)
+    assert (found.status, found.diagnosis, str(found.where)) == (Status.FAILED, diagnosis, where)
+
+
+def test_the_last_words_of_a_failed_build_are_shown() -> None:
+    found = of("build", build=replace(NOTHING, exit_code=1, log="warning: x\nerror: no such option\nfailed\n"))
+    assert found.seen == "`colcon build` failed: error: no such option."
+
+
+def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
+    no_marker = tuple(path for path in BUILD.installed if "resource_index" not in path)
+    found = of("installed", build=replace(BUILD, installed=no_marker))
+    assert (found.diagnosis, found.seen) == (
+        "resource-marker",
+        "Not installed: the marker resource/my_robot_controller.",
+    )
+    no_xml = tuple(path for path in BUILD.installed if "package.xml" not in path)
+    assert of("installed", build=replace(BUILD, installed=no_xml)).diagnosis == "package-xml-not-installed"
+
+
+def leads_to(target: str) -> Build:
+    return replace(BUILD, entry_points={"draw_circle": target})
+
+
+@pytest.mark.parametrize(
+    ("files", "build", "diagnosis", "where"),
+    [
+        (setup_py(f'            "{POINT}",\n', ""), NOTHING, "entry-point-missing", "setup.py:5"),
+        (setup_py("console_scripts", "console_script"), NOTHING, "entry-point-group", "setup.py:5"),
+        (
+            setup_py(f'"{POINT}",', f'"test_node = my_robot_controller.first:main"\n            "{POINT}",'),
+            replace(NOTHING, entry_points={"test_node": "x"}),
+            "entry-point-comma",
+            "setup.py:14",
+        ),
+        (
+            setup_py("draw_circle = ", "draw_cirle = "),
+            replace(
+                NOTHING,
+                entry_points={"draw_cirle": "my_robot_controller.draw_circle:main"},
+                executables=("draw_cirle",),
+            ),
+            "entry-point-name",
+            "setup.py:14",
+        ),
+        ({"setup.cfg": None}, replace(BUILD, executables=()), "setup-cfg", "None"),
+        ({}, leads_to("my_robot_controller.drawcircle:main"), "entry-point-module", "setup.py:14"),
+        ({}, leads_to("draw_circle:main"), "entry-point-module", "setup.py:14"),
+        ({}, leads_to("my_robot_controller.draw_circle:man"), "entry-point-function", "setup.py:14"),
+        ({NODE_FILE: NODE + "\nmain = 7\n"}, BUILD, "entry-point-not-callable", f"{NODE_FILE}:23"),
+        ({NODE_FILE: NODE.replace("def send(self):", "def send(self)")}, BUILD, "syntax-error", f"{NODE_FILE}:12"),
+        ({NODE_FILE: b"name = '\xe4'\n"}, BUILD, "not-utf8", NODE_FILE),
+        ({NODE_FILE: NODE.encode() + b"\0"}, BUILD, "syntax-error", NODE_FILE),
+        (
+            {"my_robot_controller/more/node.py": NODE},
+            leads_to("my_robot_controller.more.node:main"),
+            "module-not-installed",
+            "setup.py:14",
+        ),
+    ],
+)
+def test_each_fault_of_the_entry_point(
+    files: dict[str, str | bytes | None], build: Build, diagnosis: str, where: str
+) -> None:
+    found = of("entry-point", files, build)
+    assert (found.status, found.diagnosis) == (Status.FAILED, diagnosis), found.seen
+    assert str(found.where).startswith(where)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from my_robot_controller.other import main\n",
+        "from my_robot_controller.other import *\n",
+        "try:\n    import rclpy\nexcept ImportError:\n    def main():\n        pass\n",
+        "class main:\n    pass\n",
+        "main = lambda: None\n",
+        "main = 7\ndef main():\n    pass\n",
+        "if True:\n    def main():\n        pass\n",
+        "import other as main\n",
+    ],
+)
+def test_anything_that_may_be_called_will_do(text: str) -> None:
+    assert of("entry-point", {NODE_FILE: text}).status is Status.PASSED
+
+
+def test_a_function_inside_of_the_class_is_not_found() -> None:
+    found = of("entry-point", {NODE_FILE: "class A:\n    def main(self):\n        pass\n"})
+    assert found.cause == "A function inside of a class does not count: look at its indentation."
+
+
+@pytest.mark.parametrize("text", [b"x = " + b"(" * 5000, b"x = " + b"-" * 90_000 + b"1", b"a" * 500_000])
+def test_a_file_that_is_too_much_to_parse_is_left_to_the_trial(text: bytes) -> None:
+    assert of("entry-point", {NODE_FILE: text}).status in (Status.PASSED, Status.FAILED)
