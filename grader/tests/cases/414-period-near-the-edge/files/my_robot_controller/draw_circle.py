@@ -7,7 +7,7 @@ class DrawCircleNode(Node):
     def __init__(self):
         super().__init__("draw_circle")
         self.cmd_vel_pub_ = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
-        self.timer_ = self.create_timer(0.52, self.send_velocity_command)
+        self.timer_ = self.create_timer(0.523, self.send_velocity_command)
         self.get_logger().info("Draw circle node has been started")
 
     def send_velocity_command(self):

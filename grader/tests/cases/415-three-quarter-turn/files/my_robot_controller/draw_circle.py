@@ -13,7 +13,7 @@ class DrawCircleNode(Node):
     def send(self):
         msg = Twist()
         self.count += 1
-        if self.count < 9:
+        if self.count < 10:
             msg.linear.x = 2.0
             msg.angular.z = 1.0
         self.pub.publish(msg)  # zeros: stop

@@ -1,0 +1,10 @@
+"""Names with line breaks and with bytes that are not UTF-8, beside a right solution."""
+
+import os
+from pathlib import Path
+
+
+def make(folder: Path) -> None:
+    module = folder / "my_robot_controller" / "my_robot_controller"
+    for name in (b"line\r\nbreak.py", b"caf\xe9.txt", b"\xff\xfe.py"):
+        Path(os.fsdecode(os.fsencode(module) + b"/" + name)).write_bytes(b"\xff")
