@@ -129,9 +129,9 @@ class TurtlesimNode(Node):
         try:
             self._show(name)
         except Exception as error:
-            # turtlesim itself ends here with an exception. `error` says which character is not allowed.
+            # turtlesim itself ends here with an exception. The first line says which characters are allowed.
             self.world.kill(name)
-            self.get_logger().error(f"A turtle cannot be named [{name}]: {error}")
+            self.get_logger().error(f"A turtle cannot be named [{name}]: {str(error).partition(chr(10))[0]}")
             return response
         self._tell_spawned(name)
         response.name = name
