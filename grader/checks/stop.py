@@ -33,7 +33,8 @@ def stop(evidence: Evidence, params: Stop) -> Finding:
         return passed("The node stops on Ctrl-C.", near_edge=limit.near(took))
     if end.by == "SIGINT":
         seen = f"The node stopped {took:.1f} s after Ctrl-C."
-        return failed("slow-stop", seen, expected, where=evidence.place("spin"), near_edge=True)
+        cause = "Something may still be waited for after Ctrl-C: a sleep, a thread, an answer."
+        return failed("slow-stop", seen, expected, cause, where=evidence.place("spin"), near_edge=True)
     force = "it had to be killed" if end.by == "SIGKILL" else "only SIGTERM ended it"
     cause = "A loop that never ends, or an except that catches everything, keeps it from seeing Ctrl-C."
     where = evidence.place("spin", "init")

@@ -121,7 +121,10 @@ def _why(six: Six, wanted: Six, off: list[int]) -> tuple[str, str, str]:
                     f"{FIELDS[other[0]]} has the number that belongs to {FIELDS[index]}: {_meaning(FIELDS[other[0]])}"
                 )
                 return "wrong-field", cause, FIELDS[other[0]]
-    return _scaled(six, wanted, off) or ("wrong-value", "", first)
+    return _scaled(six, wanted, off) or ("wrong-value", MEANING, first)
+
+
+MEANING = "linear.x is the speed forwards, angular.z how fast it turns to the left."
 
 
 def _meaning(field: str) -> str:

@@ -1,0 +1,156 @@
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.checks.evidence import Evidence, Fault
+from grader.checks.judge import judge, near_edge, wants_trial
+from grader.checks.kinds import KINDS
+from grader.outcome import Finding, Outcome, Report, Status
+from grader.recording import Command, Output
+from grader.tests.checks.made import BUILD, NODE_FILE, every, evidence, exercise, good, recording, submission
+from grader.tests.checks.shapes import SHAPES
+
+NO_BUILD = replace(BUILD, exit_code=1, executables=(), entry_points={}, installed=())
+FULL_DISK = "The disk is full: make room."
+
+
+def by_id(given: Evidence) -> dict[str, Outcome]:
+    return {outcome.id: outcome for outcome in judge(given)}
+
+
+def report(outcomes: tuple[Outcome, ...]) -> Report:
+    return Report("03", "Draw a circle", "alice", "", "0", "jazzy", "simulated", "", None, outcomes)
+
+
+def test_a_good_submission_gets_all_points_and_exit_code_0() -> None:
+    made = report(judge(evidence(good())))
+    assert (made.points, made.max, made.exit_code) == (100.0, 100.0, 0)
+
+
+@pytest.mark.parametrize(
+    ("shape", "points"),
+    [
+        ("clockwise", 55.0),
+        ("radius 2.2", 55.0),
+        ("one hertz", 80.0),
+        ("three quarters", 55.0),
+        ("beside its place", 35.0),
+        ("ignores Ctrl-C", 95.0),
+        ("other name", 95.0),
+        ("no messages", 15.0),
+        ("crash at the start", 0.0),
+        ("all zero", 50.0),
+        ("late", 80.0),
+    ],
+)
+def test_partial_credit(shape: str, points: float) -> None:
+    made = report(judge(evidence(SHAPES[shape]())))
+    assert (made.points, made.exit_code) == (points, 1)
+
+
+def test_what_needs_a_failed_check_is_skipped_and_names_the_first_cause() -> None:
+    outcomes = by_id(evidence(None, build=NO_BUILD))
+    skipped = [outcome for outcome in outcomes.values() if outcome.status is Status.SKIPPED]
+    assert {outcome.id for outcome in skipped} == {
+        "installed", "entry-point", "start", "node-name", "topic", "type", "rate", "values", "circle", "wall", "stop",
+    }  # fmt: skip
+    assert {outcome.finding.seen for outcome in skipped} == {
+        'Not judged, since "colcon builds and installs the package" did not pass.'
+    }
+
+
+def test_a_missing_dependency_fails_and_blocks_nothing() -> None:
+    text = submission().files["package.xml"].replace(b"  <depend>turtlesim</depend>\n", b"")
+    made = report(judge(evidence(good(), submission({"package.xml": text}))))
+    assert [outcome.id for outcome in made.with_status(Status.FAILED)] == ["dependencies"]
+    assert (made.points, made.exit_code) == (100.0, 1)
+
+
+def test_advice_that_was_not_followed_fails_no_run() -> None:
+    text = submission().files[NODE_FILE].replace(b"create_timer", b"my_timer")
+    outcomes = judge(evidence(good(), submission({NODE_FILE: text})))
+    (timer,) = [outcome for outcome in outcomes if outcome.advice]
+    assert timer.status is Status.FAILED
+    assert report(outcomes).exit_code == 0
+    assert report(outcomes).with_status(Status.FAILED) == ()
+
+
+@pytest.mark.parametrize(
+    ("given", "broken", "points", "most"),
+    [
+        (evidence(None, build=None, fault=Fault("build", FULL_DISK)), 12, 0.0, 0.0),
+        (evidence(None, fault=Fault("trial", FULL_DISK)), 9, 0.0, 0.0),
+    ],
+)
+def test_a_fault_of_the_machine_costs_no_points(given: Evidence, broken: int, points: float, most: float) -> None:
+    made = report(judge(given))
+    errors = made.with_status(Status.ERROR)
+    assert (len(errors), {outcome.finding.seen for outcome in errors}) == (broken, {FULL_DISK})
+    assert (made.points, made.max, made.exit_code) == (points, most, 3)
+    assert made.with_status(Status.SKIPPED) == ()
+
+
+def test_a_students_fault_before_the_machines_is_told_as_the_students() -> None:
+    no_module = replace(BUILD, entry_points={"draw_circle": "my_robot_controller.other:main"})
+    outcomes = by_id(evidence(None, build=no_module, fault=Fault("trial", FULL_DISK)))
+    assert outcomes["entry-point"].status is Status.FAILED
+    assert outcomes["circle"].status is Status.SKIPPED
+
+
+def test_a_check_that_breaks_is_an_error_and_leaves_the_others_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> Finding:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("grader.checks.judge.KINDS", {**KINDS, "values": replace(KINDS["values"], check=broken)})
+    outcomes = by_id(evidence(good()))
+    assert outcomes["values"].status is Status.ERROR
+    assert [outcome.id for outcome in outcomes.values() if outcome.status is not Status.PASSED] == ["values"]
+
+
+def test_a_trial_is_wanted_only_where_it_would_be_judged() -> None:
+    assert wants_trial(evidence(None))
+    assert not wants_trial(evidence(None, build=NO_BUILD))
+
+
+def test_a_value_near_an_edge_asks_for_wall_time() -> None:
+    assert near_edge(judge(evidence(recording(every(0.475, 2.0, 1.0)))))
+    assert not near_edge(judge(evidence(good())))
+
+
+@pytest.mark.parametrize("shape", sorted(SHAPES))
+def test_the_same_evidence_gives_the_same_findings_in_any_order(shape: str) -> None:
+    made = SHAPES[shape]()
+    first = by_id(evidence(made))
+    checks = list(exercise().checks)
+    random.Random(shape).shuffle(checks)
+    again = by_id(evidence(made, exercise=replace(exercise(), checks=tuple(checks))))
+    assert again == first
+    assert [outcome for outcome in first.values() if outcome.status is Status.ERROR] == []
+
+
+ANY = st.floats(allow_nan=True, allow_infinity=True)
+COMMANDS = st.builds(
+    Command,
+    t_s=st.floats(-1.0, 12.0),
+    mono_s=st.just(0.0),
+    linear=st.tuples(ANY, ANY, ANY),
+    angular=st.tuples(ANY, ANY, ANY),
+)
+
+
+@given(st.lists(COMMANDS, max_size=12), st.text(max_size=200))
+def test_whatever_a_student_sends_is_never_the_graders_fault(commands: list[Command], text: str) -> None:
+    given_ = sorted(commands, key=lambda command: command.t_s)
+    outcomes = judge(evidence(recording(given_, stderr=Output(text), stdout=Output(text))))
+    assert [outcome for outcome in outcomes if outcome.status is Status.ERROR] == []
+
+
+@given(st.dictionaries(st.sampled_from(["package.xml", "setup.py", NODE_FILE, "setup.cfg"]), st.binary(max_size=200)))
+def test_whatever_a_student_hands_in_is_never_the_graders_fault(files: dict[str, bytes]) -> None:
+    outcomes = judge(evidence(good(), submission(files)))
+    assert [outcome for outcome in outcomes if outcome.status is Status.ERROR] == []
