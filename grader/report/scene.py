@@ -1,0 +1,197 @@
+"""Scene: what is drawn of a run on the turtle's canvas, as pure data in metres. picture.py paints it, svg.py too.
+
+One description for the PNG, the page and notebooks, so that they can never tell different stories.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+from grader.checks import seen
+from grader.checks.path import CircleParams, expected_centre
+
+if TYPE_CHECKING:
+    from grader.checks.evidence import Evidence
+    from grader.checks.track import Track
+
+Point = tuple[float, float]
+Rgb = tuple[int, int, int]
+Role = Literal["way", "expected", "fitted", "tick", "wall", "start"]
+
+SIDE_M = 499 / 45
+"""turtlesim's canvas: 500 pixels, 45 a metre."""
+MOST_TICKS = 150
+TICK_M = 0.11
+"""Half the length of a tick."""
+
+SEA: Rgb = (69, 86, 255)
+DEEP: Rgb = (16, 20, 84)
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a role looks: its colour, the width of its lines and the length of its dashes (m); 0 for no dashes."""
+
+    color: Rgb
+    width_m: float
+    dash_m: float = 0.0
+
+
+LOOKS: dict[Role, Look] = {
+    "way": Look((179, 184, 255), 3 / 45),
+    "expected": Look((255, 214, 92), 0.045, 0.28),
+    "fitted": Look((255, 255, 255), 0.028, 0.14),
+    "tick": Look(DEEP, 0.035),
+    "wall": Look((255, 92, 80), 0.07),
+    "start": Look((255, 255, 255), 0.035),
+}
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line through the points (m)."""
+
+    role: Role
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A circle; m."""
+
+    role: Role
+    centre: Point
+    radius: float
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """A slim triangle at a point (m), looking along theta (rad)."""
+
+    role: Role
+    at: Point
+    theta: float
+    size_m: float = 0.28
+
+    @property
+    def corners(self) -> tuple[Point, ...]:
+        """Its four corners (m)."""
+        corners = [(0.0, 1.0), (2.5, 0.6), (math.pi, 0.35), (-2.5, 0.6)]
+        return tuple(
+            (
+                self.at[0] + self.size_m * r * math.cos(self.theta + a),
+                self.at[1] + self.size_m * r * math.sin(self.theta + a),
+            )
+            for a, r in corners
+        )
+
+
+@dataclass(frozen=True)
+class Scene:
+    """`shapes` from the lowest to the highest; `legend` what each role means; `facts` the numbers, one a line.
+
+    `notice` is what to say where there is no way to draw, else empty.
+    """
+
+    shapes: tuple[Line | Ring | Arrow, ...] = ()
+    legend: tuple[tuple[Role, str], ...] = ()
+    facts: tuple[str, ...] = ()
+    notice: str = ""
+
+
+P = TypeVar("P")
+
+
+def params_of(evidence: Evidence, kind: str, params: type[P]) -> P | None:
+    """The parameters of the exercise's first check of this kind that is not hidden; None without one."""
+    for spec in evidence.exercise.checks:
+        if spec.kind == kind and not spec.hidden:
+            given: dict[str, Any] = dict(spec.params)
+            return params(**given)
+    return None
+
+
+def scene_of(evidence: Evidence) -> Scene:
+    """What there is to draw of a run."""
+    recording = evidence.recording
+    if recording is None:
+        return Scene(notice="The node was not run.")
+    track = evidence.track
+    shapes: list[Line | Ring | Arrow] = []
+    legend: list[tuple[Role, str]] = []
+    facts = [f"{len(evidence.commands)} commands in {seen.end_s(recording):.1f} s"]
+    points = finite_way(track)
+    moved = track.finite and len(track.points[0]) > 1
+    if len(points) > 1:
+        shapes.append(Line("way", tuple(points)))
+        legend.append(("way", "the turtle's way"))
+    params = params_of(evidence, "circle", CircleParams)
+    if params is not None:
+        shapes.append(Ring("expected", expected_centre(recording.start, params), params.radius_m))
+        legend.append(("expected", f"asked for: radius {params.radius_m:.2f} m"))
+    fitted = track.circle if moved else None
+    if fitted is not None and fitted.radius <= SIDE_M:
+        shapes.append(Ring("fitted", (fitted.x, fitted.y), fitted.radius))
+        legend.append(("fitted", f"best fit: radius {fitted.radius:.2f} m"))
+        facts.append(f"centre ({fitted.x:.2f}, {fitted.y:.2f}) m")
+        facts.append(f"off the circle {fitted.rms:.3f} m RMS")
+        facts.append(f"{abs(track.turns):.2f} turns {'counter-clockwise' if track.turns > 0 else 'clockwise'}")
+    times = [command.t_s for command in evidence.commands]
+    ticks = _ticks(track, times[:: len(times) // MOST_TICKS + 1]) if moved else []
+    if ticks:
+        shapes += ticks
+        legend.append(("tick", "a command arrives"))
+    cross = _cross(track) if track.wall.any() else []
+    if cross:
+        shapes += cross
+        legend.append(("wall", "touches a wall"))
+    shapes.append(Arrow("start", (recording.start.x, recording.start.y), recording.start.theta))
+    legend.append(("start", "start"))
+    notice = "" if moved else "The turtle did not move."
+    if not track.finite:
+        notice = "The turtle's position became NaN (not a number)."
+    return Scene(tuple(shapes), tuple(legend), tuple(facts), notice)
+
+
+def finite_way(track: Track) -> list[Point]:
+    """The way as points (m) up to the first that is no number, rests left out."""
+    points: list[Point] = []
+    for x, y in zip(track.x.tolist(), track.y.tolist(), strict=True):
+        if not (math.isfinite(x) and math.isfinite(y)):
+            break
+        if not points or points[-1] != (x, y):
+            points.append((x, y))
+    return points
+
+
+def _ticks(track: Track, times: list[float]) -> list[Line]:
+    """A short stroke across the way where the turtle was at each of these times (s)."""
+    strokes: list[Line] = []
+    if not len(track.t_s):
+        return strokes
+    for index in track.t_s.searchsorted(times).tolist():
+        at = min(index, len(track.t_s) - 1)
+        x, y = float(track.x[at]), float(track.y[at])
+        ahead = min(at + 1, len(track.x) - 1)
+        behind = max(ahead - 2, 0)
+        dx, dy = float(track.x[ahead] - track.x[behind]), float(track.y[ahead] - track.y[behind])
+        length = math.hypot(dx, dy)
+        if length > 0.0:
+            nx, ny = -dy / length * TICK_M, dx / length * TICK_M
+            strokes.append(Line("tick", ((x - nx, y - ny), (x + nx, y + ny))))
+    return strokes
+
+
+def _cross(track: Track) -> list[Line]:
+    """Two strokes where the turtle first was at a wall."""
+    at = int(track.wall.argmax()) + 1
+    x, y = float(track.x[at]), float(track.y[at])
+    if not (math.isfinite(x) and math.isfinite(y)):
+        return []
+    x, y = min(max(x, 0.2), SIDE_M - 0.2), min(max(y, 0.2), SIDE_M - 0.2)
+    return [
+        Line("wall", ((x - 0.15, y - 0.15), (x + 0.15, y + 0.15))),
+        Line("wall", ((x - 0.15, y + 0.15), (x + 0.15, y - 0.15))),
+    ]
