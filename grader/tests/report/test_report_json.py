@@ -1,0 +1,81 @@
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.errors import UsageError
+from grader.outcome import Finding, Outcome, Status, Where
+from grader.report.json import from_json, to_json
+from grader.tests.report.reports import EVIDENCE, report
+
+GOLDEN = Path(__file__).parent.parent / "golden" / "report"
+
+
+@pytest.mark.parametrize("status", sorted(EVIDENCE))
+def test_the_format_is_what_it_was(status: str) -> None:
+    """Others read these files. Where a change is meant, raise SCHEMA, and write the new text into golden/report/."""
+    assert to_json(report(status)) == (GOLDEN / f"{status}.json").read_text("utf-8")
+
+
+@pytest.mark.parametrize("status", sorted(EVIDENCE))
+def test_back_from_json_it_is_the_same_report(status: str) -> None:
+    made = report(status, recording="kept/here", seed=7)
+    assert from_json(to_json(made)) == made
+
+
+TEXTS = st.text(max_size=30)
+FINDINGS = st.builds(
+    Finding,
+    status=st.sampled_from(Status),
+    seen=TEXTS,
+    expected=TEXTS,
+    cause=TEXTS,
+    diagnosis=st.none() | TEXTS,
+    where=st.none() | st.builds(Where, TEXTS, st.none() | st.integers(1, 9)),
+    near_edge=st.booleans(),
+)
+
+
+@given(FINDINGS, TEXTS)
+def test_any_text_goes_there_and_back(finding: Finding, name: str) -> None:
+    outcome = Outcome("a", "b", "c", 0.5, 1.0, finding, hidden=True, advice=True)
+    made = report("passed", outcomes=(outcome,), submission=name)
+    assert from_json(to_json(made)) == made
+
+
+def test_a_file_name_that_is_not_utf8_makes_valid_json() -> None:
+    text = to_json(report("passed", submission="caf\udce9"))
+    assert json.loads(text.encode())["submission"]["name"] == "caf\\udce9"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "no report of the grader"),
+        ("[]", "no report of the grader"),
+        ("{}", "no report of the grader"),
+        ('{"schema": 2}', "schema 2; this version of the grader reads schema 1"),
+        ('{"schema": 1}', "damaged"),
+    ],
+)
+def test_what_is_no_report_of_ours_is_told(text: str, told: str) -> None:
+    with pytest.raises(UsageError, match=told):
+        from_json(text)
+
+
+def test_an_unknown_status_is_damage() -> None:
+    text = to_json(report("passed")).replace('"status": "passed"', '"status": "splendid"')
+    with pytest.raises(UsageError, match="damaged"):
+        from_json(text)
+
+
+def test_points_leave_out_what_the_machine_could_not_judge() -> None:
+    made = report("passed")
+    broken = replace(made.outcomes[-2], points=0.0, finding=Finding(Status.ERROR, "The disk is full."))
+    data = json.loads(to_json(replace(made, outcomes=(*made.outcomes[:-2], broken))))
+    assert (data["points"], data["max"]) == (95.0, 95.0)

@@ -1,0 +1,139 @@
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rich.console import Console
+
+from grader.outcome import Report, Status, Where, failed, passed
+from grader.report.terminal import render
+from grader.tests.report.reports import report
+
+ESCAPE = "\x1b"
+
+
+class Latin1(io.StringIO):
+    """A stream that knows few characters, as on an old terminal."""
+
+    encoding = "latin-1"  # type: ignore[assignment]
+
+
+def told(made: Report, *, width: int = 80, terminal: bool = False, stream: io.StringIO | None = None) -> str:
+    file = stream or io.StringIO()
+    console = Console(file=file, width=width, force_terminal=terminal, color_system="truecolor" if terminal else None)
+    render(made, console)
+    return file.getvalue()
+
+
+def test_piped_there_is_no_escape_sequence_and_no_wrapping() -> None:
+    text = told(report("failed"), width=30)
+    assert ESCAPE not in text
+    assert "    seen: All 19 commands were wrong: linear.x 2.2 m/s.\n" in text
+
+
+def test_the_verdict_stands_at_the_end() -> None:
+    lines = told(report("failed")).splitlines()
+    assert lines[0] == "Draw a circle: alice/my_robot_controller"
+    assert lines[-2] == "Not passed yet: 55 of 100 points, 2 checks failed."
+    assert lines[-1] == "Judged in simulated time: The node waits only for ROS time."
+
+
+@pytest.mark.parametrize(
+    ("status", "verdict"),
+    [
+        ("passed", "Passed: 100 of 100 points."),
+        ("skipped", "Not passed yet: 0 of 100 points, 1 check failed, 11 not judged because of that."),
+        ("error", "Not finished: 12 checks could not be judged, through no fault of the submission. 0 of 0 points."),
+    ],
+)
+def test_each_verdict(status: str, verdict: str) -> None:
+    assert verdict in told(report(status)).splitlines()
+
+
+def test_a_check_that_passed_takes_one_line() -> None:
+    text = told(report("passed"))
+    assert "✓ The turtle drives a circle  25/25\n" in text
+    assert "seen" not in text
+
+
+def test_a_failure_says_what_why_and_where() -> None:
+    text = told(report("failed"))
+    start = text.index("✗ The turtle drives a circle  0/25\n")
+    assert text[start:].splitlines()[1:5] == [
+        "    seen: The circle's radius is 2.2 m.",
+        "    expected: A circle of radius 2.0 m, counter-clockwise, at least 1 turn.",
+        "    why: The radius is linear.x divided by angular.z: 2.2 / 1.0 = 2.2 m.",
+        "    where: my_robot_controller/draw_circle.py:15",
+    ]
+
+
+def test_an_error_is_not_counted_and_says_what_to_do() -> None:
+    text = told(report("error"))
+    assert (
+        "! The turtle drives a circle  not counted\n    seen: The disk is full: make room, then grade again.\n" in text
+    )
+
+
+def test_where_the_stream_cannot_say_more_signs_are_ascii() -> None:
+    text = told(report("failed"), stream=Latin1())
+    assert text.isascii()
+    assert "FAIL The turtle drives a circle" in text
+
+
+def test_of_a_hidden_check_only_the_line_is_shown() -> None:
+    made = report("failed")
+    hidden = tuple(replace(outcome, hidden=True) for outcome in made.outcomes)
+    text = told(replace(made, outcomes=hidden))
+    assert "✗ The turtle drives a circle  0/25\n" in text
+    assert "radius" not in text
+
+
+def test_advice_is_told_apart_from_failures() -> None:
+    made = report("passed")
+    advice = replace(made.outcomes[-1], finding=failed("no-timer", "No timer is used.", "A timer."))
+    text = told(replace(made, outcomes=(*made.outcomes[:-1], advice)))
+    assert "i A timer gives the rhythm\n    seen: No timer is used.\n" in text
+    assert "Passed: 100 of 100 points." in text
+
+
+def test_the_seed_and_the_recording_are_named() -> None:
+    text = told(report("passed", seed=7, recording="kept/here"))
+    assert "The turtle's start was drawn with seed 7.\nRecording: kept/here\n" in text
+
+
+HOSTILE = st.text(alphabet=st.sampled_from("ab\x1b[]{}/\\\n\r\t\u202e\x9b\x07:red%") | st.characters(), max_size=80)
+
+
+@given(HOSTILE, st.sampled_from([20, 60, 120]), st.booleans())
+def test_nothing_of_a_students_acts_on_the_terminal(text: str, width: int, terminal: bool) -> None:
+    made = report("passed")
+    finding = failed("x", text, text, text, where=Where(text, 3))
+    outcomes = (replace(made.outcomes[0], title=text, finding=finding), replace(made.outcomes[1], finding=passed(text)))
+    shown = told(replace(made, outcomes=outcomes, submission=text), width=width, terminal=terminal)
+    for own in ("\x1b[0m", "\x1b[1m", "\x1b[2m", "\x1b[32m", "\x1b[36m", "\x1b[1;31m", "\x1b[1;32m", "\x1b[2;32m"):
+        shown = shown.replace(own, "")
+    assert [char for char in shown if not char.isprintable() and char != "\n"] == []
+
+
+def test_markup_stays_text() -> None:
+    made = report("passed", submission="[bold]alice[/bold] [link=x]y[/link]")
+    assert told(made).startswith("Draw a circle: [bold]alice[/bold] [link=x]y[/link]\n")
+
+
+@pytest.mark.parametrize("width", [20, 40, 80, 200])
+@pytest.mark.parametrize("status", ["passed", "failed", "skipped", "error"])
+def test_no_line_is_wider_than_the_terminal(status: str, width: int) -> None:
+    made = report(status)
+    plain = io.StringIO()
+    render(made, Console(file=plain, width=width, force_terminal=True, color_system=None))
+    assert max(len(line) for line in plain.getvalue().splitlines()) <= width
+
+
+def test_statuses_are_told_by_sign_and_not_by_colour_alone() -> None:
+    made = report("skipped")
+    signs = {line[0] for line in told(made).splitlines()[1:18] if not line.startswith(" ")}
+    assert signs == {"✓", "✗", "-"}
+    assert made.with_status(Status.SKIPPED)
