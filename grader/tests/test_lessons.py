@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import re
+import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from grader.ros import environment, find_ros
-from grader.tests.console import Block, blocks
+from grader.tests.console import Block, blocks, differs, run
 
 ROOT = Path(__file__).parent.parent.parent
 GOLDEN = Path(__file__).parent / "golden" / "ros2"
@@ -45,7 +48,18 @@ def test_links_and_pictures_are_there(lesson: Path) -> None:
 
 def test_every_block_says_what_it_is(lesson: Path) -> None:
     kinds = {(block.language, block.about) for block in blocks(lesson.read_text("utf-8"))}
-    assert kinds <= {("console", ""), ("console", "ros2"), ("python", ""), ("python", "part")}
+    assert kinds <= {("console", ""), ("console", "solved"), ("console", "ros2"), ("python", ""), ("python", "part")}
+
+
+@pytest.mark.parametrize("block", [*blocks_of("console", ""), *blocks_of("console", "solved")])
+def test_commands_print_what_the_lesson_shows(block: Block, tmp_path: Path) -> None:
+    for name in ("course", "exercises", "solutions"):
+        shutil.copytree(ROOT / name, tmp_path / name)
+    if block.about == "solved":  # the reader has written it by now
+        shutil.copytree(ROOT / "solutions", tmp_path / "exercises", dirs_exist_ok=True)
+    env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    for step, printed, _ in run(block, tmp_path, env, 300.0):
+        assert differs(step.printed, printed) is None, printed
 
 
 @pytest.mark.parametrize("block", blocks_of("console", "ros2"))
