@@ -1,0 +1,64 @@
+from __future__ import annotations
+
+import pytest
+
+from grader.trial.clues import wall_clues
+
+NODE = """
+import rclpy
+from rclpy.node import Node
+
+class DrawCircle(Node):
+    def __init__(self):
+        super().__init__("draw_circle")
+        self.timer = self.create_timer(0.5, self.send)
+"""
+
+
+def clues(source: str) -> list[str]:
+    return [clue.name for clue in wall_clues({"pkg/node.py": source.encode()}, "pkg.node")]
+
+
+def test_a_node_with_a_timer_gives_no_clue() -> None:
+    assert clues(NODE) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        ("import time\ntime.sleep(0.5)", "time.sleep"),
+        ("from time import sleep as rest\nrest(0.5)", "time.sleep"),
+        ("import time as t\nstart = t.time()", "time"),
+        ("import threading\nthreading.Timer(0.5, print).start()", "threading"),
+        ("from datetime import datetime\ndatetime.now()", "datetime.datetime"),
+        ("rclpy.spin_once(node)", "rclpy.spin_once"),
+        ("rclpy.spin_once(node, timeout_sec=0.5)", "timeout_sec"),
+        ("node.get_clock().sleep_for(d)", "node.get_clock().sleep_for"),
+        ("Clock(clock_type=ClockType.STEADY_TIME)", "ClockType.STEADY_TIME"),
+        ("import asyncio\nasyncio.run(main())", "asyncio"),
+    ],
+)
+def test_what_follows_wall_time_is_found(line: str, name: str) -> None:
+    assert name in clues(NODE + line)
+
+
+def test_a_module_that_is_imported_and_not_used_is_no_clue() -> None:
+    assert clues("import time\n" + NODE) == []
+
+
+def test_only_what_the_node_reaches_counts() -> None:
+    files = {
+        "pkg/__init__.py": b"",
+        "pkg/node.py": b"from pkg import helper\nfrom . import near\n",
+        "pkg/helper.py": b"from .deep import x\n",
+        "pkg/deep.py": b"import time\ntime.sleep(1)\n",
+        "pkg/near.py": b"",
+        "pkg/other.py": b"import time\ntime.sleep(2)\n",
+        "setup.py": b"import time\ntime.sleep(3)\n",
+    }
+    assert [(clue.file, clue.line) for clue in wall_clues(files, "pkg.node")] == [("pkg/deep.py", 2)] * 2
+    assert {clue.file for clue in wall_clues(files, None)} == {"pkg/deep.py", "pkg/other.py"}
+
+
+def test_source_that_cannot_be_parsed_gives_no_clue() -> None:
+    assert wall_clues({"pkg/node.py": b"import time\ntime.sleep(1\n", "pkg/null.py": b"\0"}, "pkg.node") == []

@@ -1,0 +1,96 @@
+"""Rest is read from /proc, so real processes are looked at."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.trial.rest import GoneError, Threads
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+WAITS_ON_A_LINE = "import sys; print('ready', flush=True); sys.stdin.readline(); print('woken', flush=True); "
+
+
+@contextmanager
+def python(code: str) -> Iterator[subprocess.Popen[str]]:
+    """A Python that printed "ready"."""
+    pipe = subprocess.PIPE
+    with subprocess.Popen([sys.executable, "-c", code], stdin=pipe, stdout=pipe, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        yield process
+        process.kill()
+
+
+def until_asleep(threads: Threads) -> None:
+    while not threads.look().asleep:
+        pass
+
+
+def test_a_process_that_waits_rests_and_two_looks_are_equal() -> None:
+    with python(WAITS_ON_A_LINE) as process:
+        threads = Threads(process.pid)
+        until_asleep(threads)
+        assert threads.look() == threads.look()
+
+
+def test_a_process_that_ran_between_two_looks_shows_it_though_it_sleeps_in_both() -> None:
+    with python(WAITS_ON_A_LINE + "sys.stdin.readline()") as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        threads = Threads(process.pid)
+        until_asleep(threads)
+        before = threads.look()
+        process.stdin.write("\n")
+        process.stdin.flush()
+        assert process.stdout.readline() == "woken\n"
+        until_asleep(threads)
+        assert before.counted
+        assert threads.look() != before
+
+
+def test_a_busy_process_does_not_rest() -> None:
+    with python("print('ready', flush=True)\nwhile True: pass") as process:
+        threads = Threads(process.pid)
+        assert not any(threads.look().asleep for _ in range(100))
+        assert not threads.main_asleep()
+
+
+def test_a_second_thread_counts() -> None:
+    busy = "import threading, sys\ndef work():\n while True: pass\nthreading.Thread(target=work, daemon=True).start()\n"
+    with python(busy + "print('ready', flush=True)\nsys.stdin.readline()") as process:
+        assert not any(Threads(process.pid).look().asleep for _ in range(100))
+
+
+@pytest.mark.parametrize(
+    ("wait", "call", "timed"),
+    [
+        ("import time; time.sleep(60)", "clock_nanosleep", True),
+        ("import threading; threading.Event().wait(60)", "futex", True),
+        ("import threading; threading.Event().wait()", "futex", False),
+        ("import select; select.select([], [], [], 60)", "select", True),
+        ("import select; p = select.poll(); p.poll()", "poll", False),
+        ("import select; p = select.poll(); p.poll(60000)", "poll", True),
+    ],
+)
+def test_what_a_thread_waits_for_is_told(wait: str, call: str, timed: bool) -> None:
+    with python(f"print('ready', flush=True)\n{wait}") as process:
+        threads = Threads(process.pid)
+        until_asleep(threads)
+        (main,) = (each for each in threads.waits() if each.tid == process.pid)
+        assert (main.call.removeprefix("p").removesuffix("6"), main.timed) == (call.removeprefix("p"), timed)
+
+
+def test_the_end_of_a_process_is_told() -> None:
+    with python(WAITS_ON_A_LINE) as process:
+        threads = Threads(process.pid)
+        process.kill()
+        process.wait()
+        with pytest.raises(GoneError):
+            threads.look()

@@ -1,0 +1,32 @@
+from __future__ import annotations
+
+import math
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.recording import Pose
+from grader.simulator.turtle import SIDE_M
+from grader.trial.start import MARGIN_M, start_pose
+
+
+def test_without_a_seed_the_turtle_starts_where_turtlesim_starts_it() -> None:
+    assert start_pose(None, 2.0) == Pose(SIDE_M / 2, SIDE_M / 2, 0.0)
+
+
+@given(st.integers(), st.floats(0.1, 2.2))
+def test_the_ideal_circle_of_either_side_keeps_clear_of_the_walls(seed: int, radius_m: float) -> None:
+    start = start_pose(seed, radius_m)
+    for side in (1.0, -1.0):
+        centre = (
+            start.x - side * radius_m * math.sin(start.theta),
+            start.y + side * radius_m * math.cos(start.theta),
+        )
+        for value in centre:
+            assert value - radius_m >= MARGIN_M - 0.01
+            assert value + radius_m <= SIDE_M - MARGIN_M + 0.01
+
+
+def test_a_seed_gives_the_same_start_again_and_another_one_another() -> None:
+    assert start_pose(7, 2.0) == start_pose(7, 2.0)
+    assert start_pose(7, 2.0) != start_pose(8, 2.0)
