@@ -133,8 +133,41 @@ def sim(context: typer.Context, image: Image = None) -> None:
     with _progress() as tell:
         extra = underlay.ensure(here, tell)
     drawing = ["--image", str(image)] if image else []
-    argv = [str(here.python), "-m", "grader.simulator.node", *drawing, *context.args]
+    argv = [str(here.python), "-m", "grader.simulator", *drawing, *context.args]
     os.execve(argv[0], argv, users_environment(here, extra))
+
+
+Domain = Annotated[
+    Optional[int],  # noqa: UP045
+    typer.Option(help="Which ROS domain: 0 to 101. Without it the one that is set, else one of your own."),
+]
+
+
+@app.command(epilog="Example: source <(grader env)")
+def env(domain: Domain = None) -> None:
+    """Print shell code that puts ROS 2 into this shell: for `source <(grader env)`, in bash and zsh."""
+    from grader import shell
+
+    try:
+        with _progress() as tell:
+            wanted = shell.users_environment(domain, tell)
+    except GraderError:
+        # Whoever sources this sees nothing of our exit code.
+        print("false")
+        raise
+    sys.stdout.write(shell.code(wanted))
+
+
+@app.command(epilog="Example: grader shell --domain 7")
+def shell(domain: Domain = None) -> None:
+    """Open a shell in which ROS 2 is there, until you type exit."""
+    from grader import shell as shells
+
+    with _progress() as tell:
+        wanted = shells.users_environment(domain, tell)
+    print(f"A shell with ROS 2, in domain {wanted['ROS_DOMAIN_ID']}. To leave it: exit")
+    sys.stdout.flush()
+    shells.open_shell(wanted)
 
 
 def main() -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import sys
+import tempfile
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 DISTRO = "jazzy"
+SEARCHED = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH")
+"""The search paths by which ROS 2 and overlays are found."""
 FASTDDS_PROFILE = Path(__file__).with_name("fastdds.xml")
 _PYTHON_LIB = Path(f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages")
 
@@ -103,16 +106,56 @@ def environment(
     return {key: value for key, value in env.items() if value}
 
 
-def users_environment(ros: Ros, underlay: Path | None, env: Mapping[str, str] = os.environ) -> dict[str, str]:
+def domain_of(uid: int) -> int:
+    """The ROS domain id of a user, 1 to 101: users of one machine whose ids lie close together never share one.
+
+    101 is the highest whose ports lie below those that Linux gives out by itself; 0 is what everybody has who chose
+    none.
+    """
+    return 1 + uid % 101
+
+
+def users_environment(
+    ros: Ros, underlay: Path | None, env: Mapping[str, str] = os.environ, domain: int | None = None
+) -> dict[str, str]:
     """The environment of a node that a user starts for themselves: their own, and what ROS 2 needs on top.
 
-    Home, domain, PATH and what else the user has set stay theirs, so that nodes of other terminals are heard.
+    What the user has set stays theirs, workspaces that they sourced are searched first. `domain` is the one to use,
+    else what they have set, else one of the user's own: classmates on one machine must not drive each other's turtles.
     """
     home = Path(env.get("HOME", "/"))
-    needed = environment(ros, home=home, underlay=underlay)
-    theirs = {"HOME", "PATH", "LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"}
-    del needed["ROS_LOG_DIR"], needed["RCUTILS_COLORIZED_OUTPUT"], needed["PYTHONHASHSEED"]
-    return {**needed, **{key: value for key, value in env.items() if key in theirs or key not in needed}}
+    needed = environment(ros, home=home, underlay=underlay, domain=domain_of(os.getuid()))
+    # Made for a run that nobody watches.
+    for name in ("ROS_LOG_DIR", "RCUTILS_COLORIZED_OUTPUT", "PYTHONHASHSEED", "PYTHONNOUSERSITE", "PYTHONUNBUFFERED"):
+        needed.pop(name, None)
+    if "ROS_LOG_DIR" not in env and "ROS_HOME" not in env and not os.access(home, os.W_OK):
+        needed["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir(), f"ros-log-{os.getuid()}"))
+    theirs = {"HOME", "LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"}
+    joined = {name: _joined(name, needed, env) for name in SEARCHED if name in needed or name in env}
+    joined["PATH"] = _users_path(ros, env)
+    kept = {key: value for key, value in env.items() if key in theirs or key not in needed}
+    chosen = {"ROS_DOMAIN_ID": str(domain)} if domain is not None else {}
+    return {**needed, **kept, **joined, **chosen}
+
+
+def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str:
+    """One search path: the user's own entries first, without what belongs to another ROS 2 or to an older underlay."""
+    ours = [entry for entry in needed.get(name, "").split(os.pathsep) if entry]
+    prefixes = [Path(entry) for entry in env.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
+    current = needed["AMENT_PREFIX_PATH"].split(os.pathsep)
+    foreign = [p for p in prefixes if str(p) not in current and (_has(p, "rclpy") or p.name.startswith("turtlesim-"))]
+    theirs = [entry for entry in env.get(name, "").split(os.pathsep) if entry and entry not in ours]
+    kept = [entry for entry in theirs if not any(Path(entry).is_relative_to(prefix) for prefix in foreign)]
+    return os.pathsep.join(dict.fromkeys([*kept, *ours]))
+
+
+def _users_path(ros: Ros, env: Mapping[str, str]) -> str:
+    """PATH with our commands on it: behind those of a sourced ROS 2, else first, so that `python3` has rclpy too."""
+    path = env.get("PATH", "/usr/local/bin:/usr/bin:/bin")
+    ours = str(Path(sys.prefix, "bin"))
+    if ours in path.split(os.pathsep):
+        return path
+    return f"{path}{os.pathsep}{ours}" if ros.kind == "sourced" else f"{ours}{os.pathsep}{path}"
 
 
 def _sourced(env: Mapping[str, str]) -> Ros | None:
