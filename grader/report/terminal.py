@@ -12,7 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.outcome import Outcome, Report, Status
-from grader.words import count, printable
+from grader.report.verdict import tone, verdict
+from grader.words import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -79,19 +80,8 @@ def _details(console: Console, rows: list[tuple[str, str]]) -> None:
 
 
 def _verdict(report: Report) -> Text:
-    points = f"{_points(report.points)} of {_points(report.max)} points"
-    errors, failed = report.with_status(Status.ERROR), report.with_status(Status.FAILED)
-    skipped = report.with_status(Status.SKIPPED)
-    if errors:
-        what = f"{count(len(errors), 'check')} could not be judged, through no fault of the submission"
-        text = f"Not finished: {what}. {points}."
-        return Text(text, style=STYLES["error"])
-    if not failed and not skipped:
-        return Text(f"Passed: {points}.", style="bold green")
-    if not failed:
-        return Text(f"Not passed: {points}, {count(len(skipped), 'check')} not judged.", style=STYLES["failed"])
-    also = f", {len(skipped)} not judged because of that" if skipped else ""
-    return Text(f"Not passed yet: {points}, {count(len(failed), 'check')} failed{also}.", style=STYLES["failed"])
+    meant = tone(report)
+    return Text(verdict(report), style="bold green" if meant == "passed" else STYLES[meant])
 
 
 def _footnotes(report: Report) -> list[str]:

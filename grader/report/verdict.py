@@ -1,0 +1,36 @@
+"""The verdict on a submission in one line, the same wherever it is told."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from grader.outcome import Status
+from grader.words import count
+
+if TYPE_CHECKING:
+    from grader.outcome import Report
+
+Tone = Literal["passed", "failed", "error"]
+
+
+def tone(report: Report) -> Tone:
+    """How the verdict is meant: "error" where the machine failed."""
+    if report.with_status(Status.ERROR):
+        return "error"
+    return "failed" if report.with_status(Status.FAILED) or report.with_status(Status.SKIPPED) else "passed"
+
+
+def verdict(report: Report) -> str:
+    """One sentence or two: whether it passed, with how many points."""
+    points = f"{report.points:g} of {report.max:g} points"
+    errors, failed = report.with_status(Status.ERROR), report.with_status(Status.FAILED)
+    skipped = report.with_status(Status.SKIPPED)
+    if errors:
+        what = f"{count(len(errors), 'check')} could not be judged, through no fault of the submission"
+        return f"Not finished: {what}. {points}."
+    if not failed and not skipped:
+        return f"Passed: {points}."
+    if not failed:
+        return f"Not passed: {points}, {count(len(skipped), 'check')} not judged."
+    also = f", {len(skipped)} not judged because of that" if skipped else ""
+    return f"Not passed yet: {points}, {count(len(failed), 'check')} failed{also}."
