@@ -118,9 +118,6 @@ def look(
 def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool:
     """Make .venv, in place of any that is there; False if Python could not."""
     say("Making .venv with Python {}.{}.{} ({})".format(*python.version, python.path))
-    closed = machine.closed_folder(python.path) if os.getuid() == 0 else None
-    if closed:
-        print(f"  Only root can run this Python: other users cannot enter {closed}.")
     options = ["--clear"]
     if ros:
         say(f"ROS 2 Jazzy is sourced from {ros.prefix}: it is used, and none is installed")
