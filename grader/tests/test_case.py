@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests import case as module
+from grader.tests.case import Case, make_submission, read_case, read_cases
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture
+def cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(module, "CASES", tmp_path / "cases")
+    (tmp_path / "cases" / "001-x" / "files").mkdir(parents=True)
+    return tmp_path / "cases"
+
+
+def test_files_are_laid_over_the_solution_without_its_markers(cases: Path, tmp_path: Path) -> None:
+    (cases / "001-x" / "files" / "setup.py").write_text("mine")
+    (cases / "001-x" / "make.py").write_text("def make(folder):\n    (folder / 'made').touch()\n")
+    case = Case("001-x", "", "failed", remove=("package.xml", "resource"))
+    folder = make_submission(case, tmp_path / "in")
+    package = folder / "my_robot_controller"
+    assert (package / "setup.py").read_text() == "mine"
+    assert (folder / "made").exists()
+    assert not (package / "package.xml").exists()
+    assert not (package / "resource").exists()
+    node = (package / "my_robot_controller" / "draw_circle.py").read_text()
+    assert "create_publisher" in node
+    assert "SOLUTION" not in node
+    assert "TODO" not in node
+
+
+def test_without_a_base_the_files_are_all_there_is(cases: Path, tmp_path: Path) -> None:
+    (cases / "001-x" / "files" / "a.txt").touch()
+    folder = make_submission(Case("001-x", "", "usage", base=""), tmp_path / "in")
+    assert [path.name for path in folder.iterdir()] == ["a.txt"]
+
+
+@pytest.mark.parametrize("text", ['why = ""\nresult = "fine"\n', 'why = ""\nresult = "failed"\nfailled = ["rate"]\n'])
+def test_a_slip_in_expected_toml_is_no_case_that_passes(cases: Path, text: str) -> None:
+    (cases / "001-x" / "expected.toml").write_text(text)
+    with pytest.raises(ValueError, match=r"001-x/expected\.toml"):
+        read_case(cases / "001-x")
+
+
+def test_every_folder_of_cases_is_a_case() -> None:
+    assert [case.name for case in read_cases()] == sorted(path.name for path in module.CASES.iterdir())
