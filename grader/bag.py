@@ -42,10 +42,20 @@ def write_bag(folder: Path, messages: Sequence[Message], prefixes: Iterable[Path
 
 
 def read_payloads(folder: Path) -> Iterator[bytes]:
-    """Yield the messages' CDR data in the order in which `write_bag` got them."""
-    with Reader(folder) as reader:
-        for _connection, _stamp, data in reader.messages():
-            yield bytes(data)
+    """Yield the messages' CDR data in the order in which `write_bag` got them.
+
+    Raises:
+        ValueError: the bag is damaged.
+    """
+    try:
+        with Reader(folder) as reader:
+            for _connection, _stamp, data in reader.messages():
+                yield bytes(data)
+    except GeneratorExit:
+        raise
+    except Exception as error:  # a damaged file shows itself in any way: as a bad offset, text or checksum
+        message = f"the bag is damaged: {error}"
+        raise ValueError(message) from error
 
 
 def _register(store: Typestore, name: str, prefixes: Sequence[Path]) -> None:
