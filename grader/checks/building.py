@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from grader.checks.crash import read_traceback
+from grader.checks.crash import read_tracebacks
 from grader.checks.kind import Kind, NoParams
 from grader.outcome import Finding, Where, failed, passed
 from grader.words import a_list, shorten
@@ -15,6 +15,11 @@ if TYPE_CHECKING:
 
 INSTALLED_MODULE = re.compile(r"(?:local/)?lib/python[\d.]+/(?:site|dist)-packages/(?P<path>.+\.py)")
 LAST_WORDS = re.compile(r"^(?:error|[\w.]*Error|[\w.]*Exception)\b.*", re.MULTILINE)
+SETUP_PY_FRAME = re.compile(r"(?P<before>, in run_setup\n.*\n(?:[ ^~]+\n)?\s+File )\"<string>\"")
+"""How setup.py itself appears in a traceback where colcon runs it to learn what setup() is given."""
+UNREAD_SETUP = "return ast.literal_eval(output)"
+"""colcon's own line that reads what setup() was given."""
+NO_FILE = re.compile(r"can't copy .*: doesn't exist")
 EXPECTED = "`colcon build` ends without an error and installs the package."
 
 
@@ -58,13 +63,21 @@ def _broken(evidence: Evidence) -> Finding:
         seen = f'setuptools cannot read the entry point "{shorten(bad.text)}".'
         expected = "An entry point reads NAME = PACKAGE.MODULE:FUNCTION."
         return failed("entry-point-format", seen, expected, where=Where("setup.py", bad.line))
-    crash = read_traceback(build.log, evidence.submission.files)
-    if crash is not None:
-        return failed(
-            "setup-py-raises", f"`colcon build` failed: {crash.seen}.", EXPECTED, crash.meaning, where=crash.where
-        )
-    words = LAST_WORDS.findall(build.log)
+    log = SETUP_PY_FRAME.sub(r'\g<before>"setup.py"', build.log)
+    crashes = [crash for _, crash in read_tracebacks(log, evidence.submission.files) if crash.where is not None]
+    if crashes:
+        crash = crashes[0]
+        return failed("setup-py-raises", f"setup.py failed: {crash.seen}.", EXPECTED, crash.meaning, where=crash.where)
+    where = Where("setup.py", _setup_line(evidence))
+    if UNREAD_SETUP in build.log:
+        seen = "colcon could not read from setup.py what setup() was given."
+        cause = "setup.py should only call setup(): it must not print anything, nor end the program."
+        return failed("setup-py-output", seen, EXPECTED, cause, where=where)
+    words = [line for line in LAST_WORDS.findall(build.log) if "CalledProcessError" not in line]
     said = f": {shorten(words[-1], 150)}" if words else f" (exit code {build.exit_code})"
+    if words and NO_FILE.search(words[-1]):
+        cause = "setup.py names a file in data_files that the package does not have."
+        return failed("data-file-missing", f"`colcon build` failed{said}.", EXPECTED, cause, where=where)
     return failed("build-failed", f"`colcon build` failed{said}.", EXPECTED)
 
 

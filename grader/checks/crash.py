@@ -103,14 +103,19 @@ def end_seen(evidence: Evidence) -> str:
 
 def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
     """The root of the last exception in a stderr: where exceptions are chained, the first one that is no Ctrl-C."""
-    blocks = list(_blocks(text.splitlines()))
     last: list[Crash] = []
-    for chained, lines in blocks:
-        crash = _crash(lines, files)
-        if crash is not None:
-            last = [*last, crash] if chained else [crash]
+    for chained, crash in read_tracebacks(text, files):
+        last = [*last, crash] if chained else [crash]
     roots = [crash for crash in last if crash.error not in STOPS]
     return roots[0] if roots else None
+
+
+def read_tracebacks(text: str, files: Mapping[str, bytes]) -> Iterable[tuple[bool, Crash]]:
+    """Every exception in a text, and whether it happened while the one before it was handled."""
+    for chained, lines in _blocks(text.splitlines()):
+        crash = _crash(lines, files)
+        if crash is not None:
+            yield chained, crash
 
 
 def _blocks(lines: list[str]) -> Iterable[tuple[bool, list[str]]]:

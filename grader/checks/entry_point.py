@@ -82,10 +82,18 @@ def _missing(evidence: Evidence) -> Finding:
     if setup is not None and setup.groups and "console_scripts" not in setup.groups:
         cause = f'entry_points has the group "{shorten(setup.groups[0])}"; executables come from console_scripts.'
         return failed("entry-point-group", seen, expected, cause, where=_line(evidence))
-    if evidence.node_file is not None:
-        cause = f"{shorten(evidence.node_file)} is there, but setup.py does not name it: a file alone is no executable."
+    file = evidence.node_file or _looks_like_a_node(evidence, [point.target for point in points])
+    if file is not None:
+        cause = f"{shorten(file)} is there, but setup.py does not name it: a file alone is no executable."
         return failed("entry-point-missing", seen, expected, cause, where=_line(evidence))
     return failed("entry-point-missing", seen, expected, where=_line(evidence))
+
+
+def _looks_like_a_node(evidence: Evidence, targets: list[str | None]) -> str | None:
+    """A file that makes a publisher, and that no entry point leads to."""
+    taken = [module_file((target or "").partition(":")[0], evidence.submission.files) for target in targets]
+    files = [call.module.file for call in evidence.code.calls("create_publisher")]
+    return next((file for file in files if file not in taken), None)
 
 
 def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:

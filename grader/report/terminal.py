@@ -29,8 +29,10 @@ STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "error":
 def render(report: Report, console: Console) -> None:
     """Print the report."""
     _line(console, Text(printable(f"{report.exercise_title}: {report.submission}"), style="bold"))
+    told = ""
     for outcome in report.outcomes:
-        _check(outcome, console)
+        _check(outcome, console, told)
+        told = outcome.finding.seen
     console.print()
     _line(console, _verdict(report))
     for text in _footnotes(report):
@@ -44,7 +46,8 @@ def _look(outcome: Outcome) -> str:
     return outcome.status.value
 
 
-def _check(outcome: Outcome, console: Console) -> None:
+def _check(outcome: Outcome, console: Console, told: str) -> None:
+    """One check. What was `told` of the check before it is not said again: one cause may stop many."""
     look = _look(outcome)
     signs = SIGNS if console.encoding.lower().startswith("utf") else ASCII_SIGNS
     head = Text(f"{signs[look]} ", style=STYLES[look])
@@ -53,7 +56,7 @@ def _check(outcome: Outcome, console: Console) -> None:
         points = f"{_points(outcome.points)}/{_points(outcome.max)}" if look != "error" else "not counted"
         head.append(f"  {points}", style="dim" if look == "passed" else STYLES[look])
     _line(console, head)
-    if look == "passed" or outcome.hidden:
+    if look == "passed" or outcome.hidden or outcome.finding.seen == told:
         return
     finding = outcome.finding
     if look == "skipped":

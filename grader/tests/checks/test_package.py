@@ -119,12 +119,38 @@ Failed   <<< my_robot_controller [0.61s, exited with code 1]
 """
 
 
+READ_BY_COLCON = """\
+Traceback (most recent call last):
+  File "<string>", line 1, in <module>
+  File "/env/setuptools/_distutils/core.py", line 268, in run_setup
+    exec(code, g)
+  File "<string>", line 7, in <module>
+FileNotFoundError: [Errno 2] No such file or directory: 'README.md'
+[0.5s] ERROR:colcon:Exception in job execution
+Traceback (most recent call last):
+  File "/env/colcon_core/executor/sequential.py", line 50, in execute
+    loop.run_until_complete(future)
+subprocess.CalledProcessError: Command '['python3', '-c', 'x']' returned non-zero exit status 1.
+"""
+UNREAD = """\
+Traceback (most recent call last):
+  File "/env/colcon_python_setup_py/python_setup_py.py", line 301, in _get_setup_information
+    return ast.literal_eval(output)
+  File "<unknown>", line 0
+SyntaxError: invalid syntax
+"""
+NO_MARKER = "error: can't copy 'resource/my_robot_controller': doesn't exist or not a regular file\n"
+
+
 @pytest.mark.parametrize(
     ("files", "build", "diagnosis", "where"),
     [
         ({"setup.py": None}, NOTHING, "setup-py-missing", "None"),
         ({"setup.py": "setup(\n"}, replace(NOTHING, exit_code=1), "setup-py-syntax", "setup.py:1"),
         ({}, replace(NOTHING, exit_code=1, log=SETUP_TRACEBACK), "setup-py-raises", "setup.py:5"),
+        ({}, replace(NOTHING, exit_code=1, log=READ_BY_COLCON), "setup-py-raises", "setup.py:7"),
+        ({}, replace(NOTHING, exit_code=1, log=UNREAD), "setup-py-output", "setup.py:5"),
+        ({}, replace(NOTHING, exit_code=1, log=NO_MARKER), "data-file-missing", "setup.py:5"),
         ({}, replace(NOTHING, exit_code=1, log="error: no such option"), "build-failed", "None"),
         ({}, replace(NOTHING, exit_code=-9, timed_out=True, seconds=60.0), "build-timeout", "None"),
         ({}, replace(NOTHING, exit_code=1, out_of="disk"), "build-limit", "None"),
@@ -156,6 +182,12 @@ def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
     )
     no_xml = tuple(path for path in BUILD.installed if "package.xml" not in path)
     assert of("installed", build=replace(BUILD, installed=no_xml)).diagnosis == "package-xml-not-installed"
+
+
+def test_a_node_under_another_file_name_that_no_entry_point_leads_to_is_shown() -> None:
+    files = {NODE_FILE: None, "my_robot_controller/circle.py": NODE, **setup_py(f'            "{POINT}",\n', "")}
+    found = of("entry-point", files, NOTHING)
+    assert found.cause.startswith("my_robot_controller/circle.py is there, but setup.py does not name it")
 
 
 def leads_to(target: str) -> Build:

@@ -18,7 +18,7 @@ ESCAPE = "\x1b"
 class Latin1(io.StringIO):
     """A stream that knows few characters, as on an old terminal."""
 
-    encoding = "latin-1"  # type: ignore[assignment]
+    encoding = "latin-1"
 
 
 def told(made: Report, *, width: int = 80, terminal: bool = False, stream: io.StringIO | None = None) -> str:
@@ -72,9 +72,13 @@ def test_a_failure_says_what_why_and_where() -> None:
 
 def test_an_error_is_not_counted_and_says_what_to_do() -> None:
     text = told(report("error"))
-    assert (
-        "! The turtle drives a circle  not counted\n    seen: The disk is full: make room, then grade again.\n" in text
-    )
+    assert "! The turtle drives a circle  not counted\n" in text
+    assert "    seen: The disk is full: make room, then grade again.\n" in text
+
+
+def test_one_cause_for_many_checks_is_told_once() -> None:
+    assert told(report("error")).count("The disk is full") == 1
+    assert told(report("skipped")).count("Not judged, since") == 1
 
 
 def test_where_the_stream_cannot_say_more_signs_are_ascii() -> None:
