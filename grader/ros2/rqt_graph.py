@@ -1,0 +1,146 @@
+"""The command `rqt_graph`: the ROS graph as a picture, or as text where there is no screen."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import GraderError, UsageError
+from grader.ros2.graph import Show, picture, to_dot, to_text
+from grader.ros2.layout import Format, render
+from grader.ros2.start import hand_over, see_to_environment
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from grader.ros2.graph import Picture
+
+_FORMATS = (".svg", ".png", ".dot")
+_OPENED_S = 3.0
+"""A viewer that has not failed by then has opened the picture."""
+_NOTHING = (
+    "No node is running here (ROS_DOMAIN_ID is {domain}). Start one in another terminal, with the same domain id: "
+    "ros2 run turtlesim turtlesim_node"
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns the exit code: 0 drawn, 1 no node is running, else as in design.md."""
+    argv = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        hand_over("rqt_graph", "rqt_graph")
+        options = _parse(argv)
+        see_to_environment({"rclpy"})
+        return _run(options)
+    except GraderError as error:
+        print(f"rqt_graph: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:
+        # Whoever read us has gone, as in `rqt_graph | head`.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return 1
+
+
+def _parse(argv: Sequence[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="rqt_graph",
+        description="Show which nodes are running, and which topics they publish and subscribe to.",
+        epilog="Without --output the picture is opened where there is a screen, else it is printed as text.",
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="FILE", help="write the picture: graph.svg, graph.png or graph.dot"
+    )
+    parser.add_argument("--text", action="store_true", help="print it as text, also where there is a screen")
+    parser.add_argument("--active", action="store_true", help="leave out topics that nobody publishes or subscribes to")
+    parser.add_argument("--debug", action="store_true", help="show /rosout, /parameter_events, /clock and tools, too")
+    parser.add_argument(
+        "--hidden", action="store_true", help='show names with a "_" in front, too: the inside of actions'
+    )
+    parser.add_argument("--all", action="store_true", help="show everything: --debug and --hidden")
+    if "_ARGCOMPLETE" in os.environ:
+        from argcomplete import autocomplete
+
+        autocomplete(parser)
+    options = parser.parse_args(argv)
+    if options.output is not None:
+        _check(options.output)
+    return options
+
+
+def _check(output: Path) -> None:
+    if output.suffix not in _FORMATS:
+        message = f"--output {output}: the name must end in {', '.join(_FORMATS)}, which says how the graph is drawn."
+        raise UsageError(message)
+    if not output.absolute().parent.is_dir():
+        message = f"--output {output}: there is no folder {output.absolute().parent}."
+        raise UsageError(message)
+
+
+def _run(options: argparse.Namespace) -> int:
+    # Here, since rclpy cannot be imported before the environment has it.
+    from grader.ros2.discovery import cli_node, settle
+    from grader.ros2.heard import heard
+
+    with cli_node(f"_rqt_graph_{os.getpid()}") as node:
+        settle(node)
+        seen = heard(node)
+    if not seen.nodes:
+        print(_NOTHING.format(domain=os.environ.get("ROS_DOMAIN_ID", "0")), file=sys.stderr)
+        return 1
+    show = Show(debug=options.debug or options.all, hidden=options.hidden or options.all, dead_ends=not options.active)
+    drawn = picture(seen.nodes, seen.ends, show)
+    if options.output is not None:
+        _write(options.output, drawn)
+    elif options.text or not _opened(drawn):
+        print(to_text(drawn, ascii_only=not sys.stdout.encoding.lower().startswith("utf")), end="")
+    sys.stdout.flush()
+    return 0
+
+
+def _write(file: Path, drawn: Picture) -> None:
+    dot = to_dot(drawn)
+    kinds: dict[str, Format] = {".svg": "svg", ".png": "png"}
+    content = render(dot, kinds[file.suffix]) if file.suffix in kinds else dot.encode()
+    try:
+        file.write_bytes(content)
+    except OSError as error:
+        message = f"{file} could not be written: {error.strerror}."
+        raise UsageError(message) from error
+
+
+def _opened(drawn: Picture) -> bool:
+    """Open the picture in the desktop's viewer; returns whether there is one."""
+    opener = shutil.which("xdg-open")
+    if opener is None or not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        return False
+    # It stays: the viewer reads it when it likes.
+    file = Path(tempfile.mkdtemp(prefix="rqt_graph-"), "graph.png")
+    _write(file, drawn)
+    viewer = subprocess.Popen(
+        [opener, str(file)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    try:
+        opened = viewer.wait(_OPENED_S) == 0
+    except subprocess.TimeoutExpired:
+        opened = True
+    if opened:
+        print(f"Opened {file}")
+    else:
+        shutil.rmtree(file.parent)
+    return opened
+
+
+if __name__ == "__main__":
+    sys.exit(main())
