@@ -122,8 +122,14 @@ def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool
     if ros:
         say(f"ROS 2 Jazzy is sourced from {ros.prefix}: it is used, and none is installed")
         options.append("--system-site-packages")
-    env = clean_environment(os.environ)
-    return subprocess.call([python.path, "-m", "venv", *options, str(VENV)], env=env, cwd=str(ROOT)) == 0
+    command = [python.path, "-m", "venv", *options, str(VENV)]
+    try:
+        # Kept back, since all it ever says is why it failed, or that it was interrupted.
+        subprocess.check_output(command, stderr=subprocess.STDOUT, env=clean_environment(os.environ), cwd=str(ROOT))
+    except subprocess.CalledProcessError as error:
+        print(error.output.decode(errors="replace"), end="", file=sys.stderr)
+        return False
+    return True
 
 
 def main(arguments: Sequence[str]) -> int:

@@ -67,6 +67,7 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Course:
         monkeypatch.setattr(bootstrap, name, value)
     monkeypatch.setattr(bootstrap, "read_stamp", _bind(bootstrap.read_stamp, course.stamp))
     monkeypatch.setattr(subprocess, "call", course.call)
+    monkeypatch.setattr(subprocess, "check_output", course.call)
     monkeypatch.setattr(os, "getuid", lambda: 1000)
     monkeypatch.delenv("CI", raising=False)
     monkeypatch.setattr(machine, "probe", lambda _path: course.python)
@@ -175,6 +176,18 @@ def test_what_root_in_ci_cannot_install_is_told(course: Course, monkeypatch: pyt
     monkeypatch.setattr(subprocess, "call", lambda _command, **_options: 100)
     course.needs = [Need("bubblewrap", "bubblewrap")]
     assert course.set_up() == bootstrap.MACHINE_BROKEN
+
+
+def test_a_python_that_cannot_make_an_environment_is_told(
+    course: Course, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fails(command: list[str], **_options: object) -> bytes:
+        raise subprocess.CalledProcessError(1, command, b"Error: no space left on device\n")
+
+    monkeypatch.setattr(subprocess, "check_output", fails)
+    assert course.set_up() == bootstrap.MACHINE_BROKEN
+    assert "no space left on device" in capsys.readouterr().err
+    assert course.commands == []
 
 
 def test_installers_do_not_see_a_sourced_ros_or_an_active_environment() -> None:
