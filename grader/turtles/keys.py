@@ -1,0 +1,75 @@
+"""The keys of turtle_teleop_key: from the bytes that a terminal sends to what they ask for. Pure."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Drive for a second: forwards or backwards (1, -1), to the left or right (1, -1); in units of the node's scale."""
+
+    linear: float
+    angular: float
+
+
+@dataclass(frozen=True)
+class Turn:
+    """Turn to `theta` (rad, counter-clockwise from east)."""
+
+    theta: float
+
+
+@dataclass(frozen=True)
+class Cancel:
+    """Stop the turn that is going on."""
+
+
+@dataclass(frozen=True)
+class Quit:
+    """End the program."""
+
+
+Key = Drive | Turn | Cancel | Quit
+
+_ARROWS = {"A": Drive(1.0, 0.0), "B": Drive(-1.0, 0.0), "C": Drive(0.0, -1.0), "D": Drive(0.0, 1.0)}
+# Around F on the keyboard, each key lies where the turtle is to look.
+_LETTERS: dict[str, Key] = {
+    "g": Turn(0.0),
+    "t": Turn(math.pi / 4),
+    "r": Turn(math.pi / 2),
+    "e": Turn(3 * math.pi / 4),
+    "d": Turn(math.pi),
+    "c": Turn(-3 * math.pi / 4),
+    "v": Turn(-math.pi / 2),
+    "b": Turn(-math.pi / 4),
+    "f": Cancel(),
+    "q": Quit(),
+    # Ctrl-D: the end of what is typed.
+    "\x04": Quit(),
+}
+# An arrow is ESC [ A or, where a program left the keypad in its other mode, ESC O A; with Shift and the like it has
+# numbers inside.
+_SEQUENCE = re.compile(r"\x1b(?:\[[0-9;]*([@-~])|O([@-~]))")
+_UNFINISHED = re.compile(r"\x1b(?:\[[0-9;]*|O)?\Z")
+
+
+def keys(text: str) -> tuple[list[Key], str]:
+    """What was typed, in order, and the beginning of a sequence whose rest is still to come. Other keys are ignored."""
+    typed: list[Key] = []
+    at = 0
+    while at < len(text):
+        sequence = _SEQUENCE.match(text, at)
+        if sequence:
+            arrow = _ARROWS.get(sequence[1] or sequence[2])
+            typed += [arrow] if arrow else []
+            at = sequence.end()
+        elif _UNFINISHED.match(text, at):
+            break
+        else:
+            key = _LETTERS.get(text[at].lower())
+            typed += [key] if key else []
+            at += 1
+    return typed, text[at:]
