@@ -1,118 +1,142 @@
-"""Discovery: an observing node, when it has heard of everybody, and what it has heard. Needs rclpy.
-
-A node hears of others little by little: first their publishers and subscriptions, without the names of their nodes,
-then the names. Measured with turtlesim and draw_circle on two busy cores: all of it within 0.2 to 0.7 s, with pauses of
-up to 0.4 s while some endpoint's node had no name yet, and of at most 0.07 s otherwise.
-"""
+"""A node for one verb, and waiting until it has seen the whole graph: by what arrives, with a deadline."""
 
 from __future__ import annotations
 
 import os
+import signal
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import rclpy
-from rclpy.node import Node
+from rclpy.executors import ExternalShutdownException
+from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
+from grader.ros2.failure import Ros2Error
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
+
+    from rclpy.node import Node
 
 QUIET_S = 0.2
-"""Nothing new for so long, and the graph counts as settled."""
-FIRST_S = 1.5
-"""So long the first endpoint is waited for; after that nothing is running."""
+"""The graph has settled when nothing new was heard for this long."""
 DEADLINE_S = 3.0
-"""So long the rest is waited for, where it does not come to rest."""
-UNKNOWN = "_NODE_NAME_UNKNOWN_"
-"""What rclpy calls the node of an endpoint whose name has not arrived; programs without ROS 2 keep that name."""
-
+"""For participants that are there (their ports are open) but say nothing, as a stopped process."""
+NOTHING_THERE_S = 0.5
+"""How long to listen where it cannot be known whether anybody is there: as long as the real one does."""
 _POLL_S = 0.01
-
-
-@dataclass(frozen=True)
-class End:
-    """A publisher or subscription, as `grader.recording.Endpoint`, which would cost the import of numpy."""
-
-    kind: str
-    node: str
-    topic: str
-    type: str
-
-
-@dataclass(frozen=True)
-class Heard:
-    """Everybody but the observer: full names of the nodes (one entry a node), and their ends; sorted."""
-
-    nodes: tuple[str, ...]
-    ends: tuple[End, ...]
+_WAKE_S = 0.1
+"""Python's own handling of Ctrl-C waits for calls into rclpy to return."""
+PREFIX = "_ros2cli"
+_UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
 
 @contextmanager
-def observer(name: str) -> Iterator[Node]:
-    """A hidden node that adds nothing to the graph; a signal ends it like any Python program."""
-    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+def cli_node(name: str | None = None) -> Iterator[Node]:
+    """A hidden node that offers nothing. It leaves in order, so that others do not go on seeing it.
+
+    Raises:
+        Ros2Error: it could not be made: say, the domain id is wrong.
+    """
+    # No log file for a look at the graph. Signals stay Python's, since rclpy's shut down in the middle of a verb.
+    arguments = ["--ros-args", "--disable-external-lib-logs"]
     try:
-        node = Node(
-            f"_{name}_{os.getpid()}",
-            enable_rosout=False,
+        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+        node = rclpy.create_node(
+            name or f"{PREFIX}_{os.getpid()}",
             start_parameter_services=False,
-            use_global_arguments=False,
+            parameter_overrides=[Parameter("start_type_description_service", value=False)],
         )
-        try:
-            yield node
-        finally:
-            node.destroy_node()
+    except Exception as error:
+        rclpy.try_shutdown()
+        told = str(error).strip().splitlines() or [type(error).__name__]
+        message = f"No ROS 2 node could be made: {told[0]}"
+        raise Ros2Error(message) from error
+    try:
+        yield node
+    except ExternalShutdownException as error:
+        raise KeyboardInterrupt from error
     finally:
+        # A second Ctrl-C must not leave half a node behind.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        node.destroy_node()
         rclpy.try_shutdown()
 
 
-def settle(node: Node, *, quiet_s: float = QUIET_S, first_s: float = FIRST_S, deadline_s: float = DEADLINE_S) -> bool:
-    """Wait until `node` has heard of everybody; returns whether it heard of anybody (all times in s).
+def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> None:
+    """Wait until the graph that the node sees has settled, or until it is `enough`.
 
-    That is so when there was something, then nothing new for `quiet_s`, and every endpoint's node has its name.
+    Settled: nothing new for 0.2 s, and all participants of this machine have told what they have.
     """
-    begin = changed = time.monotonic()
-    before = now_heard = _all(node)
+    begun = changed = time.monotonic()
+    seen: object = None
+    most = deadline_s if deadline_s is not None else DEADLINE_S
     while True:
         now = time.monotonic()
-        anybody, nameless = now_heard[0], now_heard[1]
-        if anybody and not nameless and now - changed >= quiet_s:
-            return True
-        if now - begin >= (deadline_s if anybody else first_s):
-            return bool(anybody)
+        graph = _graph(node)
+        if graph != seen:
+            seen, changed = graph, now
+        if enough() or now - begun >= most:
+            return
+        if now - changed >= QUIET_S and _complete(node, now - begun):
+            return
         time.sleep(_POLL_S)
-        now_heard = _all(node)
-        if now_heard != before:
-            before, changed = now_heard, time.monotonic()
 
 
-def heard(node: Node) -> Heard:
-    """What the node has heard of by now."""
-    own = node.get_fully_qualified_name()
-    names = [_full(name, namespace) for name, namespace in node.get_node_names_and_namespaces()]
-    ends = []
-    for topic, _ in node.get_topic_names_and_types():
-        for kind, infos in (
-            ("publisher", node.get_publishers_info_by_topic(topic)),
-            ("subscription", node.get_subscriptions_info_by_topic(topic)),
-        ):
-            ends += [End(kind, _full(i.node_name, i.node_namespace), topic, i.topic_type) for i in infos]
-    return Heard(
-        tuple(sorted(name for name in names if name != own)),
-        tuple(sorted((end for end in ends if end.node != own), key=lambda end: (end.topic, end.kind, end.node))),
-    )
+def spin_until(node: Node, done: Callable[[], bool], timeout_s: float | None = None) -> bool:
+    """Handle what comes until it is `done` or the time is up; returns whether it is done."""
+    end = None if timeout_s is None else time.monotonic() + timeout_s
+    while not done():
+        left = _WAKE_S if end is None else min(_WAKE_S, end - time.monotonic())
+        if left <= 0:
+            return False
+        rclpy.spin_once(node, timeout_sec=left)
+    return True
 
 
-def _all(node: Node) -> tuple[int, bool, object]:
-    """How many others there are, whether one of them has no name yet, and all of it to compare."""
-    seen = heard(node)
-    nameless = any(end.node.endswith(UNKNOWN) for end in seen.ends)
-    services = sorted(name for name, _ in node.get_service_names_and_types())
-    return len(seen.nodes) + len(seen.ends), nameless, (seen, services)
+def nap(duration_s: float) -> None:
+    """Sleep; a signal ends it at once, unlike a wait inside rclpy."""
+    if duration_s > 0:
+        time.sleep(duration_s)
 
 
-def _full(name: str, namespace: str) -> str:
-    return f"{namespace.rstrip('/')}/{name}"
+def _graph(node: Node) -> object:
+    """All that can change while the graph is being heard of."""
+    topics = node.get_topic_names_and_types()
+    counts = [(name, node.count_publishers(name), node.count_subscribers(name)) for name, _ in topics]
+    return (sorted(node.get_node_names_and_namespaces()), topics, counts, node.get_service_names_and_types())
+
+
+def _complete(node: Node, waited_s: float) -> bool:
+    """Whether as many participants were heard of as there are on this machine, and each told the names of its nodes."""
+    expected = _participants(node.context.get_domain_id())
+    endpoints: list[Any] = []
+    for name, _ in node.get_topic_names_and_types():
+        endpoints += node.get_publishers_info_by_topic(name)
+        endpoints += node.get_subscriptions_info_by_topic(name)
+    heard = {bytes(endpoint.endpoint_gid[:12]) for endpoint in endpoints}
+    if any(endpoint.node_name == _UNKNOWN for endpoint in endpoints):
+        return False
+    if expected is None or os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE") != "LOCALHOST":
+        return waited_s >= NOTHING_THERE_S and len(heard) >= (expected or 0)
+    return len(heard) >= expected
+
+
+def _participants(domain: int) -> int | None:
+    """How many DDS participants this machine has in a domain: each opens a port of its own; None if unknown.
+
+    Ports by the DDSI-RTPS standard, 9.6.1.1: metatraffic unicast = 7400 + 250 * domain + 10 + 2 * participant.
+    """
+    first = 7400 + 250 * domain
+    ports: set[int] = set()
+    for table in ("/proc/net/udp", "/proc/net/udp6"):
+        try:
+            rows = Path(table).read_text("ascii").splitlines()[1:]
+        except OSError:
+            continue
+        ports.update(int(row.split()[1].rpartition(":")[2], 16) - first for row in rows)
+    found = {port for port in ports if 10 <= port < 250 and port % 2 == 0}
+    return len(found) or None
