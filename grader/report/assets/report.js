@@ -1,0 +1,108 @@
+"use strict";
+// The player: puts the turtle where it was at a time, and moves the time on. The page is whole without it.
+(function () {
+  var run = JSON.parse(document.getElementById("data").textContent);
+  var turtle = document.getElementById("turtle");
+  if (!turtle || !run.t || run.t.length < 2) return;
+
+  var player = document.getElementById("player");
+  var play = document.getElementById("play");
+  var time = document.getElementById("time");
+  var speed = document.getElementById("speed");
+  var now = document.getElementById("now");
+  var gone = document.getElementById("gone");
+  var heads = Array.prototype.slice.call(document.querySelectorAll(".head"));
+  var canvas = run.canvas;
+  var at = run.end, last = null;
+
+  // The last index whose time is not after t.
+  function index(times, t) {
+    var low = 0, high = times.length - 1;
+    while (low < high) {
+      var middle = (low + high + 1) >> 1;
+      if (times[middle] <= t) low = middle; else high = middle - 1;
+    }
+    return low;
+  }
+
+  // The way up to each frame, as a text that grows, so that a moment's part of it is a slice.
+  var points = "", ends = [], px = [], py = [];
+  for (var i = 0; i < run.t.length; i++) {
+    var known = run.x[i] !== null && run.y[i] !== null;
+    px.push(known ? canvas.left + run.x[i] * canvas.scale : null);
+    py.push(known ? canvas.bottom - run.y[i] * canvas.scale : null);
+    var same = i > 0 && px[i] === px[i - 1] && py[i] === py[i - 1];
+    if (known && !same) points += px[i].toFixed(1) + "," + py[i].toFixed(1) + " ";
+    ends.push(points.length);
+  }
+  var commandTimes = run.commands.map(function (command) { return command[0]; });
+
+  function said(value, unit) {
+    return value === null ? "not a number" : value.toFixed(2) + " " + unit;
+  }
+
+  function show(t) {
+    at = Math.min(Math.max(t, 0), run.end);
+    var i = index(run.t, at);
+    var known = px[i] !== null && run.theta[i] !== null;
+    turtle.setAttribute("visibility", known ? "visible" : "hidden");
+    if (known) {
+      var degrees = (-run.theta[i] * 180 / Math.PI).toFixed(1);
+      turtle.setAttribute("transform", "translate(" + px[i].toFixed(1) + " " + py[i].toFixed(1) + ") rotate(" + degrees + ")");
+    }
+    gone.setAttribute("points", at < run.end ? points.slice(0, ends[i]) : "");
+    heads.forEach(function (head) {
+      head.setAttribute("visibility", at < run.end ? "visible" : "hidden");
+      head.setAttribute("transform", "translate(" + (run.across * at / run.end).toFixed(1) + " 0)");
+    });
+    var text = at.toFixed(2) + " s: ";
+    text += known ? "x " + said(run.x[i], "m") + ", y " + said(run.y[i], "m") + ", heading " + said(run.theta[i], "rad")
+      : "the position is not a number";
+    if (commandTimes.length && commandTimes[0] <= at) {
+      var command = run.commands[index(commandTimes, at)];
+      text += "; last command: linear.x " + said(command[1], "m/s") + ", angular.z " + said(command[2], "rad/s");
+    } else {
+      text += "; no command yet";
+    }
+    now.textContent = text;
+    time.value = String(at);
+    time.setAttribute("aria-valuetext", at.toFixed(1) + " of " + run.end.toFixed(1) + " seconds");
+  }
+
+  function stop() {
+    last = null;
+    play.textContent = "Play";
+  }
+
+  function tick(stamp) {
+    if (last === null) return;
+    if (last !== 0) show(at + (stamp - last) / 1000 * Number(speed.value));
+    last = stamp;
+    if (at >= run.end) stop(); else requestAnimationFrame(tick);
+  }
+
+  play.addEventListener("click", function () {
+    if (last !== null) { stop(); return; }
+    if (at >= run.end) show(0);
+    last = 0;
+    play.textContent = "Pause";
+    requestAnimationFrame(tick);
+  });
+  time.addEventListener("input", function () { show(Number(time.value)); });
+
+  time.max = String(run.end);
+  player.hidden = false;
+  show(run.end);
+})();
+
+// On paper everything that explains is open; the logs stay as the reader left them.
+(function () {
+  var opened = [];
+  window.addEventListener("beforeprint", function () {
+    opened = Array.prototype.slice.call(document.querySelectorAll("details:not(.log):not([open])"));
+    opened.forEach(function (each) { each.open = true; });
+  });
+  window.addEventListener("afterprint", function () {
+    opened.forEach(function (each) { each.open = false; });
+  });
+})();

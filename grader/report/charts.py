@@ -1,0 +1,247 @@
+"""What happened over time, as SVG: the intervals between commands and the values in them. One time axis for all.
+
+Where more arrived than a picture can show, the extremes of each stretch of time stand for it. A picture never says
+something by colour alone: what is out of its band is a cross.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks import seen
+from grader.checks.rate import Rate, measure
+from grader.checks.values import FIELDS, Values
+from grader.report.scene import params_of
+from grader.report.svg import coordinate, picture, points, tag, words
+from grader.words import number
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from grader.checks.evidence import Evidence
+    from grader.recording import Command
+
+WIDTH = 440.0
+LEFT, RIGHT, TOP, BOTTOM = 58.0, 12.0, 24.0, 34.0
+HEIGHT = 150.0
+"""Of the area inside the axes, for one row of a chart."""
+GAP = 46.0
+"""Between two rows."""
+BINS = 200
+"""Of each stretch of time no more than the lowest and the highest value is drawn."""
+HUGE = 1e4
+"""What is drawn of larger values."""
+
+DOT, BAD, BAND = "#1c7ed6", "#d6336c", "#2f9e44"
+"""Mid tones: at least 3:1 against white and against the dark page."""
+
+Series = tuple[tuple[float, float], ...]
+"""(t_s, value), by time."""
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A picture with the sentence that says the same."""
+
+    svg: str
+    caption: str
+
+
+@dataclass(frozen=True)
+class Area:
+    """The inside of a chart's axes: time from 0 to `end_s` across, values from `low` to `high` upwards."""
+
+    end_s: float
+    low: float
+    high: float
+    top: float = TOP
+
+    def x(self, t_s: float) -> float:
+        """Where a time lies."""
+        return LEFT + (WIDTH - LEFT - RIGHT) * min(max(t_s / self.end_s, 0.0), 1.0)
+
+    def y(self, value: float) -> float:
+        """Where a value lies."""
+        return self.top + HEIGHT * (1.0 - (min(max(value, self.low), self.high) - self.low) / (self.high - self.low))
+
+    def frame(self, label: str) -> str:
+        """The axes with their numbers, and what is drawn upwards."""
+        bottom = self.top + HEIGHT
+        parts = [words(label, LEFT, self.top - 8, font_weight="bold")]
+        for value in ticks(self.low, self.high):
+            y = self.y(value)
+            line = f"M{coordinate(LEFT)} {coordinate(y)}H{coordinate(WIDTH - RIGHT)}"
+            parts.append(tag("path", d=line, stroke="currentColor", stroke_opacity=0.2))
+            parts.append(words(f"{value:g}", LEFT - 6, y + 4.5, "end"))
+        parts += [words(f"{t_s:g}", self.x(t_s), bottom + 17, "middle") for t_s in ticks(0.0, self.end_s, 6)]
+        frame = tag("rect", x=LEFT, y=self.top, width=WIDTH - LEFT - RIGHT, height=HEIGHT, fill="none")
+        return tag("g", *parts, tag("g", frame, stroke="currentColor", stroke_opacity=0.6), class_="axes")
+
+    def head(self) -> str:
+        """The line that shows what time a player is at."""
+        bottom = coordinate(self.top + HEIGHT)
+        path = f"M{coordinate(LEFT)} {coordinate(self.top)}V{bottom}"
+        return tag("path", d=path, stroke="currentColor", stroke_width=1.5, visibility="hidden", class_="head")
+
+
+def ticks(low: float, high: float, most: int = 5) -> list[float]:
+    """Round numbers from low to high, at most so many."""
+    rough = (high - low) / most
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = next(power * nice for nice in (1.0, 2.0, 5.0, 10.0) if power * nice >= rough * 0.999)
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [index * step for index in range(first, last + 1)]
+
+
+def thin(series: Series, end_s: float) -> Series:
+    """The series itself, or of each stretch of time its lowest and highest value; what is no number is left out."""
+    finite = tuple((t, min(max(value, -HUGE), HUGE)) for t, value in series if math.isfinite(value))
+    if len(finite) <= 2 * BINS:
+        return finite
+    bins: dict[int, list[tuple[float, float]]] = {}
+    for t, value in finite:
+        bins.setdefault(int(t / end_s * BINS), []).append((t, value))
+    kept: list[tuple[float, float]] = []
+    for inside in bins.values():
+        ends = {min(inside, key=lambda each: each[1]), max(inside, key=lambda each: each[1])}
+        kept += sorted(ends)
+    return tuple(kept)
+
+
+def intervals(evidence: Evidence) -> Chart | None:
+    """The time since the command before, for each one, with the band that is allowed; None with fewer than two."""
+    measured = measure(evidence)
+    if not measured.intervals:
+        return None
+    rate = params_of(evidence, "rate", Rate)
+    end_s = _end_s(evidence)
+    pairs = zip(measured.begins, measured.intervals, strict=True)
+    series: Series = tuple((begin + interval, interval) for begin, interval in pairs)
+    stalled = len(measured.arrivals) - 1 - len(series)
+    allowed = (rate.min_interval_s, rate.max_interval_s) if rate else (0.0, math.inf)
+    wanted = 1.0 / rate.rate_hz if rate else measured.mean_s
+    top = max(1.25 * wanted, 1.1 * max(measured.intervals), 1.15 * rate.max_interval_s if rate else 0.0)
+    area = Area(end_s, 0.0, max(top, 1e-3))
+    low, high = min(measured.intervals), max(measured.intervals)
+    caption = f"{len(series)} intervals, {measured.mean_s:.2f} s on average, from {low:.2f} to {high:.2f} s."
+    if stalled:
+        caption += f" {stalled} more were lengthened by the machine, not by the node, and are left out."
+    drawn = ""
+    if rate:
+        caption += f" Asked for: {wanted:.2f} s; allowed: {allowed[0]:.2f} to {allowed[1]:.2f} s (the green band)."
+        drawn += _band(area, *allowed) + _dashes(area, wanted)
+    drawn += "".join(_dot(area, t, value, good=allowed[0] <= value <= allowed[1]) for t, value in thin(series, end_s))
+    svg = picture(
+        area.frame("seconds since the command before"),
+        drawn,
+        area.head(),
+        words("time (s)", WIDTH - RIGHT, TOP + HEIGHT + 32, "end"),
+        width=WIDTH,
+        height=TOP + HEIGHT + BOTTOM,
+        title="Intervals between commands over time",
+        about=caption,
+        key="intervals",
+    )
+    return Chart(svg, caption)
+
+
+def values(evidence: Evidence) -> Chart | None:
+    """What the commands said over time: the fields that were asked for and those that ever were not 0."""
+    commands = evidence.commands
+    if not commands:
+        return None
+    asked = params_of(evidence, "values", Values)
+    wanted = asked.wanted if asked else (0.0,) * 6
+    end_s = _end_s(evidence)
+    rows, captions = [], []
+    shown = [i for i in range(6) if wanted[i] or i in (0, 5) or any(six(command)[i] for command in commands)]
+    for row, index in enumerate(shown):
+        series = tuple((command.t_s, six(command)[index]) for command in commands)
+        unit = "m/s" if index < 3 else "rad/s"
+        top = TOP + row * (HEIGHT + GAP)
+        rows.append(_steps(series, wanted[index] if asked else None, f"{FIELDS[index]} ({unit})", end_s, top))
+        captions.append(_said(series, FIELDS[index], unit, wanted[index] if asked else None))
+    height = TOP + len(shown) * HEIGHT + (len(shown) - 1) * GAP + BOTTOM
+    caption = " ".join(captions)
+    svg = picture(
+        *rows,
+        words("time (s)", WIDTH - RIGHT, height - 2, "end"),
+        width=WIDTH,
+        height=height,
+        title="Values in the commands over time",
+        about=caption,
+        key="values",
+    )
+    return Chart(svg, caption)
+
+
+def six(command: Command) -> tuple[float, ...]:
+    """A command's six values in the order of FIELDS."""
+    return (*command.linear, *command.angular)
+
+
+def _end_s(evidence: Evidence) -> float:
+    return max(seen.end_s(evidence.trial), 0.1)
+
+
+def _steps(series: Series, wanted: float | None, label: str, end_s: float, top: float) -> str:
+    """One field: a step at each command, a dashed line for what was asked for."""
+    drawn = thin(series, end_s)
+    known = [value for _, value in drawn] + ([wanted] if wanted is not None else []) + [0.0]
+    low, high = min(known), max(known)
+    margin = 0.15 * (high - low) or 1.0
+    area = Area(end_s, low - margin, high + margin, top)
+    line: list[tuple[float, float]] = []
+    for index, (t, value) in enumerate(drawn):
+        until = drawn[index + 1][0] if index + 1 < len(drawn) else end_s
+        line += [(area.x(t), area.y(value)), (area.x(until), area.y(value))]
+    parts = [area.frame(label)]
+    if wanted is not None:
+        parts.append(_dashes(area, wanted))
+    parts.append(tag("polyline", points=points(line), fill="none", stroke=DOT, stroke_width=2))
+    parts += [_dot(area, t, value, good=wanted is None or abs(value - wanted) <= 1e-6) for t, value in drawn]
+    parts.append(area.head())
+    return "".join(parts)
+
+
+def _said(series: Series, field: str, unit: str, wanted: float | None) -> str:
+    """One field in words."""
+    found = [value for _, value in series]
+    wrong = sum(not math.isfinite(value) for value in found)
+    finite = [value for value in found if math.isfinite(value)]
+    if finite and min(finite) == max(finite):
+        told = f"{field} was {number(finite[0])} {unit}"
+    elif finite:
+        told = f"{field} was {number(min(finite))} to {number(max(finite))} {unit}"
+    else:
+        told = f"{field} was never a finite number"
+    if wrong and finite:
+        told += f", and no finite number in {wrong} of {len(found)} commands"
+    return f"{told}; asked for: {number(wanted)}." if wanted is not None else f"{told}."
+
+
+def _dot(area: Area, t_s: float, value: float, *, good: bool) -> str:
+    x, y = area.x(t_s), area.y(value)
+    if good:
+        return tag("circle", cx=x, cy=y, r=3, fill=DOT)
+    cross = f"M{coordinate(x - 4)} {coordinate(y - 4)}l8 8m0-8l-8 8"
+    return tag("path", d=cross, stroke=BAD, stroke_width=2, fill="none", class_="bad")
+
+
+def _band(area: Area, low: float, high: float) -> str:
+    top, bottom = area.y(high), area.y(low)
+    x, width = LEFT, WIDTH - LEFT - RIGHT
+    fill = tag("rect", x=x, y=top, width=width, height=bottom - top, fill=BAND, fill_opacity=0.16)
+    return fill + _edges(x, x + width, (top, bottom))
+
+
+def _edges(left: float, right: float, heights: Iterable[float]) -> str:
+    lines: Sequence[str] = [f"M{coordinate(left)} {coordinate(y)}H{coordinate(right)}" for y in heights]
+    return tag("path", d="".join(lines), stroke=BAND, stroke_width=1)
+
+
+def _dashes(area: Area, value: float) -> str:
+    path = f"M{coordinate(LEFT)} {coordinate(area.y(value))}H{coordinate(WIDTH - RIGHT)}"
+    return tag("path", d=path, stroke=BAND, stroke_width=1.5, stroke_dasharray="6 4", class_="wanted")

@@ -1,0 +1,107 @@
+"""The lines of a submission's file around a place, coloured as an editor would."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.report.plain import LONGEST_LINE, plain_line
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.checks.evidence import Evidence
+    from grader.outcome import Where
+
+AROUND = 4
+"""Lines before and after the place."""
+MOST_COLOURED = 60_000
+"""Characters: beyond, a file is not worth the time to colour it."""
+
+NEWLINE = re.compile(r"\r\n|\r|\n")
+"""What ends a line for Python; str.splitlines knows more, and would count otherwise."""
+
+Piece = tuple[str, str]
+"""(class, text): the class is empty or one of those that the page's style sheet colours."""
+
+
+@dataclass(frozen=True)
+class CodeLine:
+    """A line with its number, as pieces; `here` is the place itself."""
+
+    number: int
+    pieces: tuple[Piece, ...]
+    here: bool
+
+
+@dataclass(frozen=True)
+class Excerpt:
+    """Some lines of a file."""
+
+    file: str
+    lines: tuple[CodeLine, ...]
+
+
+def excerpt(evidence: Evidence, where: Where | None) -> Excerpt | None:
+    """The lines around the place; None where it names no line of a file of the submission."""
+    if where is None or where.line is None:
+        return None
+    data = evidence.submission.files.get(where.file)
+    if data is None:
+        return None
+    text = data.decode("utf-8-sig", "replace")
+    lines = NEWLINE.split(text)
+    if not 1 <= where.line <= len(lines):
+        return None
+    first, last = max(where.line - AROUND, 1), min(where.line + AROUND, len(lines))
+    pieces = _coloured("\n".join(lines[:last])) if where.file.endswith(".py") else []
+    shown = []
+    for number in range(first, last + 1):
+        raw = lines[number - 1]
+        fits = number <= len(pieces) and len(raw) <= LONGEST_LINE
+        line = [(kind, plain_line(part)) for kind, part in pieces[number - 1]] if fits else [("", plain_line(raw))]
+        shown.append(CodeLine(number, tuple(line), number == where.line))
+    return Excerpt(where.file, tuple(shown))
+
+
+def _coloured(text: str) -> list[list[Piece]]:
+    """The pieces of each line of a Python text; none where that would take too long."""
+    if len(text) > MOST_COLOURED:
+        return []
+    from pygments.lexers.python import PythonLexer
+
+    lines: list[list[Piece]] = [[]]
+    for kind, part in PythonLexer(stripnl=False, ensurenl=False).get_tokens(text):
+        for index, piece in enumerate(part.split("\n")):
+            if index:
+                lines.append([])
+            if piece:
+                lines[-1].append((_class(str(kind)), piece))
+    return [list(_joined(line)) for line in lines]
+
+
+def _class(token: str) -> str:
+    """The class for one of pygments' kinds of token."""
+    for name, kinds in (
+        ("c", ("Token.Comment",)),
+        ("s", ("Token.Literal.String",)),
+        ("n", ("Token.Literal.Number",)),
+        ("k", ("Token.Keyword", "Token.Operator.Word")),
+        ("d", ("Token.Name.Function", "Token.Name.Class", "Token.Name.Decorator")),
+    ):
+        if token.startswith(kinds):
+            return name
+    return ""
+
+
+def _joined(line: list[Piece]) -> Iterator[Piece]:
+    """Neighbours of one class as one piece: fewer elements for the browser."""
+    kind, text = "", ""
+    for each, part in line:
+        if each != kind and text:
+            yield kind, text
+            text = ""
+        kind, text = each, text + part
+    if text:
+        yield kind, text

@@ -1,0 +1,142 @@
+"""The ROS graph as SVG: who publishes on the left, the topics with their types between, who subscribes on the right.
+
+Not laid out by Graphviz, as rqt_graph's pictures are: a page wants light and dark, must not cost more, and a C library
+should not have to read names that a student chose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.report.svg import coordinate, picture, tag, words
+from grader.ros2.graph import Picture, Topic
+from grader.ros2.graph import picture as choose
+from grader.words import a_list, shorten
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from grader.recording import Recording
+
+WIDTH = 640.0
+ROW, BOX = 62.0, 40.0
+SIDE, MIDDLE = 150.0, 216.0
+"""Width of a node and of a topic."""
+MOST_TOPICS = 10
+NODE, TOPIC = "#1c7ed6", "#e8590c"
+NODE_CHARS, TOPIC_CHARS = 21, 31
+
+
+@dataclass(frozen=True)
+class GraphDrawing:
+    """The picture, the same in rows (node, "publishes on" or "subscribes to", topic, type), and what it leaves out."""
+
+    svg: str
+    rows: tuple[tuple[str, str, str, str], ...]
+    left_out: int
+
+
+def draw_graph(recording: Recording) -> GraphDrawing | None:
+    """All nodes and topics that were ever in the graph, but those that every node has; None when nothing was seen."""
+    nodes = sorted({node for graph in recording.graphs for node in graph.nodes})
+    ends = {end: None for graph in recording.graphs for end in graph.endpoints}
+    graph = choose(nodes, ends)
+    if not graph.nodes:
+        return None
+    own = set(recording.own_nodes)
+    topics = sorted(graph.topics, key=lambda topic: (not _of_student(topic, own), topic.dead_end, topic.name))
+    types: dict[str, list[str]] = {}
+    for end in ends:
+        if end.type not in types.setdefault(end.topic, []):
+            types[end.topic].append(end.type)
+    shown = topics[:MOST_TOPICS]
+    names = {topic.name for topic in shown}
+    verb = {"publisher": "publishes on", "subscription": "subscribes to"}
+    rows = sorted((end.node, verb[end.kind], end.topic, end.type) for end in ends if end.topic in names)
+    return GraphDrawing(_draw(graph, shown, types), tuple(rows[:60]), len(topics) - len(shown))
+
+
+def _of_student(topic: Topic, own: set[str]) -> bool:
+    return bool({*topic.publishers, *topic.subscribers} - own)
+
+
+def _draw(graph: Picture, topics: Sequence[Topic], types: dict[str, list[str]]) -> str:
+    left = _in_order([name for topic in topics for name in topic.publishers])
+    right = _in_order([name for topic in topics for name in topic.subscribers])
+    alone = [node.name for node in graph.nodes if node.name not in left and node.name not in right]
+    left += alone
+    height = max(len(left), len(right), len(topics), 1) * ROW + 34
+    middle_x, right_x = (WIDTH - MIDDLE) / 2, WIDTH - SIDE - 2
+    parts = [
+        words(text, x, 16, "middle", font_weight="bold")
+        for text, x in (("publishes", 2 + SIDE / 2), ("topic", WIDTH / 2), ("subscribes", right_x + SIDE / 2))
+    ]
+    lefts, rights = _places(left, height), _places(right, height)
+    heights = _places([topic.name for topic in topics], height)
+    for topic in topics:
+        y = heights[topic.name]
+        parts += [_arrow(2 + SIDE, lefts[name], middle_x, y) for name in topic.publishers]
+        parts += [_arrow(middle_x + MIDDLE, y, right_x, rights[name]) for name in topic.subscribers]
+        parts.append(_topic(topic.name, types.get(topic.name, []), middle_x, y))
+    parts += [_node(name, 2.0, y) for name, y in lefts.items()]
+    parts += [_node(name, right_x, y) for name, y in rights.items()]
+    about = " ".join(
+        f"On {shorten(topic.name)} {_who(topic.publishers)} publishes and {_who(topic.subscribers)} subscribes."
+        for topic in topics
+    )
+    return picture(
+        *parts, width=WIDTH, height=height, title="The ROS graph: nodes and topics", about=about, key="graph"
+    )
+
+
+def _who(names: Sequence[str]) -> str:
+    return a_list([shorten(name) for name in names]) or "nobody"
+
+
+def _in_order(names: Sequence[str]) -> list[str]:
+    return list(dict.fromkeys(names))
+
+
+def _places(names: Sequence[str], height: float) -> dict[str, float]:
+    """The height of each name's middle, all of them spread evenly."""
+    room = (height - 34) / max(len(names), 1)
+    return {name: 30 + room * (index + 0.5) for index, name in enumerate(names)}
+
+
+def _node(name: str, x: float, y: float) -> str:
+    shape = tag(
+        "rect", x=x, y=y - BOX / 2, width=SIDE, height=BOX, rx=BOX / 2, fill=NODE, fill_opacity=0.14, stroke=NODE
+    )
+    return tag(
+        "g", tag("title", _plain(name)), shape, words(shorten(name, NODE_CHARS), x + SIDE / 2, y + 4.5, "middle")
+    )
+
+
+def _topic(name: str, types: Sequence[str], x: float, y: float) -> str:
+    shape = tag("rect", x=x, y=y - BOX / 2, width=MIDDLE, height=BOX, fill=TOPIC, fill_opacity=0.12, stroke=TOPIC)
+    several = f"{len(types)} types: " if len(types) > 1 else ""
+    kind = shorten(several + ", ".join(types), TOPIC_CHARS + 3)
+    return tag(
+        "g",
+        tag("title", _plain(f"{name} ({', '.join(types)})")),
+        shape,
+        words(shorten(name, TOPIC_CHARS), x + MIDDLE / 2, y - 3, "middle"),
+        words(kind, x + MIDDLE / 2, y + 13, "middle", font_size=11.5),
+    )
+
+
+def _plain(text: str) -> str:
+    from html import escape
+
+    return escape(shorten(text, 300))
+
+
+def _arrow(x1: float, y1: float, x2: float, y2: float) -> str:
+    bend = (x1 + x2) / 2
+    path = (
+        f"M{coordinate(x1)} {coordinate(y1)}C{coordinate(bend)} {coordinate(y1)} {coordinate(bend)} {coordinate(y2)} "
+        f"{coordinate(x2 - 7)} {coordinate(y2)}"
+    )
+    tip = f"M{coordinate(x2)} {coordinate(y2)}l-9-4.5v9z"
+    return tag("path", d=path, fill="none", stroke="currentColor") + tag("path", d=tip, fill="currentColor")

@@ -1,0 +1,222 @@
+"""The page on a class, from its reports: who got what, which checks fail most and why, what the machine failed at.
+
+Reports are the JSON files below a folder; a page or recording beside a report with the same name is linked.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from itertools import takewhile
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from markupsafe import Markup
+
+from grader.errors import UsageError
+from grader.outcome import Report, Status
+from grader.report.json import from_json
+from grader.report.page import make_page, save_page
+from grader.report.svg import picture, tag, words
+from grader.report.verdict import tone, verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+    from grader.outcome import Outcome
+
+LARGEST = 4_000_000
+"""Bytes: no report is as large."""
+PAGE = "index.html"
+MOST_DIAGNOSES = 5
+BAR = "#1c7ed6"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A report of the class; `link` leads from the class page to its own page, empty without one."""
+
+    report: Report
+    name: str
+    link: str
+
+    @property
+    def share(self) -> float:
+        """Points of what could be had, 0 to 1."""
+        return self.report.points / self.report.max if self.report.max else 0.0
+
+    @property
+    def tone(self) -> str:
+        """How its verdict is meant."""
+        return tone(self.report)
+
+    @property
+    def verdict(self) -> str:
+        """Its verdict in one line."""
+        return verdict(self.report)
+
+    @property
+    def failed(self) -> tuple[Outcome, ...]:
+        """The checks that it failed itself (not those that were not judged because of them)."""
+        return self.report.with_status(Status.FAILED)
+
+    @property
+    def first_error(self) -> str:
+        """What the machine said."""
+        errors = self.report.with_status(Status.ERROR)
+        return errors[0].finding.seen if errors else ""
+
+
+@dataclass
+class Diagnosis:
+    """Why a check failed: the cause's stable id, how often, in whose words, for whom."""
+
+    id: str
+    texts: Counter[str] = field(default_factory=Counter)
+    entries: list[Entry] = field(default_factory=list)
+
+    @property
+    def text(self) -> str:
+        """The words that most of its reports have for it."""
+        return self.texts.most_common(1)[0][0] if self.texts else ""
+
+
+@dataclass
+class FailedCheck:
+    """A check that somebody failed, with the causes, the most frequent first."""
+
+    exercise: str
+    id: str
+    title: str
+    entries: list[Entry] = field(default_factory=list)
+    by_cause: dict[str, Diagnosis] = field(default_factory=dict)
+
+    @property
+    def diagnoses(self) -> list[Diagnosis]:
+        """The most frequent causes."""
+        ordered = sorted(self.by_cause.values(), key=lambda each: (-len(each.entries), each.id))
+        return ordered[:MOST_DIAGNOSES]
+
+
+@dataclass(frozen=True)
+class ClassReports:
+    """The reports below a folder, and the files that look like reports and cannot be read, with the reason."""
+
+    entries: tuple[Entry, ...]
+    unreadable: tuple[tuple[str, str], ...]
+
+
+def read_class(folder: Path) -> ClassReports:
+    """Every report below the folder, by name. Raises UsageError where there is none."""
+    if not folder.is_dir():
+        message = f"There is no folder {folder}: name the one that holds the reports (from `grader check --json`)."
+        raise UsageError(message)
+    found: list[tuple[Path, Report]] = []
+    unreadable: list[tuple[str, str]] = []
+    for file in sorted(folder.rglob("*.json")):
+        try:
+            if not file.is_file() or file.stat().st_size > LARGEST:
+                continue
+            text = file.read_text(encoding="utf-8")
+            if '"outcomes"' not in text:
+                continue  # JSON of somebody else
+            found.append((file, from_json(text)))
+        except (OSError, UnicodeDecodeError, RecursionError, UsageError) as error:
+            unreadable.append((str(file.relative_to(folder)), str(error)))
+    if not found and not unreadable:
+        message = f"There is no report below {folder}: they are JSON files, as `grader check --json FILE` writes them."
+        raise UsageError(message)
+    names = _short([report.submission for _, report in found])
+    entries = [Entry(report, name, _link(file, folder)) for (file, report), name in zip(found, names, strict=True)]
+    return ClassReports(tuple(sorted(entries, key=lambda entry: entry.name)), tuple(unreadable))
+
+
+def _short(names: Sequence[str]) -> list[str]:
+    """The names without the folders that they all lie in."""
+    parts = [name.rstrip("/").split("/") for name in names]
+    alike = takewhile(lambda level: len(set(level)) == 1, zip(*(each[:-1] for each in parts), strict=False))
+    common = len(list(alike)) if len(parts) > 1 else 0
+    return ["/".join(each[common:]) or name for each, name in zip(parts, names, strict=True)]
+
+
+def _link(file: Path, folder: Path) -> str:
+    page = file.with_suffix(".html")
+    # Never an address of another kind: a relative path whose first part cannot be taken for a scheme.
+    return "./" + quote(page.relative_to(folder).as_posix(), errors="surrogateescape") if page.is_file() else ""
+
+
+def failures(entries: Iterable[Entry]) -> list[FailedCheck]:
+    """The checks that were failed, the most frequent first."""
+    checks: dict[tuple[str, str], FailedCheck] = {}
+    for entry in entries:
+        for outcome in entry.failed:
+            key = (entry.report.exercise, outcome.id)
+            check = checks.setdefault(key, FailedCheck(*key, outcome.title))
+            check.entries.append(entry)
+            cause = outcome.finding.diagnosis or "unknown"
+            diagnosis = check.by_cause.setdefault(cause, Diagnosis(cause))
+            diagnosis.entries.append(entry)
+            diagnosis.texts[outcome.finding.cause or outcome.finding.seen] += 1
+    return sorted(checks.values(), key=lambda check: (-len(check.entries), check.exercise, check.id))
+
+
+def class_page(reports: ClassReports) -> str:
+    """The page as text."""
+    judged = [entry for entry in reports.entries if entry.tone != "error"]
+    broken = [entry for entry in reports.entries if entry.tone == "error"]
+    exercises = sorted({entry.report.exercise for entry in reports.entries})
+    shares = [entry.share for entry in judged]
+    values = {
+        "entries": judged,
+        "broken": broken,
+        "unreadable": reports.unreadable,
+        "exercises": exercises,
+        "failures": failures(judged),
+        "passed": sum(entry.tone == "passed" for entry in judged),
+        "mean": sum(shares) / len(shares) if shares else 0.0,
+        "middle": sorted(shares)[len(shares) // 2] if shares else 0.0,
+        "distribution": Markup(distribution(shares)) if shares else "",
+        "caption": _said(shares),
+    }
+    return make_page("class.html", "class.js", {}, values)
+
+
+def save_class_page(folder: Path, file: Path) -> None:
+    """Write the page on the reports below a folder. Raises UsageError where that cannot be done."""
+    save_page(class_page(read_class(folder)), file)
+
+
+BINS = [f"{10 * each}-{10 * each + 9}" for each in range(10)] + ["100"]
+
+
+def counts(shares: Iterable[float]) -> list[int]:
+    """How many got 0 to 9 % of the points, 10 to 19, and so on; the last: all of them."""
+    found = [0] * len(BINS)
+    for share in shares:
+        found[min(int(share * 10 + 1e-9), 10)] += 1
+    return found
+
+
+def _said(shares: Iterable[float]) -> str:
+    told = [f"{amount} got {name} %" for name, amount in zip(BINS, counts(shares), strict=True) if amount]
+    return f"Share of the points: {'; '.join(told)}."
+
+
+def distribution(shares: Iterable[float]) -> str:
+    """Bars: how many submissions got which share of the points."""
+    found = counts(shares)
+    width, height, top, bar = 560.0, 170.0, 24.0, 46.0
+    most = max(*found, 1)
+    parts = []
+    for index, (name, amount) in enumerate(zip(BINS, found, strict=True)):
+        x, tall = 12 + index * (bar + 3), height * amount / most
+        if amount:
+            parts.append(tag("rect", x=x, y=top + height - tall, width=bar, height=tall, fill=BAR))
+            parts.append(words(str(amount), x + bar / 2, top + height - tall - 6, "middle"))
+        parts.append(words(name, x + bar / 2, top + height + 18, "middle"))
+    base = tag("path", d=f"M8 {top + height}H{width - 8}", stroke="currentColor")
+    label = words("% of the points", width - 10, top + height + 36, "end")
+    return picture(
+        *parts, base, label, width=width, height=top + height + 44, title="Distribution of points", key="distribution"
+    )

@@ -1,0 +1,64 @@
+"""What a student controls as plain text for a page: nothing that acts, hides or turns, and never too much of it.
+
+A page escapes everything it is given; this is about what escaping leaves: control characters, invisible ones, text
+that runs from right to left over its neighbours, and sheer size.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from dataclasses import dataclass
+
+from grader.words import UNSAFE_CATEGORIES
+
+COLOURS = re.compile(r"\x1b\[[0-9;?]*[ -/]*[@-~]")
+"""A terminal's control sequences."""
+LONGEST_LINE = 400
+GROWTH = {"&": 5, "<": 4, ">": 4, '"': 5, "'": 5}
+"""Bytes of what stands for a character in a page."""
+
+
+@dataclass(frozen=True)
+class Cut:
+    """Lines from the beginning and the end of a text; `left_out` lines between them are not shown."""
+
+    head: tuple[str, ...]
+    tail: tuple[str, ...] = ()
+    left_out: int = 0
+
+
+def plain_line(text: str) -> str:
+    """One line, its colours and line end taken off, its length limited, what acts or hides as a question mark."""
+    line = text[: 2 * LONGEST_LINE].rstrip("\r\n")
+    if not line.isprintable():
+        line = COLOURS.sub("", line).expandtabs(4)
+        line = "".join("?" if unicodedata.category(char) in UNSAFE_CATEGORIES else char for char in line)
+    return line if len(line) <= LONGEST_LINE and len(text) <= 2 * LONGEST_LINE else line[: LONGEST_LINE - 3] + "..."
+
+
+def cut(text: str, head_bytes: int, tail_bytes: int) -> Cut:
+    """The lines of a text as plain text, so many from its beginning and its end as fit into these sizes in a page."""
+    lines = text.split("\n")
+    if lines and not lines[-1].strip():
+        lines.pop()
+    head = _fitting(lines, head_bytes)
+    rest = lines[len(head) :]
+    tail = tuple(reversed(_fitting(rest[::-1], tail_bytes)))
+    return Cut(head, tail, len(rest) - len(tail))
+
+
+def _fitting(lines: list[str], room: int) -> tuple[str, ...]:
+    kept = []
+    for line in lines:
+        shown = plain_line(line)
+        room -= size(shown) + 1
+        if room < 0:
+            break
+        kept.append(shown)
+    return tuple(kept)
+
+
+def size(text: str) -> int:
+    """How many bytes a text takes in a page."""
+    return len(text.encode("utf-8", "replace")) + sum(text.count(char) * (more - 1) for char, more in GROWTH.items())

@@ -1,0 +1,198 @@
+"""A scene as SVG, and the few words of SVG that the charts are written in too.
+
+Colours and sizes are attributes, never styles: a page's Content-Security-Policy may forbid those, and a picture must
+look right alone (in a notebook) too. `currentColor` is the text's, so that it follows light and dark.
+"""
+
+from __future__ import annotations
+
+import math
+from html import escape
+from typing import TYPE_CHECKING
+
+from grader.report.scene import DEEP, LOOKS, SEA, SIDE_M, Line, Point, Rgb, Ring, Role, Scene
+from grader.words import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from grader.report.scene import Arrow
+
+Attribute = str | float | None
+
+SIDE = 500.0
+"""The canvas in the picture's units."""
+LEFT, TOP, RIGHT, BOTTOM = 60.0, 10.0, 10.0, 46.0
+FARTHEST = 1e5
+"""Coordinates beyond are cut off: a browser's numbers are small."""
+
+
+def tag(name: str, *children: str, **attributes: Attribute) -> str:
+    """An element; `children` are SVG already, attribute values are escaped; "_" in their names stands for "-"."""
+    given = "".join(
+        f' {key.rstrip("_").replace("_", "-")}="{_value(value)}"'
+        for key, value in attributes.items()
+        if value is not None
+    )
+    return f"<{name}{given}>{''.join(children)}</{name}>" if children else f"<{name}{given}/>"
+
+
+def _value(value: str | float) -> str:
+    return escape(value) if isinstance(value, str) else coordinate(value)
+
+
+def coordinate(value: float) -> str:
+    """A number as SVG wants it: two decimals at most, none for infinity."""
+    if not math.isfinite(value):
+        value = 0.0 if math.isnan(value) else math.copysign(FARTHEST, value)
+    return f"{min(max(value, -FARTHEST), FARTHEST):.2f}".rstrip("0").rstrip(".")
+
+
+def words(text: str, x: float, y: float, anchor: str = "start", **attributes: Attribute) -> str:
+    """A text; whatever it says, it is one line of plain text."""
+    given: dict[str, Attribute] = {"fill": "currentColor", "text_anchor": anchor, **attributes}
+    return tag("text", escape(printable(text)), x=x, y=y, **given)
+
+
+def rgb(color: Rgb) -> str:
+    """A colour as CSS writes it."""
+    return "#{:02x}{:02x}{:02x}".format(*color)
+
+
+def points(of: Iterable[Point]) -> str:
+    """Coordinates for a polyline or a polygon."""
+    return " ".join(f"{coordinate(x)},{coordinate(y)}" for x, y in of)
+
+
+def picture(*children: str, width: float, height: float, title: str, about: str = "", key: str) -> str:
+    """A whole picture that scales with its page; `key` is its name among all pictures of a page."""
+    named = [tag("title", escape(printable(title)), id=f"{key}-title")]
+    if about:
+        named.append(tag("desc", escape(printable(about)), id=f"{key}-about"))
+    return tag(
+        "svg",
+        *named,
+        *children,
+        xmlns="http://www.w3.org/2000/svg",
+        viewBox=f"0 0 {coordinate(width)} {coordinate(height)}",
+        role="img",
+        aria_labelledby=f"{key}-title",
+        aria_describedby=f"{key}-about" if about else None,
+        font_family="system-ui, sans-serif",
+        font_size=13,
+        class_=f"picture {key}",
+    )
+
+
+def pixel(point: Point) -> Point:
+    """Where a point of the canvas (m) lies in the picture."""
+    scale = SIDE / SIDE_M
+    return LEFT + point[0] * scale, TOP + SIDE - point[1] * scale
+
+
+def scene_svg(scene: Scene, *, turtle: bool = False) -> str:
+    """The canvas with its axes; `turtle` adds one that a player may move, and the part of the way it has gone."""
+    scale = SIDE / SIDE_M
+    shapes = "".join(_shape(shape, scale) for shape in scene.shapes)
+    inside = [tag("rect", x=LEFT, y=TOP, width=SIDE, height=SIDE, fill=rgb(SEA)), tag("g", shapes)]
+    if turtle:
+        inside.append(_turtle())
+    clip = tag("clipPath", tag("rect", x=LEFT, y=TOP, width=SIDE, height=SIDE), id="canvas-edge")
+    canvas = tag("g", *inside, clip_path="url(#canvas-edge)")
+    notice = _notice(scene.notice) if scene.notice else ""
+    return picture(
+        tag("defs", clip),
+        canvas,
+        _axes(),
+        notice,
+        width=LEFT + SIDE + RIGHT,
+        height=TOP + SIDE + BOTTOM,
+        title="The turtle's way on its canvas, 11 m by 11 m",
+        about=". ".join([*([scene.notice] if scene.notice else []), *(text for _, text in scene.legend), *scene.facts]),
+        key="canvas",
+    )
+
+
+def _shape(shape: Line | Ring | Arrow, scale: float) -> str:
+    look = LOOKS[shape.role]
+    width, color = max(look.width_m * scale, 1.0), rgb(look.color)
+    if isinstance(shape, Line):
+        return tag(
+            "polyline",
+            points=points(map(pixel, shape.points)),
+            fill="none",
+            stroke=color,
+            stroke_width=width,
+            stroke_linecap="round",
+            stroke_linejoin="round",
+            class_=shape.role,
+        )
+    if isinstance(shape, Ring):
+        x, y = pixel(shape.centre)
+        dash = look.dash_m * scale
+        return tag(
+            "circle",
+            cx=x,
+            cy=y,
+            r=shape.radius * scale,
+            fill="none",
+            stroke=color,
+            stroke_width=width,
+            stroke_dasharray=f"{coordinate(dash)} {coordinate(dash * 0.8)}",
+            class_=shape.role,
+        )
+    corners = points(map(pixel, shape.corners))
+    return tag("polygon", points=corners, fill=color, stroke=rgb(DEEP), class_=shape.role)
+
+
+def _axes() -> str:
+    """Metres along the left and the lower edge; every second one is written."""
+    marks = []
+    for metre in range(12):
+        x, y = pixel((metre, metre))
+        marks.append(tag("path", d=f"M{coordinate(x)} {coordinate(TOP + SIDE)}v5", stroke="currentColor"))
+        marks.append(tag("path", d=f"M{coordinate(LEFT)} {coordinate(y)}h-5", stroke="currentColor"))
+        if metre % 2 == 0:
+            marks.append(words(str(metre), x, TOP + SIDE + 22, "middle"))
+            marks.append(words(str(metre), LEFT - 10, y + 5, "end"))
+    marks.append(words("x (m)", LEFT + SIDE, TOP + SIDE + 40, "end"))
+    marks.append(words("y (m)", LEFT - 10, TOP + 12, "end"))
+    return tag("g", *marks, class_="axes", font_size=16)
+
+
+def _notice(text: str) -> str:
+    middle, y = LEFT + SIDE / 2, TOP + SIDE * 0.72
+    width = 9.3 * len(text) + 30
+    return tag(
+        "g",
+        tag("rect", x=middle - width / 2, y=y - 26, width=width, height=38, fill=rgb(DEEP), rx=4),
+        words(text, middle, y, "middle", fill="#ffffff", font_size=17),
+        class_="notice",
+    )
+
+
+def _turtle() -> str:
+    """A turtle at the origin that looks east, waiting to be moved; shown only where a script moves it."""
+    shell = tag("ellipse", rx=15, ry=12, fill="#2f7d32", stroke="#ffffff", stroke_width=1.5)
+    pattern = tag("path", d="M-6-7 L5-7 L10 0 L5 7 L-6 7 L-10 0Z", fill="none", stroke="#b9e6a5", stroke_width=1.5)
+    skin: dict[str, Attribute] = {"fill": "#7cc576", "stroke": "#ffffff", "stroke_width": 1}
+    head = tag("ellipse", cx=19, cy=0, rx=6, ry=5, **skin)
+    legs = [tag("ellipse", cx=x, cy=y, rx=5, ry=4, **skin) for x in (-9, 9) for y in (-12, 12)]
+    tail = tag("path", d="M-21 0 L-14-2.5 L-14 2.5Z", **skin)
+    eyes = [tag("circle", cx=21, cy=y, r=1.2, fill=rgb(DEEP)) for y in (-2, 2)]
+    gone = tag("polyline", id="gone", points="", fill="none", stroke="#ffffff", stroke_width=4, stroke_linejoin="round")
+    return gone + tag("g", tail, *legs, head, *eyes, shell, pattern, id="turtle", visibility="hidden")
+
+
+def sign(role: Role) -> str:
+    """What stands for a role in the legend: how it looks on the canvas."""
+    color, water = rgb(LOOKS[role].color), tag("rect", width=46, height=26, rx=3, fill=rgb(SEA))
+    stroke: dict[str, Attribute] = {"stroke": color, "stroke_width": 4, "fill": "none"}
+    way = tag("path", d="M5 13H41", **{**stroke, "stroke": rgb(LOOKS["way"].color)})
+    drawn = {
+        "way": way,
+        "tick": way + tag("path", d="M23 5V21", **{**stroke, "stroke_width": 2.5}),
+        "start": tag("polygon", points="34,13 14,21 19,13 14,5", fill=color),
+        "wall": tag("path", d="M16 6L30 20M16 20L30 6", **stroke),
+    }.get(role, tag("path", d="M6 13h8m5 0h8m5 0h8", **{**stroke, "stroke_width": 3}))
+    return tag("svg", water, drawn, viewBox="0 0 46 26", width=46, height=26, aria_hidden="true", class_="sign")
