@@ -12,7 +12,7 @@ from grader.checks.constants import Names, dotted, single_names
 from grader.outcome import Where
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
 MAX_BYTES = 400_000
 """A longer file is not parsed: nobody wrote it by hand."""
@@ -69,7 +69,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Code:
-    """The modules of a submission (tests and setup.py left out), the node's file first."""
+    """The node's file and what it imports of the submission, in that order; tests and setup.py left out."""
 
     modules: tuple[Module, ...]
     node_file: str | None = None
@@ -78,10 +78,6 @@ class Code:
     def start(self) -> Where | None:
         """The node's file as a place to look."""
         return None if self.node_file is None else Where(self.node_file)
-
-    def module(self, file: str) -> Module | None:
-        """The module in this file."""
-        return next((module for module in self.modules if module.file == file), None)
 
     @cached_property
     def _calls(self) -> dict[str, list[Call]]:
@@ -126,10 +122,43 @@ def _sets(node: ast.AST, path: tuple[str, ...]) -> list[int]:
 
 
 def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
-    """Parse the Python files of a submission; `first` is the node's file."""
+    """Parse the node's file `first` and those files of the submission that it imports; all files where it is None.
+
+    The other nodes of a package say nothing about this one.
+    """
     paths = [path for path in sorted(files) if path.endswith(".py") and not _left_out(path)]
-    paths.sort(key=lambda path: path != first)
-    return Code(tuple(read_module(path, files[path]) for path in paths), first)
+    if first is None:
+        return Code(tuple(read_module(path, files[path]) for path in paths))
+    modules: dict[str, Module] = {}
+    waiting = [first]
+    while waiting:
+        path = waiting.pop(0)
+        if path not in modules:
+            modules[path] = read_module(path, files[path])
+            waiting += imported_files(modules[path], paths)
+    return Code(tuple(modules.values()), first)
+
+
+def imported_files(module: Module, paths: Collection[str]) -> list[str]:
+    """The files among `paths` that a module imports, absolutely or relative to its own package."""
+    found: list[str] = []
+    for node in module.nodes:
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            folder = module.file.split("/")[: -node.level] if node.level else []
+            base = ".".join([*folder, *([node.module] if node.module else [])])
+            names = [base, *(f"{base}.{alias.name}" for alias in node.names)]
+        else:
+            continue
+        found += [file for name in names if (file := module_file(name, paths)) is not None]
+    return found
+
+
+def module_file(module: str, paths: Collection[str]) -> str | None:
+    """The file of a dotted module name among the submission's files, None when there is none."""
+    path = module.replace(".", "/")
+    return next((each for each in (f"{path}.py", f"{path}/__init__.py") if each in paths), None)
 
 
 def _left_out(path: str) -> bool:

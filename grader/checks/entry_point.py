@@ -7,7 +7,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.building import INSTALLED_MODULE, is_linked
-from grader.checks.evidence import module_file
+from grader.checks.code import module_file, read_code, read_module
 from grader.checks.kind import Kind, NoParams
 from grader.outcome import Finding, Where, failed, passed
 from grader.words import nearest, shorten
@@ -92,7 +92,8 @@ def _missing(evidence: Evidence) -> Finding:
 def _looks_like_a_node(evidence: Evidence, targets: list[str | None]) -> str | None:
     """A file that makes a publisher, and that no entry point leads to."""
     taken = [module_file((target or "").partition(":")[0], evidence.submission.files) for target in targets]
-    files = [call.module.file for call in evidence.code.calls("create_publisher")]
+    everything = read_code(evidence.submission.files, first=None)
+    files = [call.module.file for call in everything.calls("create_publisher")]
     return next((file for file in files if file not in taken), None)
 
 
@@ -111,8 +112,8 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
             cause,
             where=_line(evidence),
         )
-    module = evidence.code.module(file)
-    if module is None or (module.tree is None and module.unreadable is None):
+    module = read_module(file, files[file])
+    if module.tree is None and module.unreadable is None:
         return passed(f"The entry point {evidence.exercise.executable} leads to {file}.")
     if module.unreadable is not None:
         where = Where(file, module.unreadable.line)

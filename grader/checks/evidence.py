@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from grader.checks import seen
-from grader.checks.code import Code, read_code
+from grader.checks.code import Code, module_file, read_code
 from grader.checks.manifest import Manifest, read_manifest
 from grader.checks.setup_py import SetupPy, read_setup_py
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Mapping
 
     from grader.build import Build
     from grader.checks.kind import Stage
@@ -70,7 +70,7 @@ class Evidence:
 
     @cached_property
     def code(self) -> Code:
-        """The Python modules of the submission, the node's file first."""
+        """What the node's file says, and the files that it imports."""
         return read_code(self.submission.files, first=self.node_file)
 
     @cached_property
@@ -116,12 +116,3 @@ class Evidence:
             if found:
                 return found[0].where
         return self.code.start
-
-
-def module_file(module: str, files: Collection[str]) -> str | None:
-    """The file of a dotted module name among the submission's files, None when there is none."""
-    path = module.replace(".", "/")
-    for candidate in (f"{path}.py", f"{path}/__init__.py"):
-        if candidate in files:
-            return candidate
-    return None

@@ -142,17 +142,24 @@ def test_an_int_in_a_float_field_is_explained() -> None:
     assert crash.meaning == "This field is a float: write the number with a decimal point."
 
 
-def test_calls_are_found_by_their_last_name_in_the_order_of_the_source_the_node_first() -> None:
+def test_calls_are_found_in_the_node_and_what_it_imports_and_nowhere_else() -> None:
     files = {
-        "a/b.py": b"self.create_timer(1, f)\n",
-        "a/node.py": b"x = 1\nnode.create_timer(2, f)\nsuper().create_timer(callback=g, timer_period_sec=3)\n",
+        "a/__init__.py": b"",
+        "a/helper.py": b"self.create_timer(1, f)\n",
+        "a/second.py": b"from a import third\nself.create_timer(4, f)\n",
+        "a/third.py": b"import a.node\nself.create_timer(5, f)\n",
+        "a/other_node.py": b"self.create_timer(9, f)\n",
+        "a/node.py": b"from .helper import help\nfrom . import second\n\nnode.create_timer(2, f)\n"
+        b"super().create_timer(callback=g, timer_period_sec=3)\n",
         "setup.py": b"create_timer(9)\n",
         "test/test_x.py": b"create_timer(9)\n",
     }
     code = read_code(files, "a/node.py")
-    assert [str(call.where) for call in code.calls("create_timer")] == ["a/node.py:2", "a/node.py:3", "a/b.py:1"]
+    assert [str(call.where) for call in code.calls("create_timer")] == [
+        "a/node.py:4", "a/node.py:5", "a/helper.py:1", "a/second.py:2", "a/third.py:2",
+    ]  # fmt: skip
     periods = [number(call.argument(0, "timer_period_sec"), {}) for call in code.calls("create_timer")]
-    assert periods == [2.0, 3.0, 1.0]
+    assert periods == [2.0, 3.0, 1.0, 4.0, 5.0]
 
 
 def test_a_starred_argument_hides_its_place() -> None:
