@@ -42,6 +42,10 @@ class Clock(str, Enum):
 
 Json = Annotated[Optional[Path], typer.Option("--json", help="Write the report as JSON.", metavar="FILE")]  # noqa: UP045
 Image = Annotated[Optional[Path], typer.Option(help="Draw the turtle's path as a PNG.", metavar="FILE.png")]  # noqa: UP045
+Html = Annotated[
+    Optional[Path],  # noqa: UP045
+    typer.Option("--html", help="Write a page to look at: checks, code, replay, graph, logs.", metavar="FILE.html"),
+]
 ExerciseId = Annotated[
     Optional[str],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
     typer.Option("--exercise", help="Which exercise; in exercises/ and solutions/ it follows from the folder."),
@@ -59,6 +63,7 @@ def check(
     ] = Clock.auto,
     json: Json = None,
     image: Image = None,
+    html: Html = None,
     recording: Annotated[
         Optional[Path],  # noqa: UP045
         typer.Option(help="Keep all that was seen, to judge it again with `grader regrade`.", metavar="DIR"),
@@ -70,7 +75,7 @@ def check(
     from grader.grade import Options, grade
     from grader.submission import open_submission
 
-    for file in (json, image):
+    for file in (json, image, html):
         _writable(file)
     if recording:
         archive.check_free(recording)
@@ -81,7 +86,7 @@ def check(
         graded = grade(asked, opened, options, tell)
         if recording:
             archive.save(recording, graded.evidence, graded.report.ros, graded.prefixes)
-    _show(graded.report, graded.evidence, json, image)
+    _show(graded.report, graded.evidence, json, image, html)
 
 
 @app.command(epilog="Example: grader regrade my-recording --image path.png")
@@ -93,6 +98,7 @@ def regrade(
     ] = None,
     json: Json = None,
     image: Image = None,
+    html: Html = None,
 ) -> None:
     """Judge a stored recording again; nothing of the student's is run."""
     from grader import archive
@@ -100,11 +106,29 @@ def regrade(
     from grader.exercise import find_exercise
     from grader.grade import report_of
 
-    for file in (json, image):
+    for file in (json, image, html):
         _writable(file)
     kept = archive.load(recording, find_exercise(exercise) if exercise else None)
     report = report_of(kept.evidence, judge(kept.evidence), kept.ros, {})
-    _show(report, kept.evidence, json, image)
+    _show(report, kept.evidence, json, image, html)
+
+
+@app.command("class-page", epilog="Example: grader class-page reports")
+def class_page(
+    folder: Annotated[
+        Path, typer.Argument(help="Holds the reports of a class, as --json writes them; pages beside them.")
+    ],
+    out: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option(help="Where the page goes; index.html in the folder when left out.", metavar="FILE.html"),
+    ] = None,
+) -> None:
+    """Make one page of a class: who got what, what fails most and why, what to teach again."""
+    from grader.report.html_class import PAGE, save_class_page
+
+    file = out or folder / PAGE
+    save_class_page(folder, file)
+    typer.echo(f"The class page: {file}")
 
 
 @app.command(epilog="Example: grader doctor")
@@ -204,7 +228,7 @@ def _exercise(name: str | None, package: Path) -> Exercise:
     return found
 
 
-def _show(report: Report, evidence: Evidence, json: Path | None, image: Path | None) -> None:
+def _show(report: Report, evidence: Evidence, json: Path | None, image: Path | None, html: Path | None) -> None:
     from rich.console import Console
 
     from grader.report import terminal
@@ -217,6 +241,10 @@ def _show(report: Report, evidence: Evidence, json: Path | None, image: Path | N
         from grader.report.picture import save_picture
 
         save_picture(evidence, report, image)
+    if html:
+        from grader.report.html import save_html
+
+        save_html(evidence, report, html)
     console = Console(highlight=False)
     terminal.render(report, console)
     raise typer.Exit(report.exit_code)
