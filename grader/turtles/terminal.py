@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 import signal
 import sys
 import termios
@@ -11,7 +12,7 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, NoReturn
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from types import FrameType
 
 
@@ -25,22 +26,44 @@ def is_terminal() -> bool:
 
 
 @contextmanager
-def keyboard() -> Iterator[int]:
-    """Standard input without echo and without waiting for Enter; Ctrl-C and Ctrl-Z work as ever. Gives its number."""
+def keyboard() -> Iterator[Callable[[], bytes]]:
+    """Standard input without echo and without waiting for Enter; Ctrl-C and Ctrl-Z work as ever.
+
+    Gives a function that waits for keys and returns what they send: nothing when the terminal is gone.
+    """
     number = sys.stdin.fileno()
     before = termios.tcgetattr(number)
     handlers: dict[signal.Signals, Any] = dict.fromkeys((signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT), _end)
     handlers[signal.SIGCONT] = lambda *_: _in_front(number)
     old = {name: signal.signal(name, handler) for name, handler in handlers.items()}
+    woken, wake = os.pipe()
+    os.set_blocking(wake, False)
+    # A signal may reach another thread, one of ROS 2; then this one would go on waiting, and Python not handle it.
+    old_wake = signal.set_wakeup_fd(wake, warn_on_full_buffer=False)
     try:
         tty.setcbreak(number)
-        yield number
+        yield lambda: _read(number, woken)
     finally:
         # What was typed ahead is not for the shell: an arrow would call up its last command. The terminal may be gone.
         with suppress(termios.error):
             termios.tcsetattr(number, termios.TCSAFLUSH, before)
+        signal.set_wakeup_fd(old_wake)
         for name, handler in old.items():
             signal.signal(name, handler)
+        os.close(woken)
+        os.close(wake)
+
+
+def _read(number: int, woken: int) -> bytes:
+    while True:
+        ready, _, _ = select.select([number, woken], [], [])
+        if woken in ready:
+            os.read(woken, 64)
+        if number in ready:
+            try:
+                return os.read(number, 1024)
+            except OSError:
+                return b""
 
 
 def _end(number: int, _: FrameType | None) -> NoReturn:

@@ -96,9 +96,9 @@ def main() -> int:
     spinning = threading.Thread(target=_spin, args=[executor], daemon=True)
     spinning.start()
     try:
-        with keyboard() as number:
+        with keyboard() as read:
             print(_HELP, flush=True)
-            _follow(number, node, executor)
+            _follow(read, node, executor)
     except KeyboardInterrupt:
         pass
     finally:
@@ -114,16 +114,10 @@ def _spin(executor: SingleThreadedExecutor) -> None:
         executor.spin()
 
 
-def _follow(number: int, node: Teleop, executor: SingleThreadedExecutor) -> None:
+def _follow(read: Callable[[], bytes], node: Teleop, executor: SingleThreadedExecutor) -> None:
     """Do what the keys say until Q, or until the terminal is gone."""
     rest = ""
-    while True:
-        try:
-            data = os.read(number, 1024)
-        except OSError:
-            return
-        if not data:
-            return
+    while data := read():
         typed, rest = keys(rest + data.decode("latin-1"))
         for key in typed:
             if isinstance(key, Quit):
