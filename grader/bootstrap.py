@@ -101,6 +101,17 @@ def apt_install(needs: Sequence[machine.Need]) -> None:
         subprocess.call(["apt-get", *arguments], env=env, stdin=subprocess.DEVNULL)
 
 
+def see_browser(*, install: bool, root: bool) -> None:
+    """Install Chromium if that may be done, else say how; by itself, since not every system has that package."""
+    needs = machine.missing_browser(os.environ.get("PATH", ""))
+    if needs and install:
+        apt_install(needs)
+        needs = machine.missing_browser(os.environ.get("PATH", ""))
+    if needs:
+        command = machine.apt_command(needs, root=root)
+        print(f"Without Chromium the tests of the pages are not run. It comes with: {command}")
+
+
 def look(
     ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python], *, made: bool
 ) -> Tuple[Optional[machine.Python], List[machine.Need]]:
@@ -159,6 +170,9 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     if needs:
         print(machine.lack_message(needs, root=root, apt=apt), file=sys.stderr)
         return MACHINE_BROKEN
+
+    if "tests" in parts:
+        see_browser(install=apt and root and os.environ.get("CI") == "true", root=root)
 
     if stamp and made and stamp.digest == digest() and set(parts) <= set(stamp.parts):
         return 0

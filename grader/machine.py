@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 OLDEST, NEWEST = (3, 10), (3, 14)
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SYSTEM_PATH = ("/usr/local/bin", "/usr/bin", "/bin")
 
 CONTAINER = """\
@@ -162,6 +163,13 @@ def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
         tools["make"] = Need("make, for turtlesim's messages", "make")
     search = os.pathsep.join([path, *SYSTEM_PATH])
     return list(dict.fromkeys(need for name, need in tools.items() if shutil.which(name, path=search) is None))
+
+
+def missing_browser(path: str) -> List[Need]:
+    """What the tests of the pages lack; nothing else needs a browser, so that it is no reason to stop."""
+    search = os.pathsep.join([path, *SYSTEM_PATH])
+    found = any(shutil.which(name, path=search) for name in BROWSERS)
+    return [] if found else [Need("a browser, for the tests of the pages", "chromium")]
 
 
 def missing_of_python(python: Optional[Python], wanted: Optional[Tuple[int, int]] = None) -> List[Need]:
