@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.checks.evidence import Evidence
-    from grader.outcome import Outcome, Report
+    from grader.outcome import Outcome, Report, Where
     from grader.report.code_excerpt import Excerpt
 
 MOST_FRAMES = 1500
@@ -60,6 +60,11 @@ class ShownCheck:
         """What was seen; empty where that is hidden or only repeats the title."""
         text = self.outcome.finding.seen
         return "" if self.outcome.hidden or text.rstrip(".") == self.outcome.title else text
+
+    def shows(self, where: Where) -> bool:
+        """Whether the line of this place is among those shown with the check."""
+        code = self.code
+        return code is not None and code.file == where.file and any(line.number == where.line for line in code.lines)
 
     @property
     def kind(self) -> str:
@@ -112,18 +117,13 @@ def html_page(evidence: Evidence, report: Report) -> str:
 
 def _shown(evidence: Evidence, report: Report) -> Iterator[ShownCheck]:
     """Every check; lines of code are shown once."""
-    places: dict[tuple[str, int | None], int] = {}
+    shown: list[ShownCheck] = []
     for number, outcome in enumerate(report.outcomes, 1):
-        where = outcome.finding.where
-        if where is None or outcome.hidden or outcome.status is not Status.FAILED:
-            yield ShownCheck(number, outcome)
-        elif (where.file, where.line) in places:
-            yield ShownCheck(number, outcome, above=places[where.file, where.line])
-        else:
-            code = excerpt(evidence, where)
-            if code is not None:
-                places[where.file, where.line] = number
-            yield ShownCheck(number, outcome, code)
+        where = None if outcome.hidden or outcome.status is not Status.FAILED else outcome.finding.where
+        above = None if where is None else next((each.number for each in shown if each.shows(where)), None)
+        code = None if above else excerpt(evidence, where)
+        shown.append(ShownCheck(number, outcome, code, above))
+        yield shown[-1]
 
 
 def _end(evidence: Evidence) -> str:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
-from itertools import takewhile
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
@@ -133,11 +132,23 @@ def read_class(folder: Path) -> ClassReports:
 
 
 def _short(names: Sequence[str]) -> list[str]:
-    """The names without the folders that they all lie in."""
+    """The names without the folders that they all begin with, and without those that they all end with."""
     parts = [name.rstrip("/").split("/") for name in names]
-    alike = takewhile(lambda level: len(set(level)) == 1, zip(*(each[:-1] for each in parts), strict=False))
-    common = len(list(alike)) if len(parts) > 1 else 0
-    return ["/".join(each[common:]) or name for each, name in zip(parts, names, strict=True)]
+    if len(parts) < 2:
+        return list(names)
+    ends = _alike([each[::-1] for each in parts])
+    begins = _alike([each[: len(each) - ends] for each in parts])
+    return ["/".join(each[begins : len(each) - ends]) or name for each, name in zip(parts, names, strict=True)]
+
+
+def _alike(paths: Sequence[Sequence[str]]) -> int:
+    """How many folders all the paths have in common at their beginning, their last one never."""
+    same = 0
+    for level in zip(*(path[:-1] for path in paths), strict=False):
+        if len(set(level)) > 1:
+            break
+        same += 1
+    return same
 
 
 def _link(file: Path, folder: Path) -> str:
@@ -187,7 +198,7 @@ def save_class_page(folder: Path, file: Path) -> None:
     save_page(class_page(read_class(folder)), file)
 
 
-BINS = [f"{10 * each}-{10 * each + 9}" for each in range(10)] + ["100"]
+BINS = [f"{10 * each} to {10 * each + 9}" for each in range(10)] + ["100"]
 
 
 def counts(shares: Iterable[float]) -> list[int]:
@@ -214,9 +225,9 @@ def distribution(shares: Iterable[float]) -> str:
         if amount:
             parts.append(tag("rect", x=x, y=top + height - tall, width=bar, height=tall, fill=BAR))
             parts.append(words(str(amount), x + bar / 2, top + height - tall - 6, "middle"))
-        parts.append(words(name, x + bar / 2, top + height + 18, "middle"))
+        parts.append(words(name.split()[0], x + bar / 2, top + height + 19, "middle"))
     base = tag("path", d=f"M8 {top + height}H{width - 8}", stroke="currentColor")
-    label = words("% of the points", width - 10, top + height + 36, "end")
+    label = words("% of the points, or up to 9 more", width - 10, top + height + 40, "end")
     return picture(
         *parts, base, label, width=width, height=top + height + 44, title="Distribution of points", key="distribution"
     )

@@ -156,7 +156,7 @@ def _axes() -> str:
             marks.append(words(str(metre), x, TOP + SIDE + 22, "middle"))
             marks.append(words(str(metre), LEFT - 10, y + 5, "end"))
     marks.append(words("x (m)", LEFT + SIDE, TOP + SIDE + 40, "end"))
-    marks.append(words("y (m)", LEFT - 10, TOP + 12, "end"))
+    marks.append(words("y (m)", 2, TOP + 14))
     return tag("g", *marks, class_="axes", font_size=16)
 
 
