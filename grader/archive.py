@@ -6,12 +6,14 @@
     submission.json  name, digest and paths
     source/          the submission's files
     exercise/        the exercise as it was: exercise.toml
+    trials/ID/       bag/ and trial.json of each further trial of the exercise
 
 bag/ and trial.json are missing where no trial could be run, build.json where nothing could be built.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import shutil
@@ -23,13 +25,14 @@ from grader.checks.evidence import Evidence, Fault
 from grader.errors import MachineError, UsageError
 from grader.exercise import FILE_NAME, load_exercise
 from grader.recording import from_json, to_json
-from grader.submission import Submission, open_submission, write_copy
+from grader.submission import Submission, open_answers, open_submission, write_copy
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
     from grader.exercise import Exercise
+    from grader.recording import Recording
 
 _SCHEMA = 1
 
@@ -59,14 +62,29 @@ def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -
         _write(folder / "submission.json", _about(evidence, ros))
         if evidence.build is not None:
             _write(folder / "build.json", {"schema": _SCHEMA, **asdict(evidence.build)})
-        if evidence.recording is not None:
-            from grader.bag import write_bag  # rosbags takes its time: only where a bag is written
-
-            write_bag(folder / "bag", evidence.recording.messages, prefixes)
-            _write(folder / "trial.json", {"schema": _SCHEMA, **to_json(evidence.recording, messages=False)})
+        _save_trial(folder, evidence.recording, prefixes)
+        for trial, other in evidence.others.items():
+            (folder / "trials" / trial).mkdir(parents=True)
+            _save_trial(folder / "trials" / trial, other.recording, prefixes)
     except OSError as error:
         message = f"The recording could not be written to {folder}: {error.strerror}."
         raise MachineError(message) from error
+
+
+def _save_trial(folder: Path, recording: Recording | None, prefixes: Iterable[Path]) -> None:
+    if recording is not None:
+        from grader.bag import write_bag  # rosbags takes its time: only where a bag is written
+
+        write_bag(folder / "bag", recording.messages, prefixes)
+        _write(folder / "trial.json", {"schema": _SCHEMA, **to_json(recording, messages=False)})
+
+
+def _load_trial(folder: Path) -> Recording | None:
+    if not (folder / "trial.json").exists():
+        return None
+    from grader.bag import read_payloads
+
+    return from_json(_read(folder / "trial.json"), read_payloads(folder / "bag"))
 
 
 def check_free(folder: Path) -> None:
@@ -90,7 +108,7 @@ def load(folder: Path, exercise: Exercise | None = None) -> Archived:
         about = _read(folder / "submission.json")
         kept = exercise or load_exercise(folder / "exercise" / FILE_NAME)
         package = folder / "source" / about["package"]
-        opened = open_submission(package)
+        opened = open_submission(package) if kept.package else open_answers(package)
         submission = Submission(
             name=about["name"],
             package_dir=opened.package_dir,
@@ -99,19 +117,23 @@ def load(folder: Path, exercise: Exercise | None = None) -> Archived:
             digest=about["digest"],
             executable=opened.executable,
         )
-        build, recording = None, None
-        if (folder / "build.json").exists():
-            build = _build(_read(folder / "build.json"))
-        if (folder / "trial.json").exists():
-            from grader.bag import read_payloads
-
-            recording = from_json(_read(folder / "trial.json"), read_payloads(folder / "bag"))
+        build = _build(_read(folder / "build.json")) if (folder / "build.json").exists() else None
         fault = Fault(**about["fault"]) if about["fault"] else None
+        evidence = Evidence(kept, submission, build, _load_trial(folder), fault, about["overwhelmed"])
+        others = {
+            trial.id: dataclasses.replace(
+                evidence.in_trial(trial.id),
+                recording=_load_trial(folder / "trials" / trial.id),
+                overwhelmed=about["others"].get(trial.id),
+            )
+            for trial in kept.trials
+            if trial.id in about["others"]
+        }
     except (OSError, KeyError, TypeError, ValueError) as error:
         told = f"{type(error).__name__}: {error}"
         message = f"{folder} cannot be read as a recording, as `grader check --recording {folder}` writes one ({told})."
         raise UsageError(message) from error
-    return Archived(Evidence(kept, submission, build, recording, fault), about["ros"])
+    return Archived(dataclasses.replace(evidence, others=others), about["ros"])
 
 
 def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
@@ -125,6 +147,8 @@ def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
         "files": [os.fsencode(path).decode("utf-8", "backslashreplace") for path in submission.files],
         "ros": ros,
         "fault": asdict(evidence.fault) if evidence.fault else None,
+        "overwhelmed": evidence.overwhelmed,
+        "others": {trial: other.overwhelmed for trial, other in evidence.others.items()},
     }
 
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
     from grader.exercise import Exercise
     from grader.outcome import Report
+    from grader.submission import Submission
 
 app = typer.Typer(
     name="grader",
@@ -73,14 +74,12 @@ def check(
     """Build and run one submission, and say what is right and what is not."""
     from grader import archive, sandbox
     from grader.grade import Options, grade
-    from grader.submission import open_submission
 
     for file in (json, image, html):
         _writable(file)
     if recording:
         archive.check_free(recording)
-    opened = open_submission(submission)
-    asked = _exercise(exercise, opened.package_dir)
+    asked, opened = _opened(exercise, submission)
     options = Options(in_cell=sandbox.usable(), clock=clock.value, seed=seed)
     with _progress() as tell:
         graded = grade(asked, opened, options, tell)
@@ -213,6 +212,17 @@ def main() -> None:
         told = f"grader: a fault of the grader itself, not of your work: {type(error).__name__}: {error}"
         typer.secho(f"{told}\nGRADER_DEBUG=1 before the command shows where; please report that.", err=True)
         sys.exit(3)
+
+
+def _opened(name: str | None, path: Path) -> tuple[Exercise, Submission]:
+    from grader.exercise import exercise_of_folder, find_exercise
+    from grader.submission import open_answers, open_submission
+
+    known = find_exercise(name) if name else exercise_of_folder(path)
+    if known is not None and not known.package:
+        return known, open_answers(path)
+    opened = open_submission(path)
+    return known or _exercise(name, opened.package_dir), opened
 
 
 def _exercise(name: str | None, package: Path) -> Exercise:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,10 @@ Param = str | float | int | bool | tuple[str, ...]
 
 @dataclass(frozen=True)
 class CheckSpec:
-    """One `[[check]]`: `params` hold its numbers, with units in their names (`rate_hz`, `radius_m`)."""
+    """One `[[check]]`: `params` hold its numbers, with units in their names (`rate_hz`, `radius_m`).
+
+    `trial`: the id of the trial that it judges, empty for the exercise's own.
+    """
 
     id: str
     kind: str
@@ -28,18 +31,49 @@ class CheckSpec:
     needs: tuple[str, ...]
     hidden: bool
     params: Mapping[str, Param]
+    trial: str = ""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """From `from_s` (s) on the simulator itself drives the turtle; each speed is drawn from its two limits."""
+
+    from_s: float
+    linear_x_m_s: tuple[float, float]
+    angular_z_rad_s: tuple[float, float]
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """What a trial does: `duration_s` on the trial's clock, then SIGINT."""
+    """What a trial does: `duration_s` on the trial's clock, then SIGINT.
+
+    `anywhere`: the turtle starts at a drawn place even without a seed. `rename`: remapping rules of the simulator, as
+    "/turtle1/pose:=/where". `pose_every`: it publishes a pose every so many frames.
+    """
 
     duration_s: float
+    drives: tuple[Drive, ...] = ()
+    anywhere: bool = False
+    rename: tuple[str, ...] = ()
+    pose_every: int = 1
+
+
+@dataclass(frozen=True)
+class TrialSpec:
+    """One `[[trial]]`: another executable of the same package in a scenario of its own."""
+
+    id: str
+    executable: str
+    node: str
+    scenario: Scenario
 
 
 @dataclass(frozen=True)
 class Exercise:
-    """A step's exercise. `node` is the node's name without a slash, `executable` the entry point that starts it."""
+    """A step's exercise. `node` is the node's name without a slash, `executable` the entry point that starts it.
+
+    Without a `package` what is handed in is answers.toml alone, and the simulator runs by itself.
+    """
 
     id: str
     title: str
@@ -52,6 +86,22 @@ class Exercise:
     folder: Path
     digest: str = ""
     """sha256 of exercise.toml: what the exercise asks for, and how it is judged."""
+    trials: tuple[TrialSpec, ...] = ()
+    """Further trials, after the exercise's own."""
+    trial: str = ""
+    """Seen as which of its trials: `executable`, `node` and `scenario` are that one's."""
+    whole: Exercise | None = None
+    """Where it is seen as a further trial: the exercise itself."""
+
+    def of_trial(self, trial: str) -> Exercise:
+        """The exercise seen as one of its further trials, or as itself (""); KeyError for one that it does not have."""
+        itself = self.whole or self
+        if not trial:
+            return itself
+        spec = {each.id: each for each in self.trials}[trial]
+        return replace(
+            self, executable=spec.executable, node=spec.node, scenario=spec.scenario, trial=trial, whole=itself
+        )
 
 
 def course_folder() -> Path:

@@ -1,7 +1,9 @@
 """Read exercise.toml, and tell its author all that is wrong with it at once.
 
-schema = 1. `[exercise]` id, title, package, executable, node. `[scenario]` duration_s. `[[check]]` id, kind, points,
-needs (ids), title, hidden, and the parameters of its kind. `[[hint]]` text, from a nudge to nearly the answer.
+schema = 1. `[exercise]` id, title, package, executable, node; without the last three answers.toml alone is handed in.
+`[scenario]` duration_s, start, rename, pose_every, `[[scenario.drive]]` from_s, linear_x_m_s, angular_z_rad_s (one
+number, or two to draw from). `[[trial]]` id, executable, node, `[trial.scenario]`. `[[check]]` id, kind, points, needs (ids),
+title, trial, hidden, and the parameters of its kind. `[[hint]]` text, from a nudge to nearly the answer.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.checks.kinds import KINDS
 from grader.errors import UsageError
-from grader.exercise import CheckSpec, Exercise, Param, Scenario
+from grader.exercise import CheckSpec, Drive, Exercise, Param, Scenario, TrialSpec
 from grader.words import nearest, shorten
 
 if TYPE_CHECKING:
@@ -29,7 +31,10 @@ else:
 SCHEMA = 1
 ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 ROS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+REMAP = re.compile(r"(/\w+)+:=(/\w+)+")
 MAX_DURATION_S = 600.0
+MAX_SPEED = 10.0
+"""m/s and rad/s."""
 
 
 def parse_exercise(data: bytes, name: str, folder: Path) -> Exercise:
@@ -87,14 +92,26 @@ class _Table:
 
         return str(self._get(key, allowed, good, default=default) or "")
 
-    def number(self, key: str, low: float, high: float, allowed: str) -> float:
+    def number(self, key: str, low: float, high: float, allowed: str, default: float | None = None) -> float:
         """A finite number, low <= number <= high."""
 
         def good(value: object) -> bool:
             is_number = isinstance(value, int | float) and not isinstance(value, bool)
             return is_number and math.isfinite(value) and low <= value <= high  # type: ignore[arg-type, operator]
 
-        return float(self._get(key, allowed, good, default=None) or 0.0)
+        return float(self._get(key, allowed, good, default=default) or 0.0)
+
+    def limits(self, key: str, most: float) -> tuple[float, float]:
+        """Two finite numbers from -most to most, in order; one number stands for both."""
+
+        def good(value: object) -> bool:
+            pair = value if isinstance(value, list) else [value, value]
+            numbers = [n for n in pair if isinstance(n, int | float) and not isinstance(n, bool) and abs(n) <= most]
+            return len(pair) == len(numbers) == 2 and numbers[0] <= numbers[1]
+
+        value = self._get(key, f"a number from {-most:g} to {most:g}, or a list of two in order", good, default=None)
+        low, high = value if isinstance(value, list) else (value or 0.0, value or 0.0)
+        return float(low), float(high)
 
     def flag(self, key: str) -> bool:
         return bool(self._get(key, "true or false", lambda value: isinstance(value, bool), default=False))
@@ -131,22 +148,67 @@ def _exercise(top: _Table, folder: Path, digest: str) -> Exercise:
         return Exercise("", "", "", "", "", Scenario(0.0), (), (), folder)
     head = top.table("exercise")
     name = "letters, digits and _, beginning with a letter"
-    scenario = top.table("scenario")
+    # An exercise without a package has no node either.
+    default = None if "package" in head.values else ""
+    tables = top.tables("trial")
+    trials = tuple(_trial(table) for table in tables)
+    for table, trial in zip(tables, trials, strict=True):
+        if [each.id for each in trials].count(trial.id) > 1:
+            table.problem(f'the id "{trial.id}" is used twice; each trial needs one of its own.')
     exercise = Exercise(
         id=head.text("id", ID, "small letters, digits and single dashes, as in 03-circle-publisher"),
         title=head.text("title"),
-        package=head.text("package", ROS_NAME, name),
-        executable=head.text("executable", ROS_NAME, name),
-        node=head.text("node", ROS_NAME, name),
-        scenario=Scenario(scenario.number("duration_s", 0.1, MAX_DURATION_S, f"from 0.1 to {MAX_DURATION_S:g} (s)")),
-        checks=_checks(top),
+        package=head.text("package", ROS_NAME, name, default=default),
+        executable=head.text("executable", ROS_NAME, name, default=default),
+        node=head.text("node", ROS_NAME, name, default=default),
+        scenario=_scenario(top.table("scenario")),
+        checks=_checks(top, tuple(trial.id for trial in trials)),
         hints=tuple(_hint(table) for table in top.tables("hint")),
         folder=folder,
         digest=digest,
+        trials=trials,
     )
-    for table in (head, scenario, top):
+    for table in (head, top):
         table.finish()
     return exercise
+
+
+def _trial(table: _Table) -> TrialSpec:
+    name = "letters, digits and _, beginning with a letter"
+    spec = TrialSpec(
+        id=table.text("id", ID, "small letters, digits and single dashes, as in figure-eight"),
+        executable=table.text("executable", ROS_NAME, name),
+        node=table.text("node", ROS_NAME, name),
+        scenario=_scenario(table.table("scenario")),
+    )
+    table.finish()
+    return spec
+
+
+def _scenario(table: _Table) -> Scenario:
+    start = table.text("start", re.compile("turtlesim|anywhere"), '"turtlesim" or "anywhere"', default="turtlesim")
+    scenario = Scenario(
+        duration_s=table.number("duration_s", 0.1, MAX_DURATION_S, f"from 0.1 to {MAX_DURATION_S:g} (s)"),
+        drives=tuple(_drive(each) for each in table.tables("drive")),
+        anywhere=start == "anywhere",
+        rename=table.texts("rename"),
+        pose_every=int(table.number("pose_every", 1, 1000, "a number of frames from 1 to 1000", default=1)),
+    )
+    for rule in scenario.rename:
+        if not REMAP.fullmatch(rule):
+            table.problem(f'"rename" holds "{shorten(rule)}"; a rule reads "/old/name:=/new/name".')
+    table.finish()
+    return scenario
+
+
+def _drive(table: _Table) -> Drive:
+    drive = Drive(
+        table.number("from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)"),
+        table.limits("linear_x_m_s", MAX_SPEED),
+        table.limits("angular_z_rad_s", MAX_SPEED),
+    )
+    table.finish()
+    return drive
 
 
 def _hint(table: _Table) -> str:
@@ -155,11 +217,11 @@ def _hint(table: _Table) -> str:
     return hint
 
 
-def _checks(top: _Table) -> tuple[CheckSpec, ...]:
+def _checks(top: _Table, trials: tuple[str, ...]) -> tuple[CheckSpec, ...]:
     tables = top.tables("check")
     if not tables:
         top.problem("there is no [[check]], so nothing would be judged.")
-    specs = tuple(_check(table) for table in tables)
+    specs = tuple(_check(table, trials) for table in tables)
     ids = [spec.id for spec in specs]
     for table, spec in zip(tables, specs, strict=True):
         if spec.id and ids.count(spec.id) > 1:
@@ -175,10 +237,15 @@ def _checks(top: _Table) -> tuple[CheckSpec, ...]:
     return specs
 
 
-def _check(table: _Table) -> CheckSpec:
+def _check(table: _Table, trials: tuple[str, ...]) -> CheckSpec:
     id_ = table.text("id", ID, "small letters, digits and single dashes, as in circle-radius")
     if id_:
         table.place += f" ({id_})"
+    trial = table.text("trial", default="")
+    if trial and trial not in trials:
+        table.problem(
+            f'"trial" is "{shorten(trial)}"; it must be the id of a [[trial]]: {", ".join(trials) or "none"}.'
+        )
     name = table.text("kind", allowed=f"one of {', '.join(KINDS)}")
     points = table.number("points", 0.0, 1000.0, "a number from 0 to 1000")
     needs, hidden = table.texts("needs"), table.flag("hidden")
@@ -189,7 +256,7 @@ def _check(table: _Table) -> CheckSpec:
             guess = nearest(name, KINDS)
             hint = f' Did you mean "{guess}"?' if guess else ""
             table.problem(f'unknown kind "{shorten(name)}".{hint} Allowed: {", ".join(KINDS)}.')
-        return CheckSpec(id_, name, title, points, needs, hidden, {})
+        return CheckSpec(id_, name, title, points, needs, hidden, {}, trial)
     if kind.advice and points != 0.0:
         table.problem(f'"points" is {points:g}; the kind "{name}" is advice, which is worth 0.')
     params: dict[str, Param] = kind.defaults()
@@ -204,7 +271,7 @@ def _check(table: _Table) -> CheckSpec:
         else:
             params[key] = value
     table.finish(also=kind.parameters())
-    return CheckSpec(id_, name, title, points, needs, hidden, params)
+    return CheckSpec(id_, name, title, points, needs, hidden, params, trial)
 
 
 def _circle(specs: tuple[CheckSpec, ...]) -> list[str]:

@@ -11,13 +11,15 @@ from typing import TYPE_CHECKING, Literal
 import grader
 from grader import underlay, workspace
 from grader.checks.evidence import Evidence, Fault
-from grader.checks.judge import judge, near_edge, wants_trial
+from grader.checks.judge import judge, near_edge, of_this_trial, wants_trial
 from grader.errors import MachineError
 from grader.outcome import Report, Status
 from grader.ros import find_ros
 from grader.trial.clues import wall_clues
+from grader.trial.inputs import draw_inputs
 from grader.trial.start import start_pose
-from grader.trial.trial import Plan, Trial, WallTimeNeeded
+from grader.trial.trial import OverwhelmedError, Plan, Trial, WallTimeNeeded
+from grader.words import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -34,6 +36,9 @@ ClockChoice = Literal["auto", "simulated", "wall"]
 
 WALL_TRIALS = 3
 """How often a wall-clock trial is made that failed while the machine stalled."""
+
+UNASKED_SEED = 1
+"""What is drawn from where nobody asked for a seed, in scenarios that vary all the same."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +80,7 @@ def report_of(evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, secon
         grader=grader.__version__,
         ros=ros,
         clock=recording.clock if recording else "none",
-        clock_why=recording.why if recording else "The node was not run.",
+        clock_why=recording.why if recording else _why_not_run(evidence),
         seed=recording.seed if recording else None,
         outcomes=outcomes,
         seconds=seconds,
@@ -90,6 +95,8 @@ class _Grading:
     options: Options
     tell: Callable[[str], None]
     seconds: dict[str, float] = field(default_factory=dict)
+    tree: bytes = b""
+    """What was built, as a tar stream."""
 
     def run(self) -> Graded:
         begun = time.monotonic()
@@ -103,18 +110,42 @@ class _Grading:
             with self._timed("interfaces"):
                 extra = underlay.ensure(here, self.tell)
             prefixes = (*here.prefixes, *([extra] if extra else []))
-            clock, why = self._first_clock(evidence)
-            with self._trial(clock, here, extra) as trial:
-                evidence = self._build(evidence, here, extra)
+            if not self.exercise.package:
                 stage = "trial"
-                if wants_trial(evidence):
-                    evidence = self._try(evidence, trial, clock, why, here, extra)
+                evidence = self._simulator_alone(evidence, here, extra)
+            else:
+                clock, why = self._first_clock(evidence)
+                with self._trial(clock, here, extra) as trial:
+                    evidence = self._build(evidence, here, extra)
+                    stage = "trial"
+                    if wants_trial(evidence):
+                        evidence = self._try_twice(evidence, trial, clock, why, here, extra)
+                evidence = self._further_trials(evidence, here, extra)
         except MachineError as error:
             evidence = dataclasses.replace(evidence, fault=Fault(stage, str(error)))
         with self._timed("checks"):
             outcomes = judge(evidence)
         self.seconds["in all"] = time.monotonic() - begun
         return Graded(report_of(evidence, outcomes, ros_name, self.seconds), evidence, prefixes)
+
+    def _simulator_alone(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
+        self.tell("Asking a running simulator")
+        with self._timed("trial"), self._trial("simulated", here, extra) as trial:
+            recording = trial.run_alone()
+        why = "the simulator ran by itself, and says the same at any pace"
+        return dataclasses.replace(evidence, recording=dataclasses.replace(recording, why=why))
+
+    def _further_trials(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
+        """Run the exercise's further executables, each in a trial of its own."""
+        others: dict[str, Evidence] = {}
+        for spec in self.exercise.trials:
+            seen = evidence.in_trial(spec.id)
+            if wants_trial(seen):
+                one = _Grading(seen.exercise, self.submission, self.options, self.tell, self.seconds, self.tree)
+                clock, why = one._first_clock(seen)
+                with one._trial(clock, here, extra) as trial:
+                    others[spec.id] = one._try_twice(seen, trial, clock, why, here, extra)
+        return dataclasses.replace(evidence, others=others)
 
     def _first_clock(self, evidence: Evidence) -> tuple[ClockName, str]:
         if self.options.clock != "auto":
@@ -130,8 +161,22 @@ class _Grading:
         self.tell("Building with colcon")
         with self._timed("build"):
             built = workspace.build(self.submission, here, extra, in_cell=self.options.in_cell)
-        self._tree = built.tree
+        self.tree = built.tree
         return dataclasses.replace(evidence, build=built.build)
+
+    def _try_twice(
+        self, evidence: Evidence, trial: Trial, clock: ClockName, why: str, here: Ros, extra: Path | None
+    ) -> Evidence:
+        """A node that brings the simulator down once may have met a fault of the machine; twice, it is the node."""
+        try:
+            return self._try(evidence, trial, clock, why, here, extra)
+        except OverwhelmedError as error:
+            self.tell(f"The simulator was brought down ({printable(str(error))}): once more")
+        try:
+            with self._trial(clock, here, extra) as again:
+                return self._try(evidence, again, clock, why, here, extra)
+        except OverwhelmedError as error:
+            return dataclasses.replace(evidence, overwhelmed=str(error))
 
     def _try(
         self, evidence: Evidence, trial: Trial, clock: ClockName, why: str, here: Ros, extra: Path | None
@@ -143,7 +188,7 @@ class _Grading:
             except WallTimeNeeded as doubt:
                 why = str(doubt)
             else:
-                if self.options.clock == "simulated" or not near_edge(judge(evidence)):
+                if self.options.clock == "simulated" or not near_edge(of_this_trial(evidence)):
                     return evidence
                 why = "a measured value lies near the edge of what is allowed, where only the wall's clock decides"
             with self._trial("wall", here, extra) as again:
@@ -157,7 +202,7 @@ class _Grading:
         for _ in range(WALL_TRIALS - 1):
             recording = evidence.recording
             assert recording is not None
-            if not recording.stalls or all(o.status is Status.PASSED for o in judge(evidence) if not o.advice):
+            if not recording.stalls or all(o.status is Status.PASSED for o in of_this_trial(evidence)):
                 break
             self.tell("The machine was too busy for wall time: once more")
             with self._trial("wall", here, extra) as trial:
@@ -174,7 +219,7 @@ class _Grading:
         simulated = clock == "simulated"
         self.tell(f"Running {duration_s:g} s of simulated time" if simulated else f"Running {duration_s:g} s ({why})")
         with self._timed("trial"):
-            recording = trial.run(build.package, self.exercise.executable, self._tree)
+            recording = trial.run(build.package, self.exercise.executable, self.tree)
         self._split(recording)
         return dataclasses.replace(evidence, recording=dataclasses.replace(recording, why=why))
 
@@ -184,13 +229,18 @@ class _Grading:
                 self.seconds[part] = self.seconds.get(part, 0.0) + seconds
 
     def _trial(self, clock: ClockName, here: Ros, extra: Path | None) -> Trial:
-        radius = max((float(c.params["radius_m"]) for c in self.exercise.checks if "radius_m" in c.params), default=2.0)  # type: ignore[arg-type]
+        exercise, scenario = self.exercise, self.exercise.scenario
+        checks = [check for check in exercise.checks if check.trial == exercise.trial]
+        radius = max((float(c.params["radius_m"]) for c in checks if "radius_m" in c.params), default=2.0)  # type: ignore[arg-type]
         seed = self.options.seed
+        start = start_pose(UNASKED_SEED if seed is None and scenario.anywhere else seed, radius)
         plan = Plan(
             clock=clock,
-            start=start_pose(seed, radius),
+            start=start,
             seed=seed,
-            duration_s=self.exercise.scenario.duration_s,
+            duration_s=scenario.duration_s,
+            alone=not exercise.package,
+            inputs=draw_inputs(scenario, start, UNASKED_SEED if seed is None else seed),
             stop_at_doubt=self.options.clock == "auto",
         )
         return Trial(plan, here, extra, in_cell=self.options.in_cell)
@@ -202,6 +252,10 @@ class _Grading:
             yield
         finally:
             self.seconds[stage] = self.seconds.get(stage, 0.0) + time.monotonic() - begun
+
+
+def _why_not_run(evidence: Evidence) -> str:
+    return "The node was not run." if evidence.overwhelmed is None else "The trial could not be finished."
 
 
 def _stalled_s(evidence: Evidence) -> float:

@@ -18,6 +18,8 @@ from grader.tree import shown
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+ANSWERS = "answers.toml"
+"""What a student writes where questions are asked."""
 MAX_REJECTED = 20
 """Lines of `rejected`; the rest is counted."""
 
@@ -66,6 +68,27 @@ def open_submission(path: str | os.PathLike[str]) -> Submission:
         digest=digest(found.files),
         executable=frozenset(found.executable),
     )
+
+
+def open_answers(path: str | os.PathLike[str]) -> Submission:
+    """Read answers.toml in the folder, and nothing else: what is handed in for an exercise without a package.
+
+    Raises UsageError where there is no such folder, or no such file in it; MachineError where the disk fails.
+    """
+    name = os.fspath(path)
+    try:
+        with tree.open_folder(name) as root:
+            found = tree.read_tree(root)
+    except OSError as error:
+        message = why_not_opened(error, name)
+        raise UsageError(message) from error
+    if ANSWERS not in found.files:
+        why = found.rejected.get(ANSWERS)
+        seen = f"{shown(name)}/{ANSWERS} {why}." if why else f"There is no {ANSWERS} in {shown(name)}."
+        message = f"{seen} Give the folder that holds your {ANSWERS}."
+        raise UsageError(message)
+    files = {ANSWERS: found.files[ANSWERS]}
+    return Submission(name, Path(name).resolve(), files, (), digest(files))
 
 
 def digest(files: Mapping[str, bytes]) -> str:

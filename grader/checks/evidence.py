@@ -43,6 +43,19 @@ class Evidence:
     build: Build | None = None
     recording: Recording | None = None
     fault: Fault | None = None
+    overwhelmed: str | None = None
+    """How the node brought the simulator down, twice; then there is no recording."""
+    others: Mapping[str, Evidence] = field(default_factory=dict)
+    """The same, as seen in the exercise's further trials."""
+
+    def in_trial(self, trial: str) -> Evidence:
+        """The same, as seen in one of the exercise's trials ("" for its own); not yet run, it has no recording."""
+        if trial == self.exercise.trial:
+            return self
+        found = self.others.get(trial)
+        if found is not None:
+            return found
+        return replace(self, exercise=self.exercise.of_trial(trial), recording=None, overwhelmed=None, others={})
 
     @cached_property
     def manifest(self) -> Manifest | None:

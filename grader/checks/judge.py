@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from grader.checks.kind import STAGES
 from grader.checks.kinds import KINDS
-from grader.outcome import Finding, Outcome, Status
+from grader.outcome import Finding, Outcome, Status, failed
+from grader.words import shorten
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -26,7 +27,9 @@ def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     causes: dict[str, CheckSpec] = {}
     for spec in _in_order(specs.values()):
         cause = next((causes[need] for need in spec.needs if need in causes), None)
-        finding = _judge_one(evidence, spec) if cause is None else _because(cause, findings[cause.id])
+        finding = (
+            _judge_one(evidence.in_trial(spec.trial), spec) if cause is None else _because(cause, findings[cause.id])
+        )
         findings[spec.id] = finding
         if finding.status is not Status.PASSED and not KINDS[spec.kind].advice:
             causes[spec.id] = cause or spec
@@ -34,10 +37,10 @@ def judge(evidence: Evidence) -> tuple[Outcome, ...]:
 
 
 def wants_trial(evidence: Evidence) -> bool:
-    """True when some check of a trial would be judged if there were a recording: else no trial needs to run."""
+    """True when some check of this trial would be judged if there were a recording: else it needs not run."""
     outcomes = {outcome.id: outcome for outcome in judge(evidence)}
     return any(
-        KINDS[spec.kind].stage == "trial" and not any(_blocked(outcomes[need]) for need in spec.needs)
+        _of_this_trial(evidence, spec) and not any(_blocked(outcomes[need]) for need in spec.needs)
         for spec in evidence.exercise.checks
     )
 
@@ -45,6 +48,18 @@ def wants_trial(evidence: Evidence) -> bool:
 def near_edge(outcomes: Iterable[Outcome]) -> bool:
     """True when some measured value is so near a tolerance's edge that simulated time must not decide."""
     return any(outcome.finding.near_edge for outcome in outcomes)
+
+
+def of_this_trial(evidence: Evidence) -> tuple[Outcome, ...]:
+    """The outcomes of the checks that judge this trial's recording."""
+    specs = evidence.exercise.checks
+    return tuple(
+        outcome for spec, outcome in zip(specs, judge(evidence), strict=True) if _of_this_trial(evidence, spec)
+    )
+
+
+def _of_this_trial(evidence: Evidence, spec: CheckSpec) -> bool:
+    return KINDS[spec.kind].stage == "trial" and spec.trial == evidence.exercise.trial
 
 
 def _blocked(outcome: Outcome) -> bool:
@@ -68,6 +83,8 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
     fault = evidence.fault
     if fault is not None and STAGES.index(kind.stage) >= STAGES.index(fault.stage) and not made[kind.stage]:
         return Finding(Status.ERROR, fault.message)
+    if kind.stage == "trial" and evidence.overwhelmed is not None:
+        return _overwhelmed(evidence.overwhelmed)
     if not made[kind.stage]:
         return Finding(Status.SKIPPED, "Not judged, since the node was not run.")
     try:
@@ -76,6 +93,13 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
         return Finding(
             Status.ERROR, f"The check itself broke ({type(error).__name__}: {error}). This is a fault of the grader."
         )
+
+
+def _overwhelmed(how: str) -> Finding:
+    seen = f"The trial could not be finished, in two tries: the node brought the simulator down ({shorten(how, 150)})."
+    expected = "The simulator goes on whatever is published or called at a sensible rate."
+    cause = "It sends without end, or what no simulator can read. If yours does neither, please report this."
+    return failed("overwhelmed", seen, expected, cause)
 
 
 def _because(cause: CheckSpec, finding: Finding) -> Finding:

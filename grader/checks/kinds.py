@@ -4,7 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from grader.checks import advice, building, entry_point, node, package_xml, path, rate, stop, topic, values
+from grader.checks import (
+    advice,
+    building,
+    entry_point,
+    log,
+    log_pose,
+    node,
+    package_xml,
+    path,
+    rate,
+    stop,
+    topic,
+    values,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,8 +38,14 @@ KINDS: Mapping[str, Kind[Any]] = {
         node.NAME,
         topic.PUBLISHES,
         topic.ONLY_TYPE,
+        topic.SUBSCRIBES,
         rate.RATE,
         values.VALUES,
+        log.LOG_LINES,
+        log.LOG_RATE,
+        log.LOG_COUNTER,
+        log_pose.LOG_POSITION,
+        log_pose.LOG_DISTANCE,
         path.CIRCLE,
         path.NO_WALL,
         stop.STOP,

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks import seen as seen_in
+from grader.checks.arrivals import Measured, measure_arrivals
 from grader.checks.constants import number as constant
 from grader.checks.crash import crash_of, end_seen, ended_early
 from grader.checks.kind import Kind, number
@@ -40,45 +40,39 @@ class Rate:
 
 
 @dataclass(frozen=True)
-class Measured:
-    """Arrivals (s): intervals between them, their mean, the wait before the first and after the last.
+class Subject:
+    """What comes again and again: its name, and the method of the student's that sends it."""
 
-    `intervals` and `mean_s` leave out those that a stall of the machine made longer or shorter; `trusted` is the share
-    of those that were not left out.
-    """
+    noun: str
+    call: str
 
-    arrivals: tuple[float, ...]
-    intervals: tuple[float, ...]
-    begins: tuple[float, ...]
-    trusted: float
-    mean_s: float
-    first_s: float
-    rest_s: float
+    @property
+    def plural(self) -> str:
+        """Several of them, at the beginning of a sentence."""
+        return f"{self.noun.capitalize()}s"
+
+
+COMMAND = Subject("command", "publish")
 
 
 def measure(evidence: Evidence) -> Measured:
-    """The arrivals of the commands before SIGINT; the mean is 0 when there are fewer than two."""
-    recording = evidence.trial
-    arrivals = tuple(command.t_s for command in evidence.commands)
-    until = seen_in.end_s(recording)
-    if not arrivals:
-        return Measured((), (), (), 1.0, 0.0, until, until)
-    pairs = list(pairwise(arrivals))
-    trusted = [pair for pair in pairs if not any(recording.stalled(t_s) for t_s in pair)]
-    intervals = tuple(later - earlier for earlier, later in trusted)
-    mean = sum(intervals) / len(intervals) if intervals else 0.0
-    share = len(trusted) / len(pairs) if pairs else 1.0
-    begins = tuple(earlier for earlier, _ in trusted)
-    return Measured(arrivals, intervals, begins, share, mean, arrivals[0], until - arrivals[-1])
+    """The arrivals of the commands before SIGINT."""
+    return measure_arrivals(evidence.trial, (command.t_s for command in evidence.commands))
 
 
 def rate(evidence: Evidence, params: Rate) -> Finding:
     """Commands arrive at the rate: on average, each one, from soon after the start until the end."""
-    measured = measure(evidence)
+    return rate_of(evidence, params, COMMAND, measure(evidence))
+
+
+def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured) -> Finding:
+    """They arrive at the rate: on average, each one, from soon after the start until the end."""
     period = 1.0 / params.rate_hz
     expected = f"Every {period:.2f} s ({params.rate_hz:.1f} Hz)."
     if len(measured.arrivals) < FEWEST:
-        return _few(evidence, measured, f"A command every {period:.2f} s ({params.rate_hz:.1f} Hz) until Ctrl-C.")
+        return _few(
+            evidence, what, measured, f"A {what.noun} every {period:.2f} s ({params.rate_hz:.1f} Hz) until Ctrl-C."
+        )
     if measured.trusted < TRUSTED:
         return Finding(
             Status.ERROR, "The machine was too busy to measure a rate in wall time. Try again when it is not."
@@ -90,51 +84,59 @@ def rate(evidence: Evidence, params: Rate) -> Finding:
     first = Band.at_most(params.first_within_s)
     near = mean.near(mean_hz) or each.near(*_extremes(measured), measured.rest_s) or first.near(measured.first_s)
     if not mean.holds(mean_hz):
-        return _wrong_mean(evidence, measured, params, expected, near_edge=near)
+        return _wrong_mean(evidence, what, measured, params, expected, near_edge=near)
     worst = max(measured.intervals, key=lambda interval: abs(interval - period))
     if not all(each.holds(interval) for interval in measured.intervals):
         at = measured.begins[measured.intervals.index(worst)]
-        seen = f"Commands came unevenly: {worst:.2f} s passed between two of them, {at:.1f} s after the start."
+        seen = f"{what.plural} came unevenly: {worst:.2f} s passed between two of them, {at:.1f} s after the start."
         wanted = (
             f"Every {period:.2f} s, each interval from {params.min_interval_s:.2f} to {params.max_interval_s:.2f} s."
         )
-        cause = _uneven_cause(evidence)
-        return failed("uneven-rate", seen, wanted, cause, where=evidence.place("publish"), near_edge=near)
+        cause = _uneven_cause(evidence, what)
+        return failed("uneven-rate", seen, wanted, cause, where=evidence.place(what.call), near_edge=near)
     if not first.holds(measured.first_s):
-        seen = f"The first command came {measured.first_s:.1f} s after the start."
+        seen = f"The first {what.noun} came {measured.first_s:.1f} s after the start."
         wanted = f"It comes within {params.first_within_s:.1f} s."
         return failed(
-            "late-start", seen, wanted, _late_cause(evidence), where=evidence.place("sleep", "publish"), near_edge=near
+            "late-start", seen, wanted, _late_cause(evidence), where=evidence.place("sleep", what.call), near_edge=near
         )
     if not measured.rest_s <= params.max_interval_s:
-        return _stopped(evidence, measured, expected, near_edge=near)
-    return passed(f"Commands arrive every {period:.2f} s ({params.rate_hz:.1f} Hz).", near_edge=near)
+        return _stopped(evidence, what, measured, expected, near_edge=near)
+    return passed(f"{what.plural} arrive every {period:.2f} s ({params.rate_hz:.1f} Hz).", near_edge=near)
 
 
 def _extremes(measured: Measured) -> tuple[float, float]:
     return min(measured.intervals), max(measured.intervals)
 
 
-def _few(evidence: Evidence, measured: Measured, expected: str) -> Finding:
+def _few(evidence: Evidence, what: Subject, measured: Measured, expected: str) -> Finding:
     amount = len(measured.arrivals)
     crash = crash_of(evidence)
-    seen = f"{count(amount, 'command')} arrived in {seen_in.end_s(evidence.trial):.0f} s."
+    seen = f"{count(amount, what.noun)} arrived in {seen_in.end_s(evidence.trial):.0f} s."
     if crash is not None:
         return failed("crash", f"{seen} {end_seen(evidence)}", expected, crash.meaning, where=crash.where)
-    where = evidence.place("publish")
+    where = evidence.place(what.call)
     if amount == 1:
-        cause = "publish is called once; a timer calls a method again and again."
-        return failed("published-once", seen, expected, cause, where=where)
-    return failed("too-few-commands", seen, expected, ended_early(evidence), where=where)
+        cause = f"{what.call} is called once; a timer calls a method again and again."
+        return failed("published-once" if what is COMMAND else "logged-once", seen, expected, cause, where=where)
+    return failed(
+        "too-few-commands" if what is COMMAND else "too-few-log-lines",
+        seen,
+        expected,
+        ended_early(evidence),
+        where=where,
+    )
 
 
-def _wrong_mean(evidence: Evidence, measured: Measured, params: Rate, expected: str, *, near_edge: bool) -> Finding:
+def _wrong_mean(
+    evidence: Evidence, what: Subject, measured: Measured, params: Rate, expected: str, *, near_edge: bool
+) -> Finding:
     mean = measured.mean_s
     if mean < 0.01:
-        seen = f"{count(len(measured.arrivals), 'command')} arrived, one every {1000.0 * mean:.2f} ms."
+        seen = f"{count(len(measured.arrivals), what.noun)} arrived, one every {1000.0 * mean:.2f} ms."
     else:
-        seen = f"Commands arrived every {mean:.2f} s ({1.0 / mean:.1f} Hz)."
-    diagnosis, cause, where = _why_mean(evidence, mean)
+        seen = f"{what.plural} arrived every {mean:.2f} s ({1.0 / mean:.1f} Hz)."
+    diagnosis, cause, where = _why_mean(evidence, what, mean)
     if diagnosis == "timer-period" and abs(mean - params.rate_hz) <= SAME * params.rate_hz:
         diagnosis, cause = (
             "rate-for-period",
@@ -143,7 +145,7 @@ def _wrong_mean(evidence: Evidence, measured: Measured, params: Rate, expected: 
     return failed(diagnosis, seen, expected, cause, where=where, near_edge=near_edge)
 
 
-def _why_mean(evidence: Evidence, mean: float) -> tuple[str, str, Where | None]:
+def _why_mean(evidence: Evidence, what: Subject, mean: float) -> tuple[str, str, Where | None]:
     """The diagnosis, in words, and where: a timer with that period, a sleep of that length, or none of them."""
     code = evidence.code
     timers = [
@@ -158,22 +160,22 @@ def _why_mean(evidence: Evidence, mean: float) -> tuple[str, str, Where | None]:
             cause = "While a method sleeps nothing else of the node runs, its timer neither."
             return "sleep-in-callback", cause, sleep.where
         if length is not None and abs(length - mean) <= SAME * mean:
-            return "sleep-period", f"Between two commands the node sleeps {length:g} s.", sleep.where
+            return "sleep-period", f"Between two {what.noun}s the node sleeps {length:g} s.", sleep.where
     if len(timers) > 1:
         return (
             "several-timers",
             f"There are {len(timers)} timers: each one calls its method on its own.",
             timers[1][0].where,
         )
-    where = timers[0][0].where if timers else evidence.place("publish")
-    return "wrong-rate", "The time between two calls of publish is what counts.", where
+    where = timers[0][0].where if timers else evidence.place(what.call)
+    return "wrong-rate", f"The time between two calls of {what.call} is what counts.", where
 
 
-def _uneven_cause(evidence: Evidence) -> str:
+def _uneven_cause(evidence: Evidence, what: Subject) -> str:
     code = evidence.code
-    if len(code.calls("publish")) > 1 or len(code.calls("create_timer")) > 1:
-        return "More than one line publishes, or more than one timer runs."
-    return "The method that publishes sometimes takes longer than the period." if code.calls("sleep") else ""
+    if len(code.calls(what.call)) > 1 or len(code.calls("create_timer")) > 1:
+        return f"More than one line calls {what.call}, or more than one timer runs."
+    return f"The method that calls {what.call} sometimes takes longer than the period." if code.calls("sleep") else ""
 
 
 def _late_cause(evidence: Evidence) -> str:
@@ -182,14 +184,14 @@ def _late_cause(evidence: Evidence) -> str:
     return "Something before it waits, such as wait_for_service." if evidence.code.calls("wait_for_service") else ""
 
 
-def _stopped(evidence: Evidence, measured: Measured, expected: str, *, near_edge: bool) -> Finding:
-    seen = f"The last command came at {measured.arrivals[-1]:.1f} s, {measured.rest_s:.1f} s before the end."
+def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: str, *, near_edge: bool) -> Finding:
+    seen = f"The last {what.noun} came at {measured.arrivals[-1]:.1f} s, {measured.rest_s:.1f} s before the end."
     wanted = f"{expected[:-1]}, until Ctrl-C."
     crash = crash_of(evidence)
     if crash is not None:
         return failed("crash", seen, wanted, ended_early(evidence), where=crash.where)
     return failed(
-        "stopped-early", seen, wanted, ended_early(evidence), where=evidence.place("publish"), near_edge=near_edge
+        "stopped-early", seen, wanted, ended_early(evidence), where=evidence.place(what.call), near_edge=near_edge
     )
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks import seen as seen_in
-from grader.checks.constants import evaluate, number
+from grader.checks.constants import evaluate
 from grader.checks.crash import crash_of, end_seen
 from grader.checks.kind import Kind, text
+from grader.checks.timers import timer_fault
 from grader.outcome import Finding, Where, failed, passed
 from grader.words import a_list, nearest, shorten
 
@@ -107,21 +107,12 @@ def _why_silent(evidence: Evidence) -> tuple[str, str, Where | None]:
     code = evidence.code
     if not code.calls("publish"):
         return "The method publish is called nowhere.", "no-publish", code.start
-    for timer in code.calls("create_timer"):
-        period = number(timer.argument(0, "timer_period_sec"), timer.module.names)
-        if period is not None and period >= evidence.trial.duration_s:
-            cause = f"The timer waits {period:g} s for its first call: the period is in seconds, not milliseconds."
-            return cause, "timer-milliseconds", timer.where
-        if _is_call(timer.argument(1, "callback")):
-            cause = "create_timer wants the method itself; with () behind its name it gets only the method's result."
-            return cause, "callback-called", timer.where
+    fault = timer_fault(evidence)
+    if fault is not None:
+        return fault.cause, fault.diagnosis, fault.where
     if not any(code.calls(name) for name in ("spin", "spin_once", "spin_until_future_complete")):
         return "Without rclpy.spin no timer is ever called.", "no-spin", code.start
     return "The line that publishes is never reached.", "never-publishes", evidence.place("publish")
-
-
-def _is_call(argument: ast.expr | None) -> bool:
-    return isinstance(argument, ast.Call) and not ast.unparse(argument.func).endswith(("partial", "callback"))
 
 
 def _publisher_line(evidence: Evidence, topic: str) -> Where | None:
@@ -149,5 +140,29 @@ def only_type(evidence: Evidence, params: Topic) -> Finding:
     return passed(f"Only {params.type} is published on {params.topic}.")
 
 
+def subscribes(evidence: Evidence, params: Topic) -> Finding:
+    """The submission subscribes to the topic, with the type."""
+    found = seen_in.endpoints(evidence.trial, "subscription")
+    expected = f"The node subscribes to {params.topic}, with the type {params.type}."
+    where = evidence.place("create_subscription")
+    if any((each.topic, each.type) == (params.topic, params.type) for each in found):
+        return passed(expected)
+    on_topic = [each.type for each in found if each.topic == params.topic]
+    if on_topic:
+        seen = f"The node subscribes to {params.topic} with the type {shorten(on_topic[0])}, so nothing reaches it."
+        cause = "The type is the first argument of create_subscription."
+        return failed("wrong-type", seen, expected, cause, where=where)
+    if found:
+        seen = f"The node subscribes to {a_list(sorted({shorten(each.topic) for each in found}))}."
+        cause = "The topic's name is the second argument of create_subscription; compare it letter by letter."
+        return failed("wrong-topic", seen, expected, cause, where=where)
+    crash = crash_of(evidence)
+    if crash is not None:
+        return failed("crash", end_seen(evidence), expected, crash.meaning, where=crash.where)
+    cause = "" if evidence.code.calls("create_subscription") else "create_subscription is called nowhere."
+    return failed("no-subscription", "The node has no subscription.", expected, cause, where=where)
+
+
 PUBLISHES = Kind("publishes", "trial", "Messages arrive on the topic", Topic, publishes)
 ONLY_TYPE = Kind("topic_type", "trial", "The topic carries one type", Topic, only_type)
+SUBSCRIBES = Kind("subscribes", "trial", "The node listens on the topic", Topic, subscribes)

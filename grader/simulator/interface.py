@@ -48,11 +48,13 @@ class Hooks:
 class TurtleInterface:
     """Topics, services and action of the turtle that is called `name`, whichever it is: a reset changes it."""
 
-    def __init__(self, node: Node, name: str, world: World, hooks: Hooks) -> None:
+    def __init__(self, node: Node, name: str, world: World, hooks: Hooks, pose_every: int = 1) -> None:
         """Enter the ROS graph; whatever rclpy raises for a name that is none comes through, and nothing is left."""
         self.name = name
         self._world = world
         self._hooks = hooks
+        self._pose_every = pose_every
+        self._frames = 0
         self._log = node.get_logger()
         with ExitStack() as parts:
             command = node.create_subscription(Twist, f"{name}/cmd_vel", self._command, QOS, raw=True)
@@ -115,7 +117,9 @@ class TurtleInterface:
             color = self._color.message
             color.r, color.g, color.b = turtle.color
             self._color.serialize()
-        for sender in (self._pose, self._color):
+        self._frames += 1
+        due = self._frames % self._pose_every == 0
+        for sender in (self._pose, self._color) if due else (self._color,):
             sender.publish(sender.data)
             self._hooks.on_publish(sender.topic, sender.type_name, sender.data)
 

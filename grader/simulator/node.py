@@ -50,9 +50,14 @@ class TurtlesimNode(Node):
         on_command: Callable[[str, bytes, Any], object] = _nobody,
         on_publish: Callable[[str, str, bytes], object] = _nobody,
         on_intervention: Callable[[str], object] = _nobody,
+        pose_every: int = 1,
         **node: Any,  # noqa: ANN401 - handed on to rclpy
     ) -> None:
-        """`start`: where turtle1 begins (m, m, rad), after a reset too; the `on_...` are described in `Hooks`."""
+        """`start`: where turtle1 begins (m, m, rad), after a reset too; the `on_...` are described in `Hooks`.
+
+        `pose_every`: a pose is published every so many frames; turtlesim does it in each.
+        """
+        self._pose_every = pose_every
         self._hooks = Hooks(on_command, on_publish, on_intervention)
         super().__init__("turtlesim", **node)
         parameters.declare(self)
@@ -105,7 +110,7 @@ class TurtlesimNode(Node):
                 self._leaving.remove(waiting)
                 self._interfaces[name] = waiting[1]
                 return
-        self._interfaces[name] = TurtleInterface(self, name, self.world, self._hooks)
+        self._interfaces[name] = TurtleInterface(self, name, self.world, self._hooks, self._pose_every)
 
     def _hide(self, name: str) -> None:
         # Not at once: this runs in a callback, and the executor may hold others of the same turtle.

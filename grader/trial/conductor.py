@@ -3,7 +3,8 @@
 It lives in a room (sandbox.py), speaks JSON lines with the grader's own process over its standard streams, and
 holds the student's node in a cell. First line in: what the trial is. It answers {"ready": true} once simulator and
 launcher wait. Second line in: what to start, followed by the install tree. Last line out: {"recording": {...}},
-{"doubt": "..."} when another clock must judge, or {"fault": "..."} for a fault of the machine.
+{"doubt": "..."} when another clock must judge, {"overwhelmed": "..."} when the node has brought the simulator down, or
+{"fault": "..."} for a fault of the machine.
 """
 
 from __future__ import annotations
@@ -11,18 +12,31 @@ from __future__ import annotations
 import json
 import os
 import sys
+import time
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from grader import ros, sandbox
 from grader.recording import Pose, Recording, frames_of, to_json
+from grader.trial.inputs import Inputs
 from grader.trial.node_process import LaunchError, NodeProcess
 from grader.trial.rest import DoubtError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from grader.trial.simulated import SimulatedTrial
+    from grader.trial.wall import WallTrial
+
 LAUNCHER = Path(__file__).with_name("launcher.py")
+LIMITS = sandbox.Limits()
+BUSY = 0.5
+BUSY_S = 0.04
+"""While the node's processes worked for this share of a stall and this long, they made it, not the machine."""
+
+
+class Overwhelmed(Exception):  # noqa: N818 - the simulator's, by the node's doing
+    """The simulator could not go on after what the node had sent."""
 
 
 def main() -> None:
@@ -37,23 +51,31 @@ def main() -> None:
         _say(answers, {"doubt": str(doubt)})
     except LaunchError as error:
         _say(answers, {"fault": f"The node's process could not be started: {error}"})
+    except Overwhelmed as error:
+        _say(answers, {"overwhelmed": str(error)})
 
 
 def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
     here = ros.find_ros()
     underlay = Path(order["underlay"]) if order["underlay"] else None
-    with NodeProcess(lambda info_fd: _command(here, underlay, order, info_fd), in_cell=order["in_cell"]) as node:
+    start, inputs = Pose(*order["start"]), Inputs.from_json(order["inputs"])
+    prefixes = [*here.prefixes, *([underlay] if underlay else [])]
+    if order["alone"]:
+        from grader.trial.alone import AloneTrial
+
+        recording = AloneTrial(start, prefixes, inputs).record(order["duration_s"], order["seed"])
+        _say(answers, {"recording": to_json(recording)})
+        return
+    with NodeProcess(lambda *fds: _command(here, underlay, order, *fds), LIMITS, in_cell=order["in_cell"]) as node:
         # Imported here: while it takes its time, the launcher imports too.
         from grader.trial.simulated import SimulatedTrial
         from grader.trial.wall import WallTrial
 
-        start = Pose(*order["start"])
-        prefixes = [*here.prefixes, *([underlay] if underlay else [])]
         stage: SimulatedTrial | WallTrial
         if order["clock"] == "simulated":
-            stage = SimulatedTrial(node, start, prefixes, stop_at_doubt=order["stop_at_doubt"])
+            stage = SimulatedTrial(node, start, prefixes, inputs, stop_at_doubt=order["stop_at_doubt"])
         else:
-            stage = WallTrial(node, start, prefixes)
+            stage = WallTrial(node, start, prefixes, inputs)
         node.await_ready()
         _say(answers, {"ready": True})
         line = sys.stdin.buffer.readline()
@@ -61,7 +83,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             return
         go = json.loads(line)
         node.start(go, sys.stdin.buffer.read(go.pop("tree_bytes")))
-        sigint_s = stage.run(order["duration_s"])
+        sigint_s = _run(stage, order["duration_s"])
         stdout, stderr = node.output()
         doubts = tuple(stage.doubts)
         recorder = stage.recorder
@@ -84,13 +106,32 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             end=node.end(sigint_s),
             interventions=tuple(stage.interventions),
             doubts=doubts,
-            stalls=tuple(stage.stalls),
+            stalls=tuple(stall for stall in stage.stalls if not _own_doing(stall, node, stage.now())),
             seconds=stage.seconds,
         )
         _say(answers, {"recording": to_json(recording)})
 
 
-def _command(here: ros.Ros, underlay: Path | None, order: dict[str, Any], info_fd: int) -> Sequence[str]:
+def _run(stage: SimulatedTrial | WallTrial, duration_s: float) -> float:
+    """Run the scenario; when SIGINT was sent. From here on, what breaks was broken by what the node sent."""
+    try:
+        return stage.run(duration_s)
+    except (DoubtError, KeyboardInterrupt):
+        raise
+    except BaseException as error:
+        message = f"{type(error).__name__}: {error}"
+        raise Overwhelmed(message[:500]) from error
+
+
+def _own_doing(stall: tuple[float, float], node: NodeProcess, now_s: float) -> bool:
+    offset = time.monotonic() - now_s
+    begin, end = stall
+    return node.worked_s(begin + offset, end + offset) >= max(BUSY_S, BUSY * (end - begin))
+
+
+def _command(
+    here: ros.Ros, underlay: Path | None, order: dict[str, Any], info_fd: int, filter_fd: int | None
+) -> Sequence[str]:
     env = ros.environment(here, home=Path(order["home"]), underlay=underlay, domain=order["domain"])
     launch = [str(here.python), str(LAUNCHER)]
     if not order["in_cell"]:
@@ -98,10 +139,10 @@ def _command(here: ros.Ros, underlay: Path | None, order: dict[str, Any], info_f
             "env",
             "-i",
             *(f"{key}={value}" for key, value in env.items()),
-            *sandbox.limited(launch, sandbox.Limits()),
+            *sandbox.limited(launch, LIMITS),
         ]
     view = sandbox.ros_view(here, ros.FASTDDS_PROFILE, LAUNCHER, *([underlay] if underlay else []))
-    return sandbox.cell(launch, view, env=env, network=True, info_fd=info_fd)
+    return sandbox.cell(launch, view, env=env, limits=LIMITS, network=True, info_fd=info_fd, filter_fd=filter_fd)
 
 
 def _say(answers: IO[str], what: dict[str, Any]) -> None:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.recording import Pose
+    from grader.trial.inputs import Inputs
     from grader.trial.node_process import NodeProcess
 
 QUIET_S = 0.03
@@ -34,7 +35,7 @@ TICK_CPU_S = 1.0
 """A node that works longer than this on one frame never rests. CPU time, so that a loaded machine changes nothing."""
 TICK_S = 30.0
 MOST_CPU = 2.0
-"""A node that works this much longer than the scenario is (CPU time) cannot keep up with the wall either: let it show."""
+"""A node that needs this times the scenario in CPU time cannot keep up with the wall either: let it show there."""
 GRAPH_EVERY = 31
 """Frames between two looks at the graph: half a second."""
 SPIN_EVERY = 5
@@ -44,13 +45,31 @@ WAITS_EVERY = 7
 _POLL_S = 0.00005
 
 
+class _Patience:
+    """How long node and simulator may answer each other at one instant; CPU time is asked for late: it costs."""
+
+    def __init__(self, node: Threads) -> None:
+        self._node = node
+        self._deadline = time.monotonic() + TICK_S
+        self._cpu_s: float | None = None
+
+    def ended(self) -> bool:
+        """Whether the node has worked too long; counts from the first time it is asked."""
+        if self._cpu_s is None:
+            self._cpu_s = self._node.run_time_s()
+            return False
+        return time.monotonic() > self._deadline or self._node.run_time_s() - self._cpu_s > TICK_CPU_S
+
+
 class SimulatedTrial(Stage):
     """A stage whose clock the node follows."""
 
-    def __init__(self, node: NodeProcess, start: Pose, prefixes: list[Path], *, stop_at_doubt: bool) -> None:
+    def __init__(
+        self, node: NodeProcess, start: Pose, prefixes: list[Path], inputs: Inputs, *, stop_at_doubt: bool
+    ) -> None:
         self._now_s = 0.0
         self._stop_at_doubt = stop_at_doubt
-        super().__init__(node, start, prefixes)
+        super().__init__(node, start, prefixes, inputs)
         qos = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._clock = self.recorder.create_publisher(Clock, "/clock", qos)
 
@@ -114,10 +133,8 @@ class SimulatedTrial(Stage):
         self._ours = Threads(os.getpid(), dds=True)
         self._handled: tuple[bytes, ...] = ()
 
-    def _rest(self) -> bool:
+    def _rest(self, patience: _Patience) -> bool:
         """Wait until nothing more can happen at this instant; false when the node never rests."""
-        deadline = time.monotonic() + TICK_S
-        cpu_s = -1.0
         before = look = None
         equal = 0
         while True:
@@ -126,9 +143,7 @@ class SimulatedTrial(Stage):
             look = None if busy else (self._node.look(), self._ours.look())
             if look is None or not (look[0].asleep and look[1].asleep):
                 equal = 0
-                if cpu_s < 0:
-                    cpu_s = self._node.run_time_s()
-                elif time.monotonic() > deadline or self._node.run_time_s() - cpu_s > TICK_CPU_S:
+                if patience.ended():
                     return False
                 time.sleep(_POLL_S)
             elif look == before:
@@ -139,12 +154,16 @@ class SimulatedTrial(Stage):
                     equal = 0
             else:
                 equal = 0
+                # Threads that wake and sleep without end are seen asleep each time.
+                if before is not None and patience.ended():
+                    return False
             before = look
 
     def _settle(self) -> None:
         """Let the node and the simulator answer each other until both rest."""
+        patience = _Patience(self._node)
         while True:
-            if not self._rest():
+            if not self._rest(patience):
                 self._doubt("the node never comes to rest: it works without waiting")
                 return
             runs = self._ours.look().runs

@@ -16,26 +16,34 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.recording import Pose
+    from grader.trial.inputs import Inputs
     from grader.trial.node_process import NodeProcess
 
 PUBLISHED = {"/turtle1/pose": "turtlesim/msg/Pose", "/turtle1/color_sensor": "turtlesim/msg/Color"}
 _MOST_AT_ONCE = 2000
 """Callbacks handled before the trial looks at its clock again: a flood must not stop time."""
+_MOST_AT_ONCE_S = 0.5
+_MOST_INTERVENTIONS = 1000
 
 
 class Stage:
     """Owns the ROS side of a trial. `frame` moves the turtle, `spin` handles what has arrived."""
 
-    def __init__(self, node: NodeProcess, start: Pose, prefixes: list[Path]) -> None:
-        rclpy.init(args=[])
+    def __init__(self, node: NodeProcess, start: Pose, prefixes: list[Path], inputs: Inputs) -> None:
+        # Our own log lines go to /rosout, where the recorder hears them, not to disk: whoever makes the simulator talk
+        # must not fill it.
+        rclpy.init(args=["--ros-args", "--disable-external-lib-logs", "--disable-stdout-logs"])
         self.node = node
+        self.inputs = inputs
         self.interventions: list[str] = []
         self.recorder = Recorder(self.now, prefixes, {**PUBLISHED, "/clock": "rosgraph_msgs/msg/Clock"})
         self.turtlesim = TurtlesimNode(
             start=start,
+            pose_every=inputs.pose_every,
+            cli_args=["--ros-args", *(part for rule in inputs.rename for part in ("-r", rule))],
             on_command=self.recorder.keep_command,
             on_publish=self.recorder.keep,
-            on_intervention=self.interventions.append,
+            on_intervention=self._intervened,
         )
         self.executor = SingleThreadedExecutor()
         self.executor.add_node(self.turtlesim)
@@ -62,6 +70,9 @@ class Stage:
 
     def frame(self, now_s: float) -> None:
         """Let the simulator make one frame, and keep it."""
+        drive = self.inputs.drive(now_s)
+        if drive is not None and self.turtlesim.turtle_state("turtle1") is not None:
+            self.turtlesim.world.command("turtle1", drive[0], 0.0, drive[1])
         self.turtlesim.frame(now_s)
         state = self.turtlesim.turtle_state("turtle1")
         if state is not None:
@@ -72,7 +83,8 @@ class Stage:
     def spin(self, timeout_s: float = 0.0) -> bool:
         """Handle all that has arrived, waiting up to `timeout_s` for the first of it; true if there was anything."""
         handled = 0
-        while handled < _MOST_AT_ONCE:
+        until = time.monotonic() + timeout_s + _MOST_AT_ONCE_S
+        while handled < _MOST_AT_ONCE and (handled == 0 or time.monotonic() < until):
             try:
                 handler, _, _ = self.executor.wait_for_ready_callbacks(timeout_s if handled == 0 else 0.0)
             except TimeoutException:
@@ -83,12 +95,14 @@ class Stage:
         return handled > 0
 
     def students_nodes(self) -> list[str]:
-        """Return the nodes in the graph that are not ours."""
-        return [
-            f"{namespace.rstrip('/')}/{name}"
-            for name, namespace in self.recorder.get_node_names_and_namespaces()
-            if (name, namespace) != ("turtlesim", "/") and not namespace.startswith("/_grader")
-        ]
+        """Return the nodes in the graph that are not ours; a namesake of ours is none."""
+        others: list[str] = self.recorder.nodes()
+        others.remove(self.turtlesim.get_fully_qualified_name())
+        return others
+
+    def _intervened(self, name: str) -> None:
+        if len(self.interventions) < _MOST_INTERVENTIONS:
+            self.interventions.append(name)
 
     def wind_down(self) -> None:
         """Press Ctrl-C on the node and go on, at the pace of the wall, until it is gone."""

@@ -5,10 +5,11 @@ from __future__ import annotations
 import fcntl
 import json
 import os
+import signal
 import subprocess
 import tempfile
 from contextlib import ExitStack, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from threading import Timer
 from typing import IO, TYPE_CHECKING, Any
@@ -16,11 +17,14 @@ from typing import IO, TYPE_CHECKING, Any
 import grader
 from grader import ros, sandbox
 from grader.errors import MachineError
+from grader.trial.inputs import Inputs
 
 if TYPE_CHECKING:
     from grader.recording import ClockName, Pose, Recording
 
 _FOLDER = Path(grader.__file__).parent
+MOST_MEMORY = 3 * 1024 * sandbox.MIB
+"""Address space of the conductor (bytes)."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +36,17 @@ class Plan:
     seed: int | None
     duration_s: float
     stop_at_doubt: bool = True
+    inputs: Inputs = field(default_factory=Inputs)
+    alone: bool = False
+    """The simulator by itself, without a node."""
 
 
 class WallTimeNeeded(Exception):  # noqa: N818 - not an error
     """Simulated time may misjudge this node; the text says why."""
+
+
+class OverwhelmedError(Exception):
+    """The node has brought the simulator down, or would not let the trial end; the text says how."""
 
 
 class Trial:
@@ -46,6 +57,7 @@ class Trial:
         self._here = here
         self._underlay = underlay
         self._in_cell = in_cell
+        self._node_runs = False
         self._stack = ExitStack()
 
     def __enter__(self) -> Trial:  # noqa: PYI034 - typing.Self is Python 3.11's
@@ -64,6 +76,7 @@ class Trial:
 
         Raises:
             WallTimeNeeded: simulated time may misjudge this node.
+            OverwhelmedError: the trial could not be finished because of what the node did.
             MachineError: the simulator or the sandbox failed.
         """
         from grader.recording import from_json  # numpy takes its time: not before it is needed
@@ -84,6 +97,17 @@ class Trial:
         }
         self._answer("ready")
         self._send(json.dumps(order).encode() + b"\n" + tree)
+        self._node_runs = True
+        return from_json(self._answer("recording"))
+
+    def run_alone(self) -> Recording:
+        """Return what the simulator did by itself, where the plan says `alone`.
+
+        Raises:
+            MachineError: it failed.
+        """
+        from grader.recording import from_json
+
         return from_json(self._answer("recording"))
 
     def _start(self) -> None:
@@ -102,13 +126,15 @@ class Trial:
         more = [self._underlay] if self._underlay else []
         if self._in_cell:
             view = sandbox.ros_view(self._here, _FOLDER, *more)
+            # What a node sends fills the memory of whoever listens; the conductor itself needs 1 GiB of addresses.
+            argv = ["prlimit", f"--as={MOST_MEMORY}:", "--", *argv]
             argv = sandbox.room(argv, sandbox.View(view.read_only), env=env)
         self._process = subprocess.Popen(
             argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, env=env, start_new_session=True
         )
         self._stack.callback(self._end)
         # Whatever happens inside, the grader does not wait for ever; the trial's own deadlines are much tighter.
-        timer = Timer(180.0 + 5 * self._plan.duration_s, self._process.kill)
+        timer = Timer(60.0 + 4.0 * self._plan.duration_s, self._process.kill)
         timer.daemon = True
         timer.start()
         self._stack.callback(timer.cancel)
@@ -141,11 +167,21 @@ class Trial:
             raise WallTimeNeeded(answer["doubt"])
         if key in answer:
             return answer[key]
+        if self._node_runs:
+            # The simulator was well until the node began, and nothing else was.
+            raise OverwhelmedError(answer.get("overwhelmed") or self._how_it_ended())
         self._process.kill()
         self._errors.seek(0)
         said = answer.get("fault") or self._errors.read()[-2000:].decode("utf-8", "replace").strip()
         message = f"The simulator failed: {said or 'it said nothing'}. `grader doctor` tells what is missing."
         raise MachineError(message)
+
+    def _how_it_ended(self) -> str:
+        try:
+            code = self._process.wait(5.0)
+        except subprocess.TimeoutExpired:
+            return "it no longer answered"
+        return "it was still busy long after the end" if code == -signal.SIGKILL else f"it ended with exit code {code}"
 
     def _own_domain(self) -> int:
         """A ROS domain that no other trial of this machine uses now, for where there is no network of its own."""

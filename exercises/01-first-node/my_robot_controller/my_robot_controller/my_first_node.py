@@ -1,0 +1,35 @@
+"""The node of step 01: it counts, one log line a second."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+
+
+class FirstNode(Node):
+    """Logs a counter that rises by one each second."""
+
+    def __init__(self):
+        # TODO 1: the node is to be called first_node.
+        super().__init__("node_without_a_name")
+        # TODO 2: begin a counter at 0 and keep it in self.
+        # TODO 3: create a timer that calls self.count once a second, and keep it in self.
+
+    def count(self):
+        # TODO 4: log "Hello 0" the first time, "Hello 1" the second time, and so on.
+        pass
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = FirstNode()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # Ctrl-C is the way this node is meant to end.
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,78 @@
+"""Inputs: what the simulator does of itself in a trial, drawn from the exercise's scenario and a seed."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from grader.simulator.turtle import FRAME_S, SIDE_M, Start, Turtle
+from grader.trial.start import MARGIN_M
+
+if TYPE_CHECKING:
+    from grader.exercise import Scenario
+    from grader.recording import Pose
+    from grader.simulator.turtle import Pen, Rgb
+
+MOST_DRAWS = 200
+"""After so many draws a way that leads into a wall is taken as it is."""
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """`drives`: from when on (s) the turtle is driven how fast (m/s, rad/s); `rename`, `pose_every` as in Scenario."""
+
+    drives: tuple[tuple[float, float, float], ...] = ()
+    rename: tuple[str, ...] = ()
+    pose_every: int = 1
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Inputs:
+        """Make Inputs of what dataclasses.asdict and JSON left of them."""
+        drives = tuple((from_s, linear, angular) for from_s, linear, angular in data["drives"])
+        return cls(drives, tuple(data["rename"]), data["pose_every"])
+
+    def drive(self, now_s: float) -> tuple[float, float] | None:
+        """How fast the turtle is driven now (m/s, rad/s); None before the first drive."""
+        due = [(linear, angular) for from_s, linear, angular in self.drives if from_s <= now_s]
+        return due[-1] if due else None
+
+
+def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
+    """Draw the speeds, again and again until the way keeps 0.5 m from every wall."""
+    draw = random.Random(seed)
+    inputs = Inputs(rename=scenario.rename, pose_every=scenario.pose_every)
+    if not scenario.drives:
+        return inputs
+    for _ in range(MOST_DRAWS):
+        drives = tuple(
+            (each.from_s, round(draw.uniform(*each.linear_x_m_s), 3), round(draw.uniform(*each.angular_z_rad_s), 3))
+            for each in scenario.drives
+        )
+        inputs = Inputs(drives, scenario.rename, scenario.pose_every)
+        if _keeps_clear(inputs, start, scenario.duration_s):
+            break
+    return inputs
+
+
+class _NoPaper:
+    """Where a turtle goes is wanted here, not what it draws."""
+
+    def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
+        """Draw nothing."""
+
+    def color_at(self, x: float, y: float) -> Rgb:  # noqa: ARG002
+        """Return black."""
+        return (0, 0, 0)
+
+
+def _keeps_clear(inputs: Inputs, start: Pose, duration_s: float) -> bool:
+    turtle, paper = Turtle(Start(start.x, start.y, start.theta)), _NoPaper()
+    for frame in range(round(duration_s / FRAME_S) + 1):
+        speed = inputs.drive(frame * FRAME_S)
+        if speed is not None:
+            turtle.command(speed[0], None, speed[1])
+        turtle.update(FRAME_S, frame * FRAME_S, paper)
+        if not all(MARGIN_M <= each <= SIDE_M - MARGIN_M for each in (turtle.x, turtle.y)):
+            return False
+    return True
