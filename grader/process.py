@@ -7,18 +7,26 @@ import selectors
 import signal
 import subprocess
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.watch import EVERY_S, Guard
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+
+    from grader.sandbox import Limits
 
 _CHUNK = 1024 * 1024
 
 
 @dataclass(frozen=True)
 class Finished:
-    """How a child ended. `too_much`: standard output went over its cap, and the child was ended for it."""
+    """How a child ended.
+
+    It was ended because of `too_much` on standard output, or because it was `out_of` something that `watch` limits.
+    """
 
     exit_code: int
     stdout: bytes
@@ -26,6 +34,7 @@ class Finished:
     seconds: float
     timed_out: bool = False
     too_much: bool = False
+    out_of: str | None = None
 
 
 class _Tail:
@@ -77,14 +86,17 @@ class _Pump:
     def too_much(self) -> bool:
         return len(self.stdout) > self._most
 
-    def serve(self, deadline: float) -> bool:
-        """Serve until the child has closed its pipes or written too much; false at the deadline (monotonic, s)."""
+    def serve(self, deadline: float, stopped: Callable[[], bool]) -> bool:
+        """Serve until the child has closed its pipes or written too much; false at the deadline (monotonic, s).
+
+        `stopped` is asked several times a second, and true ends it too.
+        """
         with self._selector:
             while self._selector.get_map() and not self.too_much:
                 left_s = deadline - time.monotonic()
-                if left_s <= 0:
+                if left_s <= 0 or stopped():
                     return False
-                for key, _ in self._selector.select(left_s):
+                for key, _ in self._selector.select(min(left_s, EVERY_S)):
                     if not key.data(key.fd):
                         self._selector.unregister(key.fileobj)
                         key.fileobj.close()  # type: ignore[union-attr]
@@ -115,20 +127,35 @@ def run(
     timeout_s: float,
     most_stdout: int,
     most_stderr: int,
+    pass_fds: Sequence[int] = (),
+    watch: Limits | None = None,
 ) -> Finished:
-    """Run `argv` in a session of its own; of standard error, beginning and end are kept (bytes)."""
+    """Run `argv` in a session of its own; of standard error, beginning and end are kept (bytes).
+
+    `watch`: end it when it holds more in all than these limits say.
+    """
     begun = time.monotonic()
     pipe = subprocess.PIPE
-    with subprocess.Popen(argv, stdin=pipe, stdout=pipe, stderr=pipe, env=env, start_new_session=True) as child:
+    over: list[str] = []
+    with subprocess.Popen(
+        argv, stdin=pipe, stdout=pipe, stderr=pipe, env=env, start_new_session=True, pass_fds=pass_fds
+    ) as child:
         pump = _Pump(child, stdin, most_stdout, most_stderr)
+        guard = Guard(child.pid, watch, over.append) if watch is not None else None
         in_time = False
         try:
-            in_time = pump.serve(begun + timeout_s)
-            child.wait(max(0.0, begun + timeout_s - time.monotonic()))
+            in_time = pump.serve(begun + timeout_s, lambda: bool(over))
+            if in_time and not pump.too_much:
+                child.wait(max(0.0, begun + timeout_s - time.monotonic()))
         except subprocess.TimeoutExpired:
             in_time = False
         finally:
             if not in_time or pump.too_much:
-                os.killpg(child.pid, signal.SIGKILL)
+                with suppress(ProcessLookupError):
+                    os.killpg(child.pid, signal.SIGKILL)
+            if guard is not None:
+                guard.close()
     seconds = time.monotonic() - begun
-    return Finished(child.returncode, bytes(pump.stdout), pump.stderr.text(), seconds, not in_time, pump.too_much)
+    out_of = over[0] if over else None
+    timed_out = not in_time and not over
+    return Finished(child.returncode, bytes(pump.stdout), pump.stderr.text(), seconds, timed_out, pump.too_much, out_of)

@@ -2,10 +2,12 @@
 
 Two walls, both made by bubblewrap:
 
-- a **room** holds what belongs together and is ours (the simulator of one trial), as an ordinary user, with a
-  network of its own: loopback only;
+- a **room** holds what belongs together and is ours (the simulator of one trial), as an ordinary user, with
+  processes and a network of its own: loopback only. What a student's node sends is read here, by libraries that may
+  have holes;
 - a **cell** holds a student's process: own user, pid, ipc, uts, cgroup and mount namespaces, no network but the
-  room's, nothing of the disk but what `View` names, limits on memory, processes, files, CPU and disk.
+  room's, nothing of the disk but what `View` names, a filter of system calls (system_calls.py), limits on memory,
+  processes, files, CPU and disk. What no limit counts in all, watch.py does.
 
 These functions only make command lines; whoever runs them owns the process. Input and output travel on pipes.
 """
@@ -21,6 +23,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import MachineError
+from grader.system_calls import call_filter
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,6 +38,7 @@ USER_ID = 65530
 """Who a root caller becomes: in no range that systemd or Debian's policy gives to users or services."""
 
 MIB = 1024 * 1024
+ROOM_DISK = 256 * MIB
 
 
 @dataclass(frozen=True)
@@ -42,11 +46,15 @@ class Limits:
     """What a cell may use. `memory` is the address space of each process, `disk` of each writable tmpfs (bytes)."""
 
     memory: int = 4096 * MIB
+    total_memory: int = 2048 * MIB
+    """What all processes and disks of a cell hold together (watch.py)."""
     processes: int = 600
     """Processes and threads together; a node that makes 400 timers makes no thread for them."""
     open_files: int = 1024
     file_size: int = 256 * MIB
     disk: int = 256 * MIB
+    files: int = 50_000
+    """Files on the writable disks together (watch.py)."""
     cpu_s: int = 120
 
 
@@ -73,8 +81,9 @@ def bubblewrap() -> str | None:
 
 def room(argv: Sequence[str], view: View, *, env: Mapping[str, str], cwd: Path | None = None) -> list[str]:
     """`argv` as an ordinary user in a network of its own, seeing `view`; for our own processes."""
-    command = [_bwrap(), "--unshare-net", "--die-with-parent", "--tmpfs", "/tmp", "--perms", "0777", "--dir", str(HOME)]
-    command += [*_disk(view), "--bind", "/proc", "/proc"]
+    command = [_bwrap(), "--unshare-net", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--hostname", "grader"]
+    command += ["--die-with-parent", "--size", str(ROOM_DISK), "--tmpfs", "/tmp", "--perms", "0777", "--dir", str(HOME)]
+    command += [*_disk(view), *(["--dir", "/proc"] if os.geteuid() == 0 else ["--proc", "/proc"])]
     return [*_ordinary(command), *_environment(env), "--chdir", str(cwd or HOME), "--", *_stay_ordinary(), *argv]
 
 
@@ -87,8 +96,11 @@ def cell(
     network: bool = False,
     cwd: Path = WORKSPACE,
     info_fd: int | None = None,
+    filter_fd: int | None = None,
 ) -> list[str]:
     """`argv` confined. `network`: the caller's own (a room's loopback), else none at all.
+
+    `filter_fd`: the filter of system calls, from system_calls.call_filter(); the process must inherit it.
 
     A root caller must put the cell in a room, where it is root no longer: root is exempt from the limit on
     processes, whatever its namespace. `info_fd` gets bubblewrap's JSON with the pid of the cell's first process.
@@ -102,13 +114,16 @@ def cell(
     # --dev leaves /dev and /dev/shm writable and large.
     command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev", "--remount-ro", "/"]
     command += [] if info_fd is None else ["--info-fd", str(info_fd)]
+    command += [] if filter_fd is None else ["--seccomp", str(filter_fd)]
     # Set inside: the limit on processes then counts only this cell's.
     return [*command, *_environment(env), "--chdir", str(cwd), "--", *limited(argv, limits)]
 
 
-def lone_cell(argv: Sequence[str], view: View, *, env: Mapping[str, str], limits: Limits) -> list[str]:
+def lone_cell(
+    argv: Sequence[str], view: View, *, env: Mapping[str, str], limits: Limits, filter_fd: int | None = None
+) -> list[str]:
     """`argv` in a cell that shares its network with nobody, whoever the caller is."""
-    inner = cell(argv, view, env=env, limits=limits)
+    inner = cell(argv, view, env=env, limits=limits, filter_fd=filter_fd)
     return room(inner, view, env=env) if os.geteuid() == 0 else inner
 
 
@@ -123,6 +138,8 @@ def limited(argv: Sequence[str], limits: Limits) -> list[str]:
         f"--cpu={limits.cpu_s}",
         "--core=0",
         "--",
+        # When the machine runs out of memory, this is what should go first.
+        *("choom", "-n", "1000", "--"),
         *argv,
     ]
 
@@ -138,8 +155,18 @@ def why_unavailable() -> str | None:
         return "bubblewrap is not installed: `sudo apt-get install bubblewrap`"
     view = View(read_only=())
     env = {"PATH": "/usr/bin:/bin"}
-    tried = lone_cell(["true"], view, env=env, limits=Limits())
-    done = subprocess.run(tried, capture_output=True, text=True, timeout=20, check=False, stdin=subprocess.DEVNULL)
+    with call_filter() as filter_fd:
+        tried = lone_cell(["true"], view, env=env, limits=Limits(), filter_fd=filter_fd)
+        inherited = () if filter_fd is None else (filter_fd,)
+        done = subprocess.run(
+            tried,
+            capture_output=True,
+            text=True,
+            timeout=20,
+            check=False,
+            stdin=subprocess.DEVNULL,
+            pass_fds=inherited,
+        )
     if done.returncode == 0:
         return None
     said = done.stderr.strip().splitlines()[-1:] or ["no message"]
@@ -165,9 +192,11 @@ def _ordinary(command: list[str]) -> list[str]:
 def _stay_ordinary() -> list[str]:
     if os.geteuid() != 0:
         return []
+    # A mount by bubblewrap would cover parts of /proc, and then no cell inside could have a /proc of its own.
+    proc = ["sh", "-c", 'mount -t proc -o nosuid,nodev,noexec proc /proc && exec "$@"', "sh"]
     # Changing the user clears the signal that --die-with-parent asked for: ask again.
-    user = [f"--reuid={USER_ID}", f"--regid={USER_ID}", "--clear-groups"]
-    return ["setpriv", *user, "--inh-caps=-all", "--bounding-set=-all", "--no-new-privs", "--pdeathsig=KILL", "--"]
+    user = [f"--reuid={USER_ID}", f"--regid={USER_ID}", "--clear-groups", "--inh-caps=-all", "--bounding-set=-all"]
+    return [*proc, "setpriv", *user, "--no-new-privs", "--pdeathsig=KILL", "--"]
 
 
 def _disk(view: View) -> list[str]:

@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING
 from grader import process, ros, sandbox
 from grader.build import Build
 from grader.errors import MachineError
+from grader.system_calls import call_filter
+from grader.tar_stream import Member, read_tar
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,6 +32,7 @@ LIMITS = sandbox.Limits(processes=200, cpu_s=60)
 TIMEOUT_S = 60.0
 MOST_LOG = 256 * 1024
 MOST_TREE = 64 * MIB
+MOST_FILES = 20_000
 
 # Standard output is the install tree's alone: colcon and all that it runs write on standard error. --base-paths, since
 # colcon would look for packages everywhere below; sequential, since there is one package and workers cost time.
@@ -39,7 +42,7 @@ cd "$WS" && mkdir -p src && tar -x -f - -C src || exit 90
 "$PYTHON" -c 'import sys; from colcon_core.command import main; sys.exit(main())' build --base-paths src \
     --executor sequential --event-handlers console_direct+ console_stderr- >&2 </dev/null
 code=$?
-[ -d install ] && tar -c -f - -C install .
+[ -d install ] && tar -c --format=gnu -f - -C install .
 exit $code
 """
 _READY = b"cell-is-ready\n"
@@ -70,13 +73,27 @@ def build(submission: Submission, here: ros.Ros, underlay: Path | None, *, in_ce
         argv = ["sh", "-c", _SCRIPT]
         if in_cell:
             view = sandbox.ros_view(here, *([underlay] if underlay else []))
-            command = sandbox.lone_cell(argv, view, env=env, limits=LIMITS)
+            with call_filter() as filter_fd:
+                command = sandbox.lone_cell(argv, view, env=env, limits=LIMITS, filter_fd=filter_fd)
+                done = _run(command, env, submission, () if filter_fd is None else (filter_fd,))
         else:
-            command = sandbox.limited(argv, LIMITS)
-        done = process.run(
-            command, stdin=_pack(submission), env=env, timeout_s=TIMEOUT_S, most_stdout=MOST_TREE, most_stderr=MOST_LOG
-        )
+            done = _run(sandbox.limited(argv, LIMITS), env, submission, ())
     return _read(done)
+
+
+def _run(
+    command: list[str], env: dict[str, str], submission: Submission, pass_fds: tuple[int, ...]
+) -> process.Finished:
+    return process.run(
+        command,
+        stdin=_pack(submission),
+        env=env,
+        timeout_s=TIMEOUT_S,
+        most_stdout=MOST_TREE,
+        most_stderr=MOST_LOG,
+        pass_fds=pass_fds,
+        watch=LIMITS,
+    )
 
 
 @contextmanager
@@ -115,7 +132,8 @@ def _read(done: process.Finished) -> Built:
     if "No module named 'colcon_core'" in log:
         raise MachineError("colcon is not installed in this Python: `make demo` in the course's folder installs it.")  # noqa: EM101
     out_of = next((name for name, signs in _LIMITS_HIT.items() if any(sign in done.stderr for sign in signs)), None)
-    files = {} if done.timed_out or done.too_much else _files(done.stdout)
+    cut = done.timed_out or done.too_much or done.out_of is not None
+    files = {} if cut else read_tar(done.stdout, MOST_FILES)
     package = next((path.parts[0] for path in files if len(path.parts) > 1), None)
     inside = {path.relative_to(package): member for path, member in files.items() if path.parts[0] == package}
     return Built(
@@ -124,31 +142,22 @@ def _read(done: process.Finished) -> Built:
             log=log,
             package=package,
             timed_out=done.timed_out,
-            out_of="disk" if done.too_much else out_of,
+            out_of=done.out_of or ("disk" if done.too_much else out_of),
             installed=tuple(sorted(map(str, inside))),
             executables=tuple(sorted(p.name for p in inside if p.parts[:-1] == ("lib", package))),
             entry_points=_entry_points(inside, done.stdout),
             seconds=done.seconds,
         ),
-        b"" if done.timed_out or done.too_much else done.stdout,
+        b"" if cut else done.stdout,
     )
 
 
-def _files(tree: bytes) -> dict[PurePosixPath, tarfile.TarInfo]:
-    """The regular files of the install tree; a stream that is no tar holds none: it is the student's doing."""
-    try:
-        with tarfile.open(fileobj=io.BytesIO(tree)) as tar:
-            return {PurePosixPath(member.name): member for member in tar if member.isreg() or member.issym()}
-    except (tarfile.TarError, ValueError, OSError):
-        return {}
-
-
-def _entry_points(files: dict[PurePosixPath, tarfile.TarInfo], tree: bytes) -> dict[str, str]:
+def _entry_points(files: dict[PurePosixPath, Member], tree: bytes) -> dict[str, str]:
     """The console_scripts as they were installed."""
     for path, member in files.items():
         if path.name != "entry_points.txt" or not path.parent.name.endswith(("egg-info", "dist-info")):
             continue
-        text = tree[member.offset_data : member.offset_data + member.size].decode("utf-8", "replace")
+        text = tree[member.start : member.start + member.size].decode("utf-8", "replace")
         parser = configparser.ConfigParser(delimiters=("=",), interpolation=None, strict=False)
         parser.optionxform = str  # type: ignore[assignment,method-assign]  # names of executables keep their case
         try:

@@ -67,6 +67,8 @@ class Crash:
 def crash_of(evidence: Evidence) -> Crash | None:
     """What ended the node before the scenario was over; None when it ended well, or at Ctrl-C."""
     end = evidence.trial.end
+    if end.out_of is not None:
+        return Crash(f"it used up the {end.out_of} that a node may use", "")
     if end.by != "itself" or end.exit_code == 0:
         return None
     found = read_traceback(evidence.trial.stderr.text, evidence.submission.files)

@@ -27,6 +27,8 @@ STRAIGHT_RADIUS_M = 50.0
 """A circle larger than this looks straight on a canvas of 11 m."""
 LIVES_S = 1.0
 """How long a command moves a turtle."""
+MEANS = frozenset({"reset", "kill", "teleport_absolute", "teleport_relative", "rotate_absolute", "set_parameters"})
+"""Calls that move a turtle, take it away or change how it moves; the pen and other turtles are anybody's."""
 POLYGON_SHARE = 0.6
 """A way of which more than this was driven straight is told as sides and corners."""
 
@@ -59,13 +61,20 @@ def circle(evidence: Evidence, params: CircleParams) -> Finding:
     """The turtle drives the circle: round, in the right sense, of the right size, in the right place, all the way."""
     turns = "1 turn" if params.turns == 1.0 else f"{params.turns:g} turns"
     expected = f"A circle of radius {params.radius_m:.1f} m, {params.sense}, at least {turns}."
-    recording = evidence.trial
-    if recording.interventions:
-        seen = f"Something moved the turtle by other means: {shorten(recording.interventions[0])}."
-        cause = "The turtle is to be driven by velocity commands alone."
-        return failed("intervention", seen, expected, cause, where=evidence.place("create_client", "ActionClient"))
+    moved = _moved_otherwise(evidence, expected)
+    if moved is not None:
+        return moved
     track = evidence.track
     return _no_circle(evidence, track, expected) or _measured(evidence, params, track, expected)
+
+
+def _moved_otherwise(evidence: Evidence, expected: str) -> Finding | None:
+    means = next((each for each in evidence.trial.interventions if each in MEANS), None)
+    if means is None:
+        return None
+    seen = f"Something moved the turtle by other means: {shorten(means)}."
+    cause = "The turtle is to be driven by velocity commands alone."
+    return failed("intervention", seen, expected, cause, where=evidence.place("create_client", "ActionClient"))
 
 
 def _no_circle(evidence: Evidence, track: Track, expected: str) -> Finding | None:
@@ -189,6 +198,10 @@ def _wall_s(track: Track) -> float:
 def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     """No frame was clamped to the canvas; nothing is said of a turtle that never moved."""
     track = evidence.track
+    # Whoever is put back in time never meets a wall.
+    moved = _moved_otherwise(evidence, "It stays clear of the walls all the time.")
+    if moved is not None:
+        return moved
     if track.wall.any():
         seen = f"The turtle ran into a wall after {_wall_s(track):.1f} s."
         expected = "It stays clear of the walls all the time."

@@ -8,13 +8,19 @@ import os
 import signal
 import subprocess
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.recording import Output, ProcessEnd
+from grader.system_calls import call_filter
+from grader.watch import Guard
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+
+    from grader.sandbox import Limits
 
 READY = b"\x00ready\n"
 """What the launcher writes on standard output before any of the student's code runs."""
@@ -62,17 +68,24 @@ class _Stream:
 class NodeProcess:
     """One node's process and its pipes. Close it, or leave its `with`, and nothing of it is left."""
 
-    def __init__(self, command: Callable[[int], Sequence[str]], *, in_cell: bool) -> None:
-        """`command(info_fd)` is the launcher's command line; `in_cell`: whether that is a bubblewrap."""
+    def __init__(self, command: Callable[[int, int | None], Sequence[str]], limits: Limits, *, in_cell: bool) -> None:
+        """`command(info_fd, filter_fd)` is the launcher's command line; `in_cell`: whether that is a bubblewrap.
+
+        `limits` are those that no single process of the node's can be held to.
+        """
         info, info_write = os.pipe()
-        self._process = subprocess.Popen(
-            command(info_write),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            pass_fds=(info_write,),
-        )
+        with call_filter() as filter_fd:
+            self._process = subprocess.Popen(
+                command(info_write, filter_fd),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                pass_fds=(info_write,) if filter_fd is None else (info_write, filter_fd),
+            )
         os.close(info_write)
+        self._limits = limits
+        self._guard: Guard | None = None
+        self._out_of: str | None = None
         assert self._process.stdout is not None
         assert self._process.stderr is not None
         self._info = info
@@ -88,6 +101,8 @@ class NodeProcess:
         return self
 
     def __exit__(self, *_: object) -> None:
+        if self._guard is not None:
+            self._guard.close()
         if self._process.poll() is None:
             self._process.kill()
             self._process.wait()
@@ -108,6 +123,7 @@ class NodeProcess:
                 raise LaunchError((said + self._process.stderr.read()).decode("utf-8", "replace").strip())
             said += byte
         self.pid = self._find_pid()
+        self._guard = Guard(self._process.pid, self._limits, self._over)
         for stream in self._streams:
             os.set_blocking(stream.fd, False)
 
@@ -119,6 +135,10 @@ class NodeProcess:
             self._process.stdin.close()
         except BrokenPipeError:
             pass  # it ended: `ended` tells
+
+    def worked_s(self, begin: float, end: float) -> float:
+        """How long all processes of the cell worked between two times of CLOCK_MONOTONIC (s of CPU time)."""
+        return self._guard.worked_s(begin, end) if self._guard is not None else 0.0
 
     def read_output(self, now_s: float) -> bool:
         """Keep what the node wrote, as of `now_s`; true if there was anything."""
@@ -134,6 +154,10 @@ class NodeProcess:
 
     def interrupt(self) -> None:
         """Do what Ctrl-C does in a terminal."""
+        if self._is_gone():
+            # It ended by itself a moment ago, and bubblewrap is about to say so.
+            with suppress(subprocess.TimeoutExpired):
+                self._process.wait(STOP_S)
         if not self.ended():
             self._interrupted = time.monotonic()
             self._by = "SIGINT"
@@ -156,7 +180,19 @@ class NodeProcess:
         code = self._process.returncode
         stopped = None if self._interrupted is None else time.monotonic() - self._interrupted
         # bwrap tells of a signal as a shell does, by 128 + its number.
-        return ProcessEnd(self._by, 128 - code if code > 128 else code, now_s, stopped)  # type: ignore[arg-type]
+        exit_code = 128 - code if code > 128 else code
+        return ProcessEnd(self._by, exit_code, now_s, stopped, self._out_of)  # type: ignore[arg-type]
+
+    def _over(self, what: str) -> None:
+        self._out_of = what
+        self._process.kill()  # with --die-with-parent, all of the cell
+
+    def _is_gone(self) -> bool:
+        try:
+            stat = Path(f"/proc/{self.pid}/stat").read_bytes()
+        except OSError:
+            return True
+        return stat.rpartition(b")")[2].split()[0] in (b"Z", b"X")
 
     def _signal(self, number: int) -> None:
         try:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import importlib
 import re
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
+from rcl_interfaces.msg import Log
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
@@ -20,11 +21,17 @@ if TYPE_CHECKING:
     from rclpy.qos import TopicEndpointInfo
 
 OWN_NAMESPACE = "/_grader"
+OWN_NODES = ("/turtlesim", f"{OWN_NAMESPACE}/recorder")
+NAMESAKE = " (not the simulator)"
+"""Added to the name of a student's node that is called as one of ours."""
 _TYPE = re.compile(r"([a-z][a-z0-9_]*)/msg/([A-Z][A-Za-z0-9]*)")
 _LEVELS = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
 
 # A node that makes topics or messages without end must not fill the grader's memory.
 MOST_TOPICS = 100
+MOST_NODES = 100
+MOST_SEEN = 50_000
+"""Nodes and endpoints in all snapshots together."""
 MOST_MESSAGES = 20_000
 MOST_BYTES = 32 * 1024 * 1024
 
@@ -49,6 +56,8 @@ class Recorder(Node):
         self._simulated = simulated
         self._known: set[tuple[str, str]] = set()
         self._bytes = 0
+        self._seen = 0
+        self._participant = self._own_participant()
 
     def keep(self, topic: str, type_name: str, data: bytes) -> bool:
         """Keep a message that arrived now; false when the recording is full."""
@@ -67,13 +76,19 @@ class Recorder(Node):
             angular = (twist.angular.x, twist.angular.y, twist.angular.z)
             self.commands.append(Command(last.t_s, last.mono_s, linear, angular))
 
+    def nodes(self) -> list[str]:
+        """Full names of the nodes in the graph but this one: the simulator's, and the student's, namesakes too."""
+        found = [f"{space.rstrip('/')}/{name}" for name, space in self.get_node_names_and_namespaces()]
+        found.remove(self.get_fully_qualified_name())
+        return found
+
     def follow_graph(self) -> bool:
         """Subscribe to topics that are new; true when there were any."""
         fresh = False
         for topic, types in self.get_topic_names_and_types():
             if topic not in self.topics and len(self.topics) >= 10 * MOST_TOPICS:
                 continue
-            self.topics.setdefault(topic, set()).update(types)
+            self.topics.setdefault(topic, set()).update(types[:MOST_TOPICS])
             for type_name in types:
                 if (topic, type_name) not in self._known and self._wanted(topic, type_name):
                     self._known.add((topic, type_name))
@@ -82,24 +97,42 @@ class Recorder(Node):
 
     def snapshot(self) -> None:
         """Add the graph as it is now."""
-        nodes, endpoints = [], []
-        for name, namespace in self.get_node_names_and_namespaces()[:MOST_TOPICS]:
-            if namespace.startswith(OWN_NAMESPACE):
+        endpoints = set()
+        # The turtle's topics first: nobody shall push them out with a hundred others.
+        topics = sorted((not topic.startswith("/turtle1/"), topic) for topic, _ in self.get_topic_names_and_types())
+        for _, topic in topics[:MOST_TOPICS]:
+            endpoints |= self._endpoints("publisher", topic, self.get_publishers_info_by_topic(topic))
+            endpoints |= self._endpoints("subscription", topic, self.get_subscriptions_info_by_topic(topic))
+        graph = Graph(self.now(), tuple(sorted(self.nodes()))[:MOST_NODES], tuple(sorted(endpoints, key=str)))
+        last = self.graphs[-1] if self.graphs else None
+        if last is None or (graph.nodes, graph.endpoints) != (last.nodes, last.endpoints):
+            self._seen += len(graph.nodes) + len(graph.endpoints)
+            if self._seen <= MOST_SEEN:
+                self.graphs.append(graph)
+
+    def _endpoints(
+        self, kind: Literal["publisher", "subscription"], topic: str, found: list[TopicEndpointInfo]
+    ) -> set[Endpoint]:
+        """The endpoints without this node's. Whose they are is told by the participant, since names can be taken."""
+        own_name = self.get_fully_qualified_name()
+        result = set()
+        for info in found[:MOST_NODES]:
+            node = f"{info.node_namespace.rstrip('/')}/{info.node_name}"
+            ours = _participant(info) == self._participant
+            if ours and node == own_name:
                 continue
-            full = f"{namespace.rstrip('/')}/{name}"
-            nodes.append(full)
-            try:
-                publishers = self.get_publisher_names_and_types_by_node(name, namespace)
-                subscriptions = self.get_subscriber_names_and_types_by_node(name, namespace)
-            except Exception:
-                continue
-            for topic, types in publishers[:MOST_TOPICS]:
-                endpoints += [Endpoint("publisher", full, topic, type_name) for type_name in types]
-            for topic, types in subscriptions[:MOST_TOPICS]:
-                endpoints += [Endpoint("subscription", full, topic, type_name) for type_name in types]
-        graph = Graph(self.now(), tuple(sorted(nodes)), tuple(sorted(endpoints, key=str)))
-        if not self.graphs or (graph.nodes, graph.endpoints) != (self.graphs[-1].nodes, self.graphs[-1].endpoints):
-            self.graphs.append(graph)
+            result.add(
+                Endpoint(kind, node if ours or node not in OWN_NODES else node + NAMESAKE, topic, info.topic_type)
+            )
+        return result
+
+    def _own_participant(self) -> bytes:
+        """Asked before the student's node is there, so that nobody else can answer."""
+        topic = f"{OWN_NAMESPACE}/whoami"
+        publisher = self.create_publisher(Log, topic, 1)
+        found = self.get_publishers_info_by_topic(topic)
+        self.destroy_publisher(publisher)
+        return _participant(found[0])
 
     def _wanted(self, topic: str, type_name: str) -> bool:
         if len(self._known) >= MOST_TOPICS:
@@ -135,6 +168,11 @@ class Recorder(Node):
         if not any((prefix / "share" / package / "msg" / f"{name}.msg").is_file() for prefix in self._prefixes):
             return None
         return getattr(importlib.import_module(f"{package}.msg"), name)
+
+
+def _participant(info: TopicEndpointInfo) -> bytes:
+    # A GUID of DDS: 12 bytes for the participant (the process), 4 for the endpoint within it.
+    return bytes(info.endpoint_gid[:12])
 
 
 def _matching(offers: list[TopicEndpointInfo]) -> QoSProfile:

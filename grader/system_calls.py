@@ -1,0 +1,91 @@
+"""Which system calls a cell may make: a seccomp filter, as bubblewrap takes it.
+
+It names what no node needs and what has opened sandboxes before, rather than what is allowed: a new Python or Fast DDS
+must not break because of it. Namespaces, limits and mounts are the wall; this is the second one behind it. It also
+closes ways to hold memory that neither a tmpfs nor a process's size shows (memfd, System V shared memory).
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import platform
+import struct
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+# Numbers of x86-64 (linux/arch/x86/entry/syscalls/syscall_64.tbl), by what they are good for.
+DENIED = {
+    "other processes": {
+        "ptrace": 101, "process_vm_readv": 310, "process_vm_writev": 311, "kcmp": 312, "pidfd_getfd": 438,
+        "process_madvise": 440,
+    },
+    "namespaces and mounts": {
+        "unshare": 272, "setns": 308, "mount": 165, "umount2": 166, "pivot_root": 155, "chroot": 161,
+        "open_tree": 428, "move_mount": 429, "fsopen": 430, "fsconfig": 431, "fsmount": 432, "fspick": 433,
+        "mount_setattr": 442, "name_to_handle_at": 303, "open_by_handle_at": 304,
+    },
+    "keys": {"add_key": 248, "request_key": 249, "keyctl": 250},
+    "parts of the kernel that have had most holes": {
+        "bpf": 321, "perf_event_open": 298, "userfaultfd": 323, "io_uring_setup": 425, "io_uring_enter": 426,
+        "io_uring_register": 427, "modify_ldt": 154, "fanotify_init": 300, "vmsplice": 278, "lookup_dcookie": 212,
+        "uselib": 134, "_sysctl": 156, "nfsservctl": 180,
+    },
+    "memory that no limit counts": {
+        "memfd_create": 319, "memfd_secret": 447, "shmget": 29, "shmat": 30, "shmctl": 31, "semget": 64, "msgget": 68,
+        "mq_open": 240,
+    },
+    "the machine": {
+        "reboot": 169, "kexec_load": 246, "kexec_file_load": 320, "init_module": 175, "finit_module": 313,
+        "delete_module": 176, "swapon": 167, "swapoff": 168, "acct": 163, "quotactl": 179, "syslog": 103,
+        "settimeofday": 164, "clock_settime": 227, "clock_adjtime": 305, "adjtimex": 159, "sethostname": 170,
+        "setdomainname": 171, "iopl": 172, "ioperm": 173, "vhangup": 153,
+    },
+}  # fmt: skip
+_SOCKET, _CLONE, _CLONE3 = 41, 56, 435
+# AF_UNIX, AF_INET, AF_INET6, AF_NETLINK (which interfaces there are). AF_VSOCK leads out of a virtual machine.
+_FAMILIES = (1, 2, 10, 16)
+# CLONE_NEWNS, NEWCGROUP, NEWUTS, NEWIPC, NEWUSER, NEWPID and NEWNET.
+_NEW_NAMESPACE = 0x7E020000
+
+_LOAD, _EQUAL, _AT_LEAST, _ANY_BIT, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
+_NUMBER, _ARCHITECTURE, _FIRST_ARGUMENT = 0, 4, 16
+_X86_64, _X32 = 0xC000003E, 0x40000000
+_ALLOW, _ERRNO = 0x7FFF0000, 0x00050000
+
+
+@contextmanager
+def call_filter() -> Iterator[int | None]:
+    """A descriptor with the filter, to be read once; None on machines whose numbers are not known here."""
+    if platform.machine() != "x86_64":
+        yield None
+        return
+    reads, writes = os.pipe()
+    try:
+        # Far less than a pipe holds.
+        os.write(writes, program())
+        os.close(writes)
+        yield reads
+    finally:
+        os.close(reads)
+
+
+def program() -> bytes:
+    """The filter: struct sock_filter, one after another."""
+    refuse = _ERRNO | errno.EPERM
+    absent = _ERRNO | errno.ENOSYS
+    lines = [(_LOAD, 0, 0, _ARCHITECTURE), (_EQUAL, 1, 0, _X86_64), (_RETURN, 0, 0, absent)]
+    lines += [(_LOAD, 0, 0, _NUMBER), (_AT_LEAST, 0, 1, _X32), (_RETURN, 0, 0, absent)]
+    for number in sorted(number for group in DENIED.values() for number in group.values()):
+        lines += [(_EQUAL, 0, 1, number), (_RETURN, 0, 0, refuse)]
+    # Its flags stand in memory, where a filter cannot look; the C library then takes clone.
+    lines += [(_EQUAL, 0, 1, _CLONE3), (_RETURN, 0, 0, absent)]
+    lines += [(_EQUAL, 0, 4, _CLONE), (_LOAD, 0, 0, _FIRST_ARGUMENT)]
+    lines += [(_ANY_BIT, 0, 1, _NEW_NAMESPACE), (_RETURN, 0, 0, refuse), (_RETURN, 0, 0, _ALLOW)]
+    lines += [(_EQUAL, 0, len(_FAMILIES) + 2, _SOCKET), (_LOAD, 0, 0, _FIRST_ARGUMENT)]
+    lines += [(_EQUAL, len(_FAMILIES) - index, 0, family) for index, family in enumerate(_FAMILIES)]
+    lines += [(_RETURN, 0, 0, _ERRNO | errno.EAFNOSUPPORT), (_RETURN, 0, 0, _ALLOW)]
+    return b"".join(struct.pack("HBBI", *line) for line in lines)
