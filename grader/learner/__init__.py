@@ -1,0 +1,1 @@
+"""Learning alone: a workspace of one's own, steps in order, hints, progress."""

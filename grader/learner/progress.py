@@ -1,0 +1,127 @@
+"""Progress: what a learner has done so far, kept outside their package so that nothing of theirs can lose it."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import secrets
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from grader.errors import MachineError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+_SCHEMA = 1
+DEFAULT_WORKSPACE = Path("~/ros2_ws")
+
+
+@dataclass(frozen=True)
+class StepProgress:
+    """One step: the best points so far, of `max` in the same report; whether it has passed; how many hints were read."""
+
+    points: float = 0.0
+    max: float = 0.0
+    passed: bool = False
+    hints: int = 0
+
+
+@dataclass(frozen=True)
+class Progress:
+    """A learner's way through one workspace: the step they are at, and what is known of each."""
+
+    student: str
+    current: str | None = None
+    steps: dict[str, StepProgress] = field(default_factory=dict)
+
+    def step(self, name: str) -> StepProgress:
+        """What is known of a step; nothing as long as it was not begun."""
+        return self.steps.get(name, StepProgress())
+
+    def with_step(self, name: str, step: StepProgress) -> Progress:
+        """The same with this step's progress."""
+        return replace(self, steps={**self.steps, name: step})
+
+    def at(self, name: str) -> Progress:
+        """The same, standing at another step."""
+        return replace(self, current=name, steps={**self.steps, name: self.step(name)})
+
+    def graded(self, name: str, points: float, most: float, *, passed: bool) -> Progress:
+        """The same after a verdict: points never go down, and what has passed stays passed."""
+        before = self.step(name)
+        best = (points, most) if points >= before.points else (before.points, before.max)
+        return self.with_step(name, replace(before, points=best[0], max=best[1], passed=passed or before.passed))
+
+
+def workspace_of(folder: Path | None) -> Path:
+    """The learner's workspace: the one named, else ROS2_WORKSPACE, else ~/ros2_ws; absolute."""
+    named = folder or Path(os.environ.get("ROS2_WORKSPACE") or DEFAULT_WORKSPACE)
+    return named.expanduser().resolve()
+
+
+def state_file() -> Path:
+    """Where progress is kept: progress.json below XDG_STATE_HOME."""
+    home = os.environ.get("XDG_STATE_HOME", "")
+    return (Path(home) if home.startswith("/") else Path.home() / ".local/state") / "grader" / "progress.json"
+
+
+def load(workspace: Path) -> Progress:
+    """The progress in a workspace; that of a beginner where nothing is known.
+
+    Raises:
+        MachineError: the file is damaged or cannot be read.
+    """
+    data = _read(state_file())["workspaces"].get(str(workspace))
+    if data is None:
+        return Progress(student=secrets.token_hex(4))
+    steps = {name: StepProgress(**step) for name, step in data["steps"].items()}
+    return Progress(data["student"], data["current"], steps)
+
+
+def update(workspace: Path, change: Callable[[Progress], Progress]) -> Progress:
+    """Change the progress in a workspace, whole or not at all, whoever else writes at the same time.
+
+    Raises:
+        MachineError: the file is damaged or cannot be written.
+    """
+    file = state_file()
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with _alone(file):
+            data = _read(file)
+            changed = change(load(workspace))
+            data["workspaces"][str(workspace)] = asdict(changed)
+            fresh = file.with_suffix(".new")
+            fresh.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+            fresh.replace(file)
+    except OSError as error:
+        message = f"Your progress could not be written to {file}: {error.strerror}."
+        raise MachineError(message) from error
+    return changed
+
+
+@contextmanager
+def _alone(file: Path) -> Iterator[None]:
+    with file.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {"schema": _SCHEMA, "workspaces": {}}
+    except (OSError, ValueError) as error:
+        message = (
+            f"Your progress in {file} cannot be read ({error}). Move the file away to begin anew; no work is lost."
+        )
+        raise MachineError(message) from error
+    if not isinstance(data, dict) or data.get("schema") != _SCHEMA:
+        message = f"{file} was written by another version of the grader. Move it away to begin anew; no work is lost."
+        raise MachineError(message)
+    return data

@@ -1,0 +1,113 @@
+"""The learner's workspace: a step's starting point goes in, and nothing of the learner's is ever overwritten."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader import tree
+from grader.errors import MachineError, UsageError
+from grader.exercise import course_folder
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from grader.exercise import Exercise
+
+
+@dataclass(frozen=True)
+class Started:
+    """What `start` did: paths relative to the workspace. `kept` is where older work went (with --fresh)."""
+
+    folder: Path
+    added: tuple[str, ...]
+    present: tuple[str, ...]
+    kept: Path | None = None
+
+
+def starting_point(exercise: Exercise) -> Path:
+    """The folder in exercises/ that the step begins from.
+
+    Raises:
+        MachineError: it is not there.
+    """
+    folder = course_folder().parent / "exercises" / exercise.id
+    if not folder.is_dir():
+        message = f"The starting point of {exercise.id} is missing ({folder}): install the course again."
+        raise MachineError(message)
+    return folder
+
+
+def solution(exercise: Exercise) -> Path:
+    """The folder in solutions/ of the step.
+
+    Raises:
+        UsageError: this copy of the course comes without solutions.
+    """
+    folder = course_folder().parent / "solutions" / exercise.id
+    if not folder.is_dir():
+        message = "This copy of the course comes without solutions: your instructor has them."
+        raise UsageError(message)
+    return folder
+
+
+def work_folder(exercise: Exercise, workspace: Path) -> Path:
+    """Where the learner's work on a step lies: the package in src/, or a folder of its own for answers."""
+    return workspace / "src" / exercise.package if exercise.package else workspace / "answers" / exercise.id
+
+
+def start(exercise: Exercise, workspace: Path, *, fresh: bool = False) -> Started:
+    """Add what the step needs and the workspace lacks. With `fresh`, older work is put aside first.
+
+    Raises:
+        UsageError: the workspace is no folder.
+        MachineError: it cannot be written.
+    """
+    source = starting_point(exercise)
+    if exercise.package:
+        source = source / exercise.package
+    folder = work_folder(exercise, workspace)
+    try:
+        kept = _put_aside(folder, workspace) if fresh and folder.exists() else None
+        added, present = _add(source, folder)
+    except (FileExistsError, NotADirectoryError) as error:
+        message = f"{error.filename} is a file, where a folder is needed. Name another workspace with --workspace."
+        raise UsageError(message) from error
+    except OSError as error:
+        message = f"{error.filename or folder} could not be written: {error.strerror}."
+        raise MachineError(message) from error
+    return Started(folder, added, present, kept)
+
+
+def _add(source: Path, folder: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    with tree.open_folder(str(source)) as opened:
+        found = tree.read_tree(opened)
+    added, present = [], []
+    for path in sorted(found.files, key=tree.sort_key):
+        target = folder / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with target.open("xb") as file:
+                file.write(found.files[path])
+        except FileExistsError:
+            if target.is_dir():
+                raise
+            present.append(path)
+            continue
+        target.chmod(0o755 if path in found.executable else 0o644)
+        added.append(path)
+    return tuple(added), tuple(present)
+
+
+def _put_aside(folder: Path, workspace: Path) -> Path:
+    aside = workspace / "before"
+    aside.mkdir(parents=True, exist_ok=True)
+    # colcon, run in the workspace, must not build old packages beside the new one.
+    (aside / "COLCON_IGNORE").touch()
+    for number in itertools.count(1):
+        target = aside / f"{folder.name}-{number}"
+        if not target.exists():
+            folder.rename(target)
+            return target
+    raise AssertionError
