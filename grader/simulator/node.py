@@ -66,9 +66,10 @@ class TurtlesimNode(Node):
         self.add_post_set_parameters_callback(self._parameters_set)
         # turtlesim listens to parameter events to repaint its window. There is none here, but who looks at the
         # graph should see the same node.
-        self.create_subscription(
-            ParameterEvent, "/parameter_events", lambda _: None, qos_profile_parameter_events, raw=True
-        )
+        for _ in ("turtlesim", "the clock that rclcpp gives every node"):
+            self.create_subscription(
+                ParameterEvent, "/parameter_events", lambda _: None, qos_profile_parameter_events, raw=True
+            )
         self.create_service(Empty, "clear", self._clear)
         self.create_service(Empty, "reset", self._reset)
         self.create_service(Spawn, "spawn", self._spawn)

@@ -1,0 +1,356 @@
+"""Each recording of the real `ros2` is typed again, and must give the same: output, errors and exit code.
+
+What may differ is named where the comparison is made, with the reason.
+"""
+
+from __future__ import annotations
+
+import re
+import stat
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests.ros2.world import World, all_golden, build, environment, golden, world
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+NOTHING_RUNNING = ["topic_list_nothing_running"]
+FILES_ONLY = [
+    "interface_show_color",
+    "interface_show_nope",
+    "interface_show_pose",
+    "interface_show_rotate_absolute",
+    "interface_show_srv_Spawn",
+    "interface_show_twist_no_comments",
+    "pkg_executables_nope",
+    "pkg_executables_turtlesim",
+    "pkg_prefix_nope",
+]
+TURTLESIM_ONLY = [
+    "node_list_turtlesim_only",
+    "topic_echo_pose_csv",
+    "topic_echo_pose_once",
+    "topic_info_cmd_vel_before",
+    "topic_list_turtlesim_only",
+]
+BOTH_RUNNING = [
+    "action_info",
+    "action_list",
+    "action_list_t",
+    "node_info_draw_circle",
+    "node_info_nope",
+    "node_info_turtlesim",
+    "node_list",
+    "param_describe_turtlesim",
+    "param_get_background_r",
+    "param_get_nope",
+    "param_list",
+    "service_call_badtype",
+    "service_list",
+    "service_list_t",
+    "service_type_spawn",
+    "topic_echo_unknown_topic",
+    "topic_find_twist",
+    "topic_find_unknown",
+    "topic_info_cmd_vel",
+    "topic_info_nope",
+    "topic_list",
+    "topic_list_c",
+    "topic_list_t",
+    "topic_type_cmd_vel",
+    "topic_type_unknown",
+]
+OF_THEIR_OWN = {
+    "action_send_goal",
+    "interface_package_turtlesim",
+    "interface_packages",
+    "node-draw_circle",
+    "node-turtlesim_node",
+    "param_set_background_r",
+    "param_set_out_of_range",
+    "pkg_create_again",
+    "pkg_create_ament_python",
+    "pkg_create_tree_and_files",
+    "service_call_spawn",
+    "service_call_spawn_again",
+    "topic_echo_cmd_vel",
+    "topic_echo_pose_once_moving",
+    "topic_hz_cmd_vel",
+    "topic_hz_pose",
+    "topic_info_cmd_vel_verbose",
+    "topic_info_no_slash",
+    "topic_list_v",
+    "topic_pub_once",
+}
+
+
+@pytest.fixture(scope="module")
+def empty(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    """Nobody is running."""
+    yield from world(tmp_path_factory.mktemp("empty"))
+
+
+@pytest.fixture(scope="module")
+def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    """turtlesim, and nobody who drives."""
+    for made in world(tmp_path_factory.mktemp("still")):
+        made.turtlesim()
+        yield made
+
+
+@pytest.fixture(scope="module")
+def install(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    home = tmp_path_factory.mktemp("workspace")
+    return build(home, environment(home))
+
+
+@pytest.fixture(scope="module")
+def driving(tmp_path_factory: pytest.TempPathFactory, install: Path) -> Iterator[World]:
+    """turtlesim, and draw_circle at 2 Hz."""
+    for made in world(tmp_path_factory.mktemp("driving")):
+        made.turtlesim()
+        made.draw_circle(install)
+        yield made
+
+
+@pytest.fixture
+def touched(tmp_path: Path) -> Iterator[World]:
+    """turtlesim, for one test that changes it."""
+    for made in world(tmp_path):
+        made.turtlesim()
+        yield made
+
+
+def same(name: str, where: World, differs: Callable[[str], str] = lambda text: text) -> None:
+    """Type what was typed; `differs` takes out what may differ."""
+    expected = golden(name)
+    done = where.run(expected.command)
+    assert differs(done.stdout) == differs(expected.stdout)
+    assert done.stderr == expected.stderr
+    assert done.code == expected.code
+
+
+def test_every_recording_has_a_test() -> None:
+    tested = {*NOTHING_RUNNING, *FILES_ONLY, *TURTLESIM_ONLY, *BOTH_RUNNING, *OF_THEIR_OWN}
+    assert all_golden() == tested
+
+
+@pytest.mark.parametrize("name", NOTHING_RUNNING + FILES_ONLY)
+def test_with_nobody_running(name: str, empty: World) -> None:
+    same(name, empty)
+
+
+@pytest.mark.parametrize("name", TURTLESIM_ONLY)
+def test_with_turtlesim(name: str, still: World) -> None:
+    same(name, still)
+
+
+@pytest.mark.parametrize("name", BOTH_RUNNING)
+def test_with_turtlesim_and_draw_circle(name: str, driving: World) -> None:
+    same(name, driving)
+
+
+# --- what differs for a reason ----------------------------------------------------------------------------------------
+
+
+def test_interfaces_of_a_package_come_in_another_order(empty: World) -> None:
+    # The real one keeps the order of a directory; ours are sorted.
+    same("interface_package_turtlesim", empty, lambda text: "\n".join(sorted(text.splitlines())))
+
+
+def test_packages_with_interfaces_are_those_that_have_wheels(empty: World) -> None:
+    expected = golden("interface_packages")
+    not_as_wheels = {"composition_interfaces", "example_interfaces", "statistics_msgs"}
+    done = empty.run(expected.command)
+    found = done.stdout.splitlines()
+    assert found == sorted(found)
+    assert set(expected.stdout.splitlines()) - set(found) <= not_as_wheels
+    assert (done.stderr, done.code) == ("", 0)
+
+
+def test_endpoints_have_other_numbers(driving: World) -> None:
+    # A GID is drawn for each endpoint.
+    same(
+        "topic_info_cmd_vel_verbose",
+        driving,
+        lambda text: re.sub(r"GID: [\da-f.]{47}$", "GID:", text, flags=re.MULTILINE),
+    )
+
+
+def test_verbose_list(driving: World) -> None:
+    same("topic_list_v", driving)
+
+
+def test_a_name_without_its_slash_gets_a_hint_as_well(driving: World) -> None:
+    # The real one says nothing at all, which helps nobody; an unknown name suggests the nearest.
+    expected = golden("topic_info_no_slash")
+    done = driving.run(expected.command)
+    assert (done.stdout, done.code) == (expected.stdout, expected.code)
+    assert done.stderr == "Did you mean '/turtle1/cmd_vel'?\n"
+
+
+def test_echo_of_a_moving_turtle(driving: World) -> None:
+    # Where the turtle is depends on when one looks; how fast it drives does not.
+    expected = golden("topic_echo_pose_once_moving")
+    done = driving.run(expected.command)
+    number = re.compile(r"^(x|y|theta): -?\d+\.\d+(e-\d+)?$", re.MULTILINE)
+    assert number.sub(r"\1:", done.stdout) == number.sub(r"\1:", expected.stdout)
+    assert (done.stderr, done.code) == ("", 0)
+
+
+def test_echo_until_ctrl_c(driving: World) -> None:
+    # How many messages come before Ctrl-C is a matter of when it is pressed.
+    expected = golden("topic_echo_cmd_vel")
+    message = expected.stdout[: expected.stdout.index("---\n") + 4]
+    assert expected.stdout == message * 4
+    running = driving.start(expected.command)
+    running.wait_for("---", times=3)
+    assert running.stop() == expected.code
+    text = "".join(f"{line}\n" for line in running.lines)
+    assert text == message * text.count("---")
+
+
+@pytest.mark.parametrize("name", ["topic_hz_cmd_vel", "topic_hz_pose"])
+def test_hz_until_ctrl_c(name: str, driving: World) -> None:
+    # What is measured differs from second to second.
+    expected = golden(name)
+    running = driving.start(expected.command)
+    running.wait_for("window:", times=2)
+    assert running.stop() == expected.code
+    number = re.compile(r"\d+(\.\d+)?")
+
+    def shape(text: str) -> list[str]:
+        return [re.sub(r"\d", "0", line) if "min" in line else number.sub("N", line) for line in text.splitlines()]
+
+    windows = re.compile(r"window: 0+")
+    shown = [windows.sub("window: N", line) for line in shape("\n".join(running.lines))]
+    asked = [windows.sub("window: N", line) for line in shape(expected.stdout)]
+    assert shown[:4] == asked[:4]
+
+
+def test_spawn_twice(touched: World) -> None:
+    same("service_call_spawn", touched)
+    same("service_call_spawn_again", touched)
+
+
+def test_publish_once(touched: World) -> None:
+    same("topic_pub_once", touched)
+
+
+def test_set_a_parameter_within_its_range_and_beyond(touched: World) -> None:
+    same("param_set_background_r", touched)
+    same("param_set_out_of_range", touched)
+    assert touched.run("ros2 param get /turtlesim background_r").stdout == "Integer value is: 150\n"
+
+
+def test_send_a_goal(touched: World) -> None:
+    # The goal's id is drawn.
+    same("action_send_goal", touched, lambda text: re.sub(r"ID: [\da-f]{32}\n", "ID:\n", text))
+
+
+# --- nodes ------------------------------------------------------------------------------------------------------------
+
+LINE = re.compile(r"\[(\w+)\] \[\d+\.\d+\] (\[\w+\]: .*)")
+
+
+def said(lines: list[str]) -> list[str]:
+    """Level, node and text of each line of a log; the stamps differ."""
+    return [f"{match[1]} {match[2]}" for line in lines if (match := LINE.fullmatch(line))]
+
+
+def test_what_turtlesim_says(tmp_path: Path) -> None:
+    expected = said((Path(__file__).parents[1] / "golden/ros2/node-turtlesim_node.stderr.txt").read_text().splitlines())
+    # The real one says what rclcpp's handler of Ctrl-C says; ours has no rclcpp.
+    assert expected.pop() == "INFO [rclcpp]: signal_handler(signum=2)"
+    for where in world(tmp_path):
+        turtlesim = where.turtlesim()
+        spawn = "ros2 service call /spawn turtlesim/srv/Spawn"
+        goal = "ros2 action send_goal /turtle1/rotate_absolute turtlesim/action/RotateAbsolute"
+        for command in (
+            f"{spawn} '{{x: 2, y: 2, theta: 0.2, name: t2}}'",
+            f"{spawn} '{{x: 2, y: 2, theta: 0.2, name: t2}}'",
+            f"{spawn} '{{x: 3, y: 3}}'",
+            "ros2 service call /kill turtlesim/srv/Kill '{name: nope}'",
+            "ros2 service call /clear std_srvs/srv/Empty",
+            "ros2 service call /reset std_srvs/srv/Empty",
+            f"{goal} '{{theta: 0.1}}'",
+            f"{goal} '{{theta: 0.2}}'",
+        ):
+            assert where.run(command).code == 0, command
+        assert turtlesim.stop() == 0
+        assert said(turtlesim.lines) == expected
+
+
+def test_ctrl_c_in_a_node_that_does_not_expect_it(tmp_path: Path) -> None:
+    # The frames of the traceback are those of rclpy and of the installed script, at their places here.
+    real = (Path(__file__).parents[1] / "golden/ros2/node-draw_circle.stderr.txt").read_text().splitlines()
+    for where in world(tmp_path):
+        install = build(tmp_path, where.env)
+        module = next((install / "my_robot_controller").rglob("my_robot_controller/draw_circle.py"))
+        as_many_write_it = module.read_text().replace("except (KeyboardInterrupt, ", "except (ZeroDivisionError, ")
+        module.write_text(as_many_write_it)
+        node = where.draw_circle(install)
+        # It says that it has started before it spins; once it has published, it spins.
+        assert where.run("ros2 topic echo --once /turtle1/cmd_vel").code == 0
+        assert node.stop() != 0
+        started = [line for line in said(node.lines) if "started" in line]
+        assert started == said(real)
+        assert "Traceback (most recent call last):" in node.lines
+        assert any(line.strip() == "rclpy.spin(node)" for line in node.lines)
+        assert node.lines[-1] == real[-1] == "KeyboardInterrupt"
+
+
+# --- a new package ----------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def src(tmp_path: Path) -> Path:
+    """The folder in which the real packages were made, as whom."""
+    (tmp_path / ".gitconfig").write_text("[user]\nemail = student@example.com\n")
+    folder = tmp_path / "ros2_ws/src"
+    folder.mkdir(parents=True)
+    return folder
+
+
+def create(src: Path, command: str) -> tuple[str, str, int]:
+    env = environment(src.parents[1])
+    done = World(src, env).run(f"umask 022; {command}")
+    return done.stdout.replace(str(src), "/home/student/ros2_ws/src"), done.stderr, done.code
+
+
+def test_create_a_package_and_again(src: Path) -> None:
+    expected = golden("pkg_create_ament_python")
+    assert create(src, expected.command) == (expected.stdout, expected.stderr, expected.code)
+    again = golden("pkg_create_again")
+    assert create(src, again.command) == (again.stdout, again.stderr, again.code)
+
+
+def tree(folder: Path) -> set[str]:
+    """Kind, mode and name; the size where it is 0. The texts are ours, and so are the sizes of the others."""
+    lines = set()
+    for path in [folder, *folder.rglob("*")]:
+        mode = path.stat().st_mode
+        size = "-" if path.is_dir() or path.stat().st_size else "0"
+        lines.add(f"{'d' if path.is_dir() else 'f'} {stat.S_IMODE(mode):o} {size} {path.relative_to(folder.parent)}")
+    return lines
+
+
+def test_what_is_in_new_packages(src: Path) -> None:
+    recorded = (Path(__file__).parents[1] / "golden/ros2/pkg_create_tree_and_files.txt").read_text()
+    parts = re.split(r"^##### (.*)\n", recorded, flags=re.MULTILINE)[1:]
+    expected = dict(zip(parts[::2], parts[1::2], strict=True))
+    assert create(src, golden("pkg_create_ament_python").command)[2] == 0
+    # The command of ROS 2's own tutorial, which is where the other tree comes from.
+    book = "ros2 pkg create --build-type ament_python --license Apache-2.0 --node-name my_node my_package"
+    assert create(src, book)[2] == 0
+    for title, text in expected.items():
+        if title.startswith("tree "):
+            listed = re.sub(
+                r"^([df] \d+) (\d+) ", lambda m: f"{m[1]} {'-' if int(m[2]) else 0} ", text, flags=re.MULTILINE
+            )
+            assert tree(src / title.removeprefix("tree ")) == set(listed.splitlines())
+        else:
+            assert (src / title).read_text() == text, title

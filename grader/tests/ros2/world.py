@@ -1,0 +1,180 @@
+"""A domain of its own for tests of the commands: processes started and commands typed as a user would, in bash."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+from grader import ros, underlay
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+HANG_S = 60.0
+SOLUTION = Path(__file__).parents[3] / "solutions/03-circle-publisher/my_robot_controller"
+_numbers = itertools.count()
+
+
+@dataclass(frozen=True)
+class Done:
+    """A command that has ended."""
+
+    stdout: str
+    stderr: str
+    code: int
+
+
+@dataclass
+class Running:
+    """A process with the lines that it has written so far, both streams in one."""
+
+    process: subprocess.Popen[str]
+    lines: list[str] = field(default_factory=list)
+    _news: threading.Condition = field(default_factory=threading.Condition)
+
+    def read(self, stream: IO[str]) -> None:
+        """Keep what it writes, in a thread of its own."""
+        for line in stream:
+            with self._news:
+                self.lines.append(line.rstrip("\n"))
+                self._news.notify_all()
+        with self._news:
+            self._news.notify_all()
+
+    def wait_for(self, text: str, times: int = 1) -> None:
+        """Wait until so many lines contain `text`."""
+        with self._news:
+            there = self._news.wait_for(lambda: sum(text in line for line in self.lines) >= times, HANG_S)
+        assert there, f"no line with '{text}' came:\n" + "\n".join(self.lines)
+
+    def stop(self, number: int = signal.SIGINT) -> int:
+        """Send a signal to it and what it started, as a terminal does; returns the exit code."""
+        if self.process.poll() is None:
+            os.killpg(self.process.pid, number)
+        return self.process.wait(HANG_S)
+
+
+@dataclass
+class World:
+    """A HOME, an environment with ROS 2, and a domain that nobody else has."""
+
+    home: Path
+    env: dict[str, str]
+    running: list[Running] = field(default_factory=list)
+
+    def run(self, command: str, *, stdin: str = "", cwd: Path | None = None, **env: str) -> Done:
+        """Type a command and wait for its end."""
+        done = subprocess.run(
+            ["bash", "-c", command],
+            env={**self.env, **env},
+            cwd=cwd or self.home,
+            input=stdin,
+            capture_output=True,
+            text=True,
+            timeout=HANG_S,
+            check=False,
+        )
+        return Done(done.stdout, done.stderr, done.returncode)
+
+    def start(self, command: str, ready: str | None = None, **env: str) -> Running:
+        """Start a command in a process group of its own, and wait for a line with `ready`."""
+        process = subprocess.Popen(
+            ["bash", "-c", f"exec {command}"],
+            env={**self.env, **env},
+            cwd=self.home,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
+        assert process.stdout is not None
+        running = Running(process)
+        threading.Thread(target=running.read, args=[process.stdout], daemon=True).start()
+        self.running.append(running)
+        if ready is not None:
+            running.wait_for(ready)
+        return running
+
+    def turtlesim(self) -> Running:
+        """Start turtlesim as the tutorial does."""
+        return self.start("ros2 run turtlesim turtlesim_node", "Spawning turtle")
+
+    def draw_circle(self, install: Path) -> Running:
+        """Start the tutorial's node from a workspace that was built."""
+        return self.start(
+            f"bash -c 'source {install}/setup.bash && exec ros2 run my_robot_controller draw_circle'", "Draw"
+        )
+
+    def end(self) -> None:
+        """Let nothing that was started stay behind."""
+        for running in self.running:
+            running.stop()
+
+
+def environment(home: Path, domain: int | None = None) -> dict[str, str]:
+    """What a user has after `source <(grader env)`, in a domain of its own."""
+    here = ros.find_ros()
+    own = 2 + (os.getpid() * 7 + next(_numbers) * 31) % 99 if domain is None else domain
+    user = {
+        "HOME": str(home),
+        "PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin",
+        "LANG": "C.UTF-8",
+        "TERM": "dumb",
+    }
+    return ros.users_environment(here, underlay.ensure(here), {**user, "LOGNAME": "root"}, own)
+
+
+def world(home: Path) -> Iterator[World]:
+    """For a fixture: a world that ends with the tests that use it."""
+    home.mkdir(parents=True, exist_ok=True)
+    made = World(home, environment(home))
+    try:
+        yield made
+    finally:
+        made.end()
+
+
+def build(home: Path, env: dict[str, str]) -> Path:
+    """Build the solution's package in a workspace; returns its install folder."""
+    workspace = home / "ros2_ws"
+    shutil.copytree(SOLUTION, workspace / "src/my_robot_controller")
+    subprocess.run(["colcon", "build"], cwd=workspace, env=env, check=True, capture_output=True, timeout=HANG_S)
+    return workspace / "install"
+
+
+_GOLDEN = Path(__file__).parents[1] / "golden/ros2"
+
+
+@dataclass(frozen=True)
+class Golden:
+    """What the real `ros2` did: a command, what it wrote, and how it ended."""
+
+    command: str
+    stdout: str
+    stderr: str
+    code: int
+
+
+def golden(name: str) -> Golden:
+    """Read a recording."""
+    text = (_GOLDEN / f"{name}.txt").read_text("utf-8")
+    match = re.fullmatch(r"\$ (.*?)\n(.*)\[exit (\d+)\](?: \(after SIGINT at \d+s\))?\n", text, re.DOTALL)
+    assert match, name
+    errors = _GOLDEN / f"{name}.stderr.txt"
+    stderr = errors.read_text("utf-8").partition("(stderr)\n")[2] if errors.exists() else ""
+    return Golden(match[1], match[2], stderr, int(match[3]))
+
+
+def all_golden() -> set[str]:
+    """The names of all recordings."""
+    return {path.name.partition(".")[0] for path in _GOLDEN.iterdir()}
