@@ -60,13 +60,20 @@ class Graded:
 
 
 def grade(
-    exercise: Exercise, submission: Submission, options: Options, tell: Callable[[str], None] = lambda _: None
+    exercise: Exercise,
+    submission: Submission,
+    options: Options,
+    tell: Callable[[str], None] = lambda _: None,
+    *,
+    build: Callable[..., workspace.Built] = workspace.build,
+    trial: Callable[..., Trial] = Trial,
 ) -> Graded:
     """Grade a submission; `tell` hears in a few words what is being done.
 
-    A fault of the machine becomes outcomes of status `error`, never an exception.
+    A fault of the machine becomes outcomes of status `error`, never an exception. `build` and `trial` stand in for
+    what they are named after: `grader watch` has builds and trials that it began before.
     """
-    return _Grading(exercise, submission, options, tell).run()
+    return _Grading(exercise, submission, options, tell, build, trial).run()
 
 
 def report_of(evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float]) -> Report:
@@ -94,6 +101,8 @@ class _Grading:
     submission: Submission
     options: Options
     tell: Callable[[str], None]
+    builder: Callable[..., workspace.Built]
+    trials: Callable[..., Trial]
     seconds: dict[str, float] = field(default_factory=dict)
     tree: bytes = b""
     """What was built, as a tar stream."""
@@ -141,7 +150,7 @@ class _Grading:
         for spec in self.exercise.trials:
             seen = evidence.in_trial(spec.id)
             if wants_trial(seen):
-                one = _Grading(seen.exercise, self.submission, self.options, self.tell, self.seconds, self.tree)
+                one = dataclasses.replace(self, exercise=seen.exercise)
                 clock, why = one._first_clock(seen)
                 with one._trial(clock, here, extra) as trial:
                     others[spec.id] = one._try_twice(seen, trial, clock, why, here, extra)
@@ -160,7 +169,7 @@ class _Grading:
     def _build(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
         self.tell("Building with colcon")
         with self._timed("build"):
-            built = workspace.build(self.submission, here, extra, in_cell=self.options.in_cell)
+            built = self.builder(self.submission, here, extra, in_cell=self.options.in_cell)
         self.tree = built.tree
         return dataclasses.replace(evidence, build=built.build)
 
@@ -243,7 +252,7 @@ class _Grading:
             inputs=draw_inputs(scenario, start, UNASKED_SEED if seed is None else seed),
             stop_at_doubt=self.options.clock == "auto",
         )
-        return Trial(plan, here, extra, in_cell=self.options.in_cell)
+        return self.trials(plan, here, extra, in_cell=self.options.in_cell)
 
     @contextmanager
     def _timed(self, stage: str) -> Iterator[None]:

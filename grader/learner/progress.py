@@ -22,7 +22,7 @@ DEFAULT_WORKSPACE = Path("~/ros2_ws")
 
 @dataclass(frozen=True)
 class StepProgress:
-    """One step: the best points so far, of `max` in the same report; whether it has passed; how many hints were read."""
+    """One step: the best points so far, of `max` in that report; whether it has passed; how many hints were read."""
 
     points: float = 0.0
     max: float = 0.0

@@ -59,16 +59,28 @@ class Trial:
         self._in_cell = in_cell
         self._node_runs = False
         self._stack = ExitStack()
+        self._started = False
 
     def __enter__(self) -> Trial:  # noqa: PYI034 - typing.Self is Python 3.11's
+        self.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def start(self) -> None:
+        """Start simulator and launcher now rather than on entering; who does so must enter later, or `close`."""
+        if self._started:
+            return
+        self._started = True
         try:
             self._start()
         except BaseException:
             self._stack.close()
             raise
-        return self
 
-    def __exit__(self, *_: object) -> None:
+    def close(self) -> None:
+        """End all that was started."""
         self._stack.close()
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
@@ -95,6 +107,7 @@ class Trial:
             "install": str(install),
             "tree_bytes": len(tree),
         }
+        self._limit()
         self._answer("ready")
         self._send(json.dumps(order).encode() + b"\n" + tree)
         self._node_runs = True
@@ -108,6 +121,7 @@ class Trial:
         """
         from grader.recording import from_json
 
+        self._limit()
         return from_json(self._answer("recording"))
 
     def _start(self) -> None:
@@ -133,15 +147,17 @@ class Trial:
             argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, env=env, start_new_session=True
         )
         self._stack.callback(self._end)
+        plan = asdict(self._plan) | {"start": [self._plan.start.x, self._plan.start.y, self._plan.start.theta]}
+        where = {"home": str(self._home), "domain": self._domain, "in_cell": self._in_cell}
+        underlay = {"underlay": str(self._underlay) if self._underlay else None}
+        self._send(json.dumps({**plan, **where, **underlay}).encode() + b"\n")
+
+    def _limit(self) -> None:
         # Whatever happens inside, the grader does not wait for ever; the trial's own deadlines are much tighter.
         timer = Timer(60.0 + 4.0 * self._plan.duration_s, self._process.kill)
         timer.daemon = True
         timer.start()
         self._stack.callback(timer.cancel)
-        plan = asdict(self._plan) | {"start": [self._plan.start.x, self._plan.start.y, self._plan.start.theta]}
-        where = {"home": str(self._home), "domain": self._domain, "in_cell": self._in_cell}
-        underlay = {"underlay": str(self._underlay) if self._underlay else None}
-        self._send(json.dumps({**plan, **where, **underlay}).encode() + b"\n")
 
     def _end(self) -> None:
         self._process.kill()

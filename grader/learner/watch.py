@@ -1,0 +1,147 @@
+"""Watch: a verdict after every save.
+
+While the learner thinks, simulator and launcher of the next trial wait already, and the last build is kept; a save
+then costs little more than the trial itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from queue import SimpleQueue
+from threading import Event, Thread
+from typing import TYPE_CHECKING, Literal
+
+from watchfiles import DefaultFilter, watch
+
+from grader.errors import UsageError
+from grader.grade import Graded, Options, grade
+from grader.learner.rebuild import Rebuild
+from grader.submission import open_submission
+from grader.trial.trial import Plan, Trial
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from grader.exercise import Exercise
+    from grader.ros import Ros
+    from grader.submission import Submission
+
+DEBOUNCE_MS = 50
+"""An editor that saves by renaming makes several events; they count as one."""
+
+
+@dataclass(frozen=True)
+class Happened:
+    """What the loop waits for: a save, a key, or the end."""
+
+    kind: Literal["saved", "key", "end"]
+    key: str = ""
+
+
+class _Sources(DefaultFilter):
+    """What a verdict may depend on: not what colcon and Python make."""
+
+    ignore_dirs = (*DefaultFilter.ignore_dirs, "build", "install", "log")
+
+
+class Events:
+    """Saves below a folder and keys, in the order in which they happen."""
+
+    def __init__(self, folder: Path, read_key: Callable[[], str] | None) -> None:
+        self._queue: SimpleQueue[Happened] = SimpleQueue()
+        self._stop = Event()
+        self._ready = Event()
+        Thread(target=self._watch, args=(folder,), daemon=True).start()
+        if read_key is not None:
+            Thread(target=self._keys, args=(read_key,), daemon=True).start()
+
+    def __iter__(self) -> Iterator[Happened]:
+        """Wait for what happens next; saves that came together are one."""
+        while True:
+            happened = self._queue.get()
+            while happened.kind == "saved" and not self._queue.empty():
+                happened = self._queue.get()
+            if happened.kind == "end":
+                return
+            yield happened
+
+    def close(self) -> None:
+        """End the watching."""
+        self._stop.set()
+        self._queue.put(Happened("end"))
+
+    def _watch(self, folder: Path) -> None:
+        for _ in watch(
+            folder,
+            watch_filter=_Sources(),
+            debounce=DEBOUNCE_MS,
+            step=10,
+            rust_timeout=500,
+            stop_event=self._stop,
+            raise_interrupt=False,
+        ):
+            self._queue.put(Happened("saved"))
+
+    def _keys(self, read_key: Callable[[], str]) -> None:
+        while key := read_key():
+            self._queue.put(Happened("key", key))
+        self._queue.put(Happened("end"))
+
+
+class Watched:
+    """One exercise in one folder, graded again and again. Close it when done."""
+
+    def __init__(self, exercise: Exercise, folder: Path, options: Options) -> None:
+        self.exercise = exercise
+        self.folder = folder
+        self.rebuild = Rebuild()
+        self._options = options
+        self._warm: tuple[Plan, Trial] | None = None
+        self._wanted: tuple[Plan, Ros, Path | None] | None = None
+        self._digest = ""
+
+    def changed(self) -> bool:
+        """Whether the submission is another one than at the last verdict, or cannot be opened now."""
+        try:
+            return self._open().digest != self._digest
+        except UsageError:
+            return True
+
+    def grade(self, tell: Callable[[str], None] = lambda _: None) -> Graded:
+        """Grade the folder as it is now.
+
+        Raises:
+            UsageError: there is no package in it (any more).
+        """
+        submission = self._open()
+        self._digest = submission.digest
+        try:
+            return grade(self.exercise, submission, self._options, tell, build=self.rebuild, trial=self._next_trial)
+        finally:
+            self._warm_up()
+
+    def close(self) -> None:
+        """End what waits."""
+        if self._warm is not None:
+            self._warm[1].close()
+            self._warm = None
+
+    def _open(self) -> Submission:
+        return open_submission(self.folder)
+
+    def _next_trial(self, plan: Plan, here: Ros, underlay: Path | None, *, in_cell: bool) -> Trial:
+        if plan.clock == "simulated":
+            self._wanted = (plan, here, underlay)
+        if self._warm is not None and self._warm[0] == plan:
+            trial = self._warm[1]
+            self._warm = None
+            return trial
+        return Trial(plan, here, underlay, in_cell=in_cell)
+
+    def _warm_up(self) -> None:
+        if self._warm is None and self._wanted is not None:
+            plan, here, underlay = self._wanted
+            trial = Trial(plan, here, underlay, in_cell=self._options.in_cell)
+            trial.start()
+            self._warm = (plan, trial)
