@@ -29,7 +29,7 @@ HEIGHT = 150.0
 """Of the area inside the axes, for one row of a chart."""
 GAP = 46.0
 """Between two rows."""
-BINS = 200
+BINS = 120
 """Of each stretch of time no more than the lowest and the highest value is drawn."""
 HUGE = 1e4
 """What is drawn of larger values."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.report.svg import coordinate, picture, tag, words
-from grader.ros2.graph import Picture, Topic
+from grader.ros2.graph import Topic
 from grader.ros2.graph import picture as choose
 from grader.words import a_list, shorten
 
@@ -23,14 +23,14 @@ WIDTH = 640.0
 ROW, BOX = 62.0, 40.0
 SIDE, MIDDLE = 150.0, 216.0
 """Width of a node and of a topic."""
-MOST_TOPICS = 10
+MOST_TOPICS, MOST_NODES = 10, 12
 NODE, TOPIC = "#1c7ed6", "#e8590c"
 NODE_CHARS, TOPIC_CHARS = 21, 31
 
 
 @dataclass(frozen=True)
 class GraphDrawing:
-    """The picture, the same in rows (node, "publishes on" or "subscribes to", topic, type), and what it leaves out."""
+    """The picture, the same in rows (node, "publishes on" or "subscribes to", topic, type), what is left out."""
 
     svg: str
     rows: tuple[tuple[str, str, str, str], ...]
@@ -54,18 +54,18 @@ def draw_graph(recording: Recording) -> GraphDrawing | None:
     names = {topic.name for topic in shown}
     verb = {"publisher": "publishes on", "subscription": "subscribes to"}
     rows = sorted((end.node, verb[end.kind], end.topic, end.type) for end in ends if end.topic in names)
-    return GraphDrawing(_draw(graph, shown, types), tuple(rows[:60]), len(topics) - len(shown))
+    left = _ordered([name for topic in shown for name in topic.publishers]) + [node.name for node in graph.alone]
+    right = _ordered([name for topic in shown for name in topic.subscribers])
+    dropped = len(topics) - len(shown) + sum(max(len(names) - MOST_NODES, 0) for names in (left, right))
+    svg = _draw(shown, types, left[:MOST_NODES], right[:MOST_NODES])
+    return GraphDrawing(svg, tuple(rows[:60]), dropped)
 
 
 def _of_student(topic: Topic, own: set[str]) -> bool:
     return bool({*topic.publishers, *topic.subscribers} - own)
 
 
-def _draw(graph: Picture, topics: Sequence[Topic], types: dict[str, list[str]]) -> str:
-    left = _in_order([name for topic in topics for name in topic.publishers])
-    right = _in_order([name for topic in topics for name in topic.subscribers])
-    alone = [node.name for node in graph.nodes if node.name not in left and node.name not in right]
-    left += alone
+def _draw(topics: Sequence[Topic], types: dict[str, list[str]], left: list[str], right: list[str]) -> str:
     height = max(len(left), len(right), len(topics), 1) * ROW + 34
     middle_x, right_x = (WIDTH - MIDDLE) / 2, WIDTH - SIDE - 2
     parts = [
@@ -76,8 +76,8 @@ def _draw(graph: Picture, topics: Sequence[Topic], types: dict[str, list[str]]) 
     heights = _places([topic.name for topic in topics], height)
     for topic in topics:
         y = heights[topic.name]
-        parts += [_arrow(2 + SIDE, lefts[name], middle_x, y) for name in topic.publishers]
-        parts += [_arrow(middle_x + MIDDLE, y, right_x, rights[name]) for name in topic.subscribers]
+        parts += [_arrow(2 + SIDE, lefts[name], middle_x, y) for name in topic.publishers if name in lefts]
+        parts += [_arrow(middle_x + MIDDLE, y, right_x, rights[name]) for name in topic.subscribers if name in rights]
         parts.append(_topic(topic.name, types.get(topic.name, []), middle_x, y))
     parts += [_node(name, 2.0, y) for name, y in lefts.items()]
     parts += [_node(name, right_x, y) for name, y in rights.items()]
@@ -94,7 +94,7 @@ def _who(names: Sequence[str]) -> str:
     return a_list([shorten(name) for name in names]) or "nobody"
 
 
-def _in_order(names: Sequence[str]) -> list[str]:
+def _ordered(names: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(names))
 
 
@@ -129,7 +129,7 @@ def _topic(name: str, types: Sequence[str], x: float, y: float) -> str:
 def _plain(text: str) -> str:
     from html import escape
 
-    return escape(shorten(text, 300))
+    return escape(shorten(text, 160))
 
 
 def _arrow(x1: float, y1: float, x2: float, y2: float) -> str:

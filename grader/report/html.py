@@ -37,7 +37,7 @@ MOST_FRAMES = 1500
 """Of the turtle's way in the player; 20 frames a second are enough for an eye."""
 MOST_ROWS = 100
 """Of the table of commands."""
-MOST_STEPS = 2000
+MOST_STEPS = 1000
 """Of the commands that the player tells."""
 
 

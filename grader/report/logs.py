@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
     from grader.recording import Output
 
-HEAD_BYTES, TAIL_BYTES, ERROR_BYTES = 24_000, 16_000, 6_000
+HEAD_BYTES, TAIL_BYTES, ERROR_BYTES = 20_000, 14_000, 6_000
 LOOKED_AT = 400_000
 """Characters of a log that are searched for errors, from its end."""
 MOST_ERRORS = 40

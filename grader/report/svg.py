@@ -66,9 +66,9 @@ def points(of: Iterable[Point]) -> str:
 
 def picture(*children: str, width: float, height: float, title: str, about: str = "", key: str) -> str:
     """A whole picture that scales with its page; `key` is its name among all pictures of a page."""
-    named = [tag("title", escape(printable(title)), id=f"{key}-title")]
+    named = [tag("title", escape(printable(title)), id=f"picture-{key}-title")]
     if about:
-        named.append(tag("desc", escape(printable(about)), id=f"{key}-about"))
+        named.append(tag("desc", escape(printable(about)), id=f"picture-{key}-about"))
     return tag(
         "svg",
         *named,
@@ -76,8 +76,8 @@ def picture(*children: str, width: float, height: float, title: str, about: str 
         xmlns="http://www.w3.org/2000/svg",
         viewBox=f"0 0 {coordinate(width)} {coordinate(height)}",
         role="img",
-        aria_labelledby=f"{key}-title",
-        aria_describedby=f"{key}-about" if about else None,
+        aria_labelledby=f"picture-{key}-title",
+        aria_describedby=f"picture-{key}-about" if about else None,
         font_family="system-ui, sans-serif",
         font_size=13,
         class_=f"picture {key}",

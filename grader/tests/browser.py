@@ -1,0 +1,58 @@
+"""The system's Chromium, for the tests of the pages."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.machine import BROWSERS, SYSTEM_PATH
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from playwright.sync_api import Browser
+
+FLAGS = (
+    # Root has no sandbox in Chromium; it opens nothing but files of ours.
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
+
+
+def find_browser() -> str | None:
+    """The path of a Chromium."""
+    search = os.pathsep.join([os.environ.get("PATH", ""), *SYSTEM_PATH])
+    return next(filter(None, (shutil.which(name, path=search) for name in BROWSERS)), None)
+
+
+def browser_or_reason() -> str:
+    """The path of a Chromium. Without one the test is skipped with the reason, and under CI it fails."""
+    found = find_browser()
+    if found is not None:
+        return found
+    reason = "there is no Chromium: apt-get install chromium"
+    if os.environ.get("TESTS_WITHOUT_BROWSER"):
+        pytest.skip(f"TESTS_WITHOUT_BROWSER is set, and {reason}")
+    if os.environ.get("CI") == "true":
+        pytest.fail(f"the pages cannot be tested, since {reason}")
+    pytest.skip(reason)
+
+
+@contextmanager
+def launched(executable: str) -> Iterator[Browser]:
+    """A Chromium without a window."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=executable, args=list(FLAGS))
+        yield browser
+        browser.close()

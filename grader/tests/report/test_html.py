@@ -1,0 +1,234 @@
+"""The page on a submission, as text; test_pages_in_browser.py opens it."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.outcome import Finding, Outcome, Status
+from grader.recording import Output
+from grader.report.html import html_page, save_html
+from grader.report.verdict import verdict
+from grader.tests.case import ROOT
+from grader.tests.checks.made import NODE, NODE_FILE, every, evidence, good, node, recording, submission
+from grader.tests.checks.shapes import SHAPES
+from grader.tests.report.hostile import enormous, hostile
+from grader.tests.report.reports import EVIDENCE, report_of
+
+if TYPE_CHECKING:
+    from grader.checks.evidence import Evidence
+
+LARGEST = 400_000
+GIVEN: dict[str, Evidence] = {
+    **EVIDENCE,
+    **{name: evidence(shape()) for name, shape in SHAPES.items()},
+    "hostile": hostile(),
+    "enormous": enormous(),
+}
+VOID = {"meta", "input", "path", "rect", "circle", "ellipse", "polygon", "polyline", "br"}
+
+
+def page_of(given: Evidence) -> str:
+    return html_page(given, report_of(given, submission=given.submission.name))
+
+
+class Tags(HTMLParser):
+    """Every element with its attributes, and the texts of script and style."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+        self.texts: dict[str, list[str]] = {}
+        self.feed(page)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag not in VOID:
+            assert self.open.pop() == tag, tag
+
+    def handle_data(self, data: str) -> None:
+        if self.open:
+            self.texts.setdefault(self.open[-1], []).append(data)
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+@pytest.fixture(scope="module", params=GIVEN)
+def given(request: pytest.FixtureRequest) -> Evidence:
+    return GIVEN[request.param]
+
+
+def test_every_page_is_small_and_closes_what_it_opens(given: Evidence) -> None:
+    page = page_of(given)
+    assert len(page.encode("utf-8", "replace")) <= LARGEST
+    assert Tags(page).open == []
+
+
+def test_every_page_loads_nothing_and_has_ids_once(given: Evidence) -> None:
+    tags = Tags(page_of(given))
+    ids = [attributes["id"] for _, attributes in tags.elements if "id" in attributes]
+    assert len(ids) == len(set(ids))
+    handlers = [
+        name for _, attributes in tags.elements for name in attributes if name.startswith("on") or name == "style"
+    ]
+    assert handlers == []
+    addresses = {
+        value
+        for _, attributes in tags.elements
+        for name, value in attributes.items()
+        if name in ("src", "href", "action", "srcdoc", "data", "xlink:href")
+    }
+    assert all(value is not None and value.startswith("#") for value in addresses), addresses
+    assert not {"iframe", "img", "object", "embed", "form", "link", "base"} & {tag for tag, _ in tags.elements}
+
+
+def test_the_policy_allows_just_the_style_and_the_script_of_the_page() -> None:
+    page = page_of(EVIDENCE["failed"])
+    policy = next(meta["content"] for meta in Tags(page).all("meta") if meta.get("http-equiv"))
+    assert policy is not None
+    rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
+    assert rules["default-src"] == rules["base-uri"] == rules["form-action"] == "'none'"
+    for rule, pattern in (("style-src", r"<style>(.*?)</style>"), ("script-src", r"<script>(.*?)</script>")):
+        (text,) = re.findall(pattern, page, re.DOTALL)
+        assert rules[rule] == f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def test_a_hostile_submission_adds_no_element() -> None:
+    tags = Tags(page_of(hostile()))
+    assert len(tags.all("script")) == 2
+    assert {name for name, _ in tags.elements} <= {name for name, _ in Tags(page_of(EVIDENCE["failed"])).elements} | {
+        "strong",
+        "em",
+    }
+
+
+def test_what_could_act_on_a_reader_is_a_question_mark() -> None:
+    page = page_of(hostile())
+    assert not set(page) & set("\x00\x1b\x85\u202e\u202c\u2028\ufeff\ud800")
+
+
+def test_the_page_tells_the_checks_as_the_report_has_them() -> None:
+    given = EVIDENCE["failed"]
+    report = report_of(given)
+    text = " ".join(Tags(html_page(given, report)).texts["p"])
+    assert verdict(report) in text
+    texts = [each for of in Tags(html_page(given, report)).texts.values() for each in of]
+    for outcome in report.with_status(Status.FAILED):
+        finding = outcome.finding
+        assert {outcome.title, finding.seen, finding.expected, finding.cause, str(finding.where)} <= {
+            each.strip() for each in texts
+        }
+
+
+def test_the_line_that_a_check_means_is_shown_once_and_marked() -> None:
+    given = evidence(SHAPES["radius 2.2"](), node(("linear.x = 2.0", "linear.x = 2.2")))
+    page = page_of(given)
+    (line,) = re.findall(r'<span class="line here">(.*?)\n</span>', page, re.DOTALL)
+    assert re.sub(r"<.*?>", "", line).split(maxsplit=2)[2] == "msg.linear.x = 2.2"
+    assert "This line is shown" in page
+
+
+@pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
+def test_lines_are_counted_as_python_counts_them(newline: str) -> None:
+    code = ("# \x0c a form feed\n" + NODE.replace("linear.x = 2.0", "linear.x = 2.2")).replace("\n", newline)
+    page = page_of(evidence(SHAPES["radius 2.2"](), submission({NODE_FILE: code.encode()})))
+    (line,) = re.findall(r'<span class="line here">(.*?)\n</span>', page, re.DOTALL)
+    assert "linear.x" in re.sub(r"<.*?>", "", line)
+
+
+def test_a_hidden_check_says_only_whether_it_passed() -> None:
+    given = EVIDENCE["failed"]
+    report = report_of(given)
+    secret = Finding(Status.FAILED, "SECRET seen", "SECRET expected", "SECRET cause", "secret", None)
+    hidden = (
+        Outcome("one", "circle", "SECRET title", 0.0, 7.0, secret, hidden=True),
+        Outcome("two", "circle", "SECRET title", 7.0, 7.0, Finding(Status.PASSED, "SECRET"), hidden=True),
+    )
+    page = html_page(given, replace(report, outcomes=(*report.outcomes, *hidden)))
+    assert "SECRET" not in page
+    assert page.count("Hidden check") >= 2
+
+
+def test_numbers_of_a_hidden_check_are_not_drawn() -> None:
+    given = EVIDENCE["failed"]
+    checks = tuple(replace(spec, hidden=True) for spec in given.exercise.checks)
+    page = page_of(replace(given, exercise=replace(given.exercise, checks=checks)))
+    assert "asked for" not in page.lower()
+    assert 'class="expected"' not in page
+
+
+def test_a_fault_of_the_machine_is_told_first() -> None:
+    page = page_of(EVIDENCE["error"])
+    assert page.index("The machine failed, not the submission: The disk is full") < page.index("<h3>")
+    assert "through no fault of the submission" in page
+
+
+def test_logs_with_errors_come_first_and_their_errors_before_the_rest() -> None:
+    trace = 'Traceback (most recent call last):\n  File "a.py", line 3\n    x()\nValueError: no\n'
+    page = page_of(evidence(recording([], stderr=Output("fine\n" * 30), stdout=Output(f"hello\n{trace}bye\n"))))
+    assert page.index('id="log-stdout"') < page.index('id="log-stderr"')
+    log = page[page.index('id="log-stdout"') :]
+    errors = log[: log.index("The whole of it")]
+    assert "ValueError: no" in errors
+    assert "bye" not in errors
+    assert "hello" not in errors
+
+
+def test_the_player_gets_the_way_without_what_is_no_number() -> None:
+    given = evidence(recording(every(0.5, 2.0, float("nan"))))
+    page = page_of(given)
+    data = json.loads(re.findall(r'id="data">(.*?)</script>', page)[0])
+    assert len(data["t"]) == len(data["x"]) == len(data["theta"])
+    assert data["x"][0] == pytest.approx(5.544)
+    assert data["x"][-1] is None
+    assert data["commands"][0][2] is None
+
+
+def test_what_differs_from_run_to_run_is_not_on_the_page() -> None:
+    given = evidence(good())
+    first, second = (
+        html_page(given, report_of(given, seconds={"build": seconds}, recording=path))
+        for seconds, path in ((1.0, None), (77.7, "/tmp/rec"))
+    )
+    assert first == second
+
+
+def test_regrade_makes_the_same_page(tmp_path: Path) -> None:
+    grader = str(Path(sys.executable).with_name("grader"))
+    solution = "solutions/03-circle-publisher"
+    commands = (
+        ("check", solution, "--html", str(tmp_path / "1.html"), "--recording", str(tmp_path / "rec"), "--seed", "3"),
+        ("regrade", str(tmp_path / "rec"), "--html", str(tmp_path / "2.html")),
+    )
+    for command in commands:
+        done = subprocess.run([grader, *command], cwd=ROOT, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr + done.stdout
+    assert (tmp_path / "1.html").read_bytes() == (tmp_path / "2.html").read_bytes()
+
+
+def test_a_page_that_cannot_be_written_is_told(tmp_path: Path) -> None:
+    from grader.errors import UsageError
+
+    given = EVIDENCE["passed"]
+    with pytest.raises(UsageError, match="cannot be written"):
+        save_html(given, report_of(given), tmp_path / "no" / "page.html")
