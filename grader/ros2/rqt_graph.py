@@ -77,7 +77,7 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
 
 def _check(output: Path) -> None:
     if output.suffix not in _FORMATS:
-        message = f"--output {output}: the name must end in {', '.join(_FORMATS)}, which says how the graph is drawn."
+        message = f"--output {output}: the name must end in .svg, .png or .dot, which says how the graph is drawn."
         raise UsageError(message)
     if not output.absolute().parent.is_dir():
         message = f"--output {output}: there is no folder {output.absolute().parent}."
