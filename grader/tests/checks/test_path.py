@@ -68,6 +68,22 @@ def test_the_reason_for_the_size_is_what_was_commanded() -> None:
     assert circle("straight into the wall").cause == "angular.z is 0, so the turtle drives straight on."
 
 
+def test_the_reason_for_the_length_is_what_was_commanded_or_when_it_ended() -> None:
+    assert circle("half speed").cause == "At angular.z 0.5 rad/s a turn takes 12.6 s."
+    slow = recording(every(0.5, 1.0, 0.5, until_s=8.7))
+    assert finding("circle", evidence(slow)).diagnosis == "stopped-early"
+
+
+def test_a_turtle_that_crawls_does_move() -> None:
+    assert finding("circle", evidence(recording(every(0.5, 0.02, 0.0)))).diagnosis == "straight-line"
+
+
+def test_a_turtle_that_hardly_turns_stands_still_though_not_every_command_is_zero() -> None:
+    found = finding("circle", evidence(recording(every(0.5, 0.0, 0.001))))
+    assert (found.diagnosis, found.cause) == ("not-moving", "")
+    assert circle("all zero").cause == "In every command linear.x and angular.z are 0."
+
+
 def test_points_at_the_line_that_turns() -> None:
     assert str(circle("clockwise").where) == "my_robot_controller/draw_circle.py:15"
     keywords = node(("msg = Twist()", "msg = Twist(angular=Vector3(z=-1.0))"), ("        msg.angular.z = 1.0\n", ""))

@@ -178,6 +178,19 @@ def test_a_node_that_did_not_stop_is_for_wall_time_to_judge() -> None:
     assert finding("stop", of("ignores Ctrl-C")).near_edge
 
 
+def test_what_it_took_to_stop_a_node_is_told() -> None:
+    killed = SHAPES["ignores Ctrl-C"]()
+    terminated = replace(killed, end=replace(killed.end, by="SIGTERM"))
+    assert finding("stop", evidence(killed)).seen == "The node ignored Ctrl-C: it had to be killed."
+    assert finding("stop", evidence(terminated)).seen == "The node ignored Ctrl-C: only SIGTERM ended it."
+
+
+def test_a_missing_spin_is_told_where_the_node_ends_early() -> None:
+    without = finding("stop", of("ends early", ("rclpy.spin(DrawCircleNode())", "DrawCircleNode()")))
+    assert without.cause == "rclpy.spin keeps a node running; it is called nowhere."
+    assert finding("stop", of("ends early")).cause == ""
+
+
 def test_a_signal_is_named() -> None:
     end = replace(crashed(3.0), exit_code=-11)
     assert "SIGSEGV" in finding("stop", evidence(recording([], end=end))).seen
