@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.report.plain import LONGEST_LINE, plain_line
+from grader.report.plain import LONGEST_LINE, plain_line, size
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,6 +41,11 @@ class Excerpt:
 
     file: str
     lines: tuple[CodeLine, ...]
+
+    @property
+    def size(self) -> int:
+        """About how many bytes it takes in a page."""
+        return sum(size(text) + 24 * bool(kind) for line in self.lines for kind, text in line.pieces)
 
 
 def excerpt(evidence: Evidence, where: Where | None) -> Excerpt | None:

@@ -37,6 +37,8 @@ MOST_FRAMES = 1500
 """Of the turtle's way in the player; 20 frames a second are enough for an eye."""
 MOST_ROWS = 100
 """Of the table of commands."""
+CODE_BYTES = 50_000
+"""Of all excerpts of code together; later checks name the place only."""
 MOST_STEPS = 1000
 """Of the commands that the player tells."""
 
@@ -118,10 +120,14 @@ def html_page(evidence: Evidence, report: Report) -> str:
 def _shown(evidence: Evidence, report: Report) -> Iterator[ShownCheck]:
     """Every check; lines of code are shown once."""
     shown: list[ShownCheck] = []
+    room = CODE_BYTES
     for number, outcome in enumerate(report.outcomes, 1):
         where = None if outcome.hidden or outcome.status is not Status.FAILED else outcome.finding.where
         above = None if where is None else next((each.number for each in shown if each.shows(where)), None)
         code = None if above else excerpt(evidence, where)
+        room -= code.size if code else 0
+        if room < 0:
+            code = None
         shown.append(ShownCheck(number, outcome, code, above))
         yield shown[-1]
 

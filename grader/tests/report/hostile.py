@@ -58,8 +58,11 @@ def enormous() -> Evidence:
     given = hostile()
     assert given.recording is not None
     worst = '"' * 2000 + "\n"
-    line = f"x = {'<' * 3000}  # {worst}"
-    code = NODE.replace("msg.linear.x = 2.0", "msg.linear.x = 9.0; " + "<" * 390) + line * 300
+    line = f"# {'<' * 3000} {worst}"
+    slow = "1<" * 190 + "1"
+    code = (
+        NODE.replace("msg.linear.x = 2.0", f"{slow}\n        msg.linear.x = 9.0; {slow}\n        {slow}") + line * 300
+    )
     names = tuple(f"/node{'<' * 100}{index}" for index in range(300))
     trial = replace(
         given.recording,

@@ -74,18 +74,17 @@ class Tags(HTMLParser):
 
 
 @pytest.fixture(scope="module", params=GIVEN)
-def given(request: pytest.FixtureRequest) -> Evidence:
-    return GIVEN[request.param]
+def page(request: pytest.FixtureRequest) -> str:
+    return page_of(GIVEN[request.param])
 
 
-def test_every_page_is_small_and_closes_what_it_opens(given: Evidence) -> None:
-    page = page_of(given)
+def test_every_page_is_small_and_closes_what_it_opens(page: str) -> None:
     assert len(page.encode("utf-8", "replace")) <= LARGEST
     assert Tags(page).open == []
 
 
-def test_every_page_loads_nothing_and_has_ids_once(given: Evidence) -> None:
-    tags = Tags(page_of(given))
+def test_every_page_loads_nothing_and_has_ids_once(page: str) -> None:
+    tags = Tags(page)
     ids = [attributes["id"] for _, attributes in tags.elements if "id" in attributes]
     assert len(ids) == len(set(ids))
     handlers = [

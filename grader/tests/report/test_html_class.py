@@ -1,0 +1,113 @@
+"""The page on a class, from a folder of reports."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.errors import UsageError
+from grader.report.html_class import class_page, counts, failures, read_class, save_class_page
+from grader.report.json import to_data, to_json
+from grader.tests.report.hostile import ALL, SCRIPTS
+from grader.tests.report.reports import report
+from grader.tests.report.test_html import Tags
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Seven reports: three passed, two failed, one not built, one that the machine could not judge."""
+    for number, status in enumerate(("passed", "passed", "passed", "failed", "failed", "skipped", "error")):
+        given = report(status, submission=f"class/student{number}/step")
+        (tmp_path / f"student{number}").mkdir()
+        (tmp_path / f"student{number}" / "report.json").write_text(to_json(given), "utf-8")
+    (tmp_path / "student1" / "report.html").write_text("its page")
+    return tmp_path
+
+
+def test_reports_are_named_by_what_tells_them_apart(folder: Path) -> None:
+    assert [entry.name for entry in read_class(folder).entries] == [f"student{number}" for number in range(7)]
+
+
+def test_a_report_with_a_page_beside_it_is_linked(folder: Path) -> None:
+    links = {entry.name: entry.link for entry in read_class(folder).entries}
+    assert links["student1"] == "./student1/report.html"
+    assert links["student2"] == ""
+
+
+def test_checks_that_fail_most_come_first_with_their_causes(folder: Path) -> None:
+    found = failures(entry for entry in read_class(folder).entries if entry.tone != "error")
+    amounts = [len(check.entries) for check in found]
+    assert amounts == sorted(amounts, reverse=True)
+    circle = next(check for check in found if check.id == "circle")
+    assert [(each.id, len(each.entries)) for each in circle.diagnoses] == [("wrong-radius", 2)]
+    assert "linear.x divided by angular.z" in circle.diagnoses[0].text
+
+
+def test_the_machines_errors_stand_apart_and_count_for_nothing(folder: Path) -> None:
+    tags = Tags(class_page(read_class(folder)))
+    page = class_page(read_class(folder))
+    table = page[page.index("<tbody>") : page.index("</tbody>")]
+    assert "student6" not in table
+    assert "student6" in page[page.index('id="machine"') :]
+    assert "The disk is full" in page[page.index('id="machine"') :]
+    assert any("6 submissions judged: 3 passed, 3 not yet" in text for text in tags.texts["p"])
+
+
+def test_what_is_no_report_is_passed_over_and_what_is_a_damaged_one_is_told(folder: Path) -> None:
+    (folder / "results.json").write_text('{"tests": []}')
+    (folder / "damaged.json").write_text('{"schema": 1, "outcomes": [{}]}')
+    (folder / "later.json").write_text(json.dumps({**to_data(report("passed")), "schema": 99}))
+    reports = read_class(folder)
+    assert len(reports.entries) == 7
+    assert [name for name, _ in reports.unreadable] == ["damaged.json", "later.json"]
+    assert "schema 99" in class_page(reports)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.09999999, 0.1, 0.5, 0.899999, 0.9, 0.999, 1.0])
+def test_each_share_of_the_points_is_counted_where_it_belongs(share: float) -> None:
+    found = counts([share])
+    assert found.index(1) == int(share * 10)
+    assert sum(found) == 1
+
+
+def test_all_the_points_are_not_counted_with_nearly_all() -> None:
+    assert counts([1.0, 0.99])[-2:] == [1, 1]
+
+
+def test_a_hostile_name_adds_no_element_and_no_address(folder: Path) -> None:
+    plain = {name for name, _ in Tags(class_page(read_class(folder))).elements}
+    hostile = report("failed", submission=f"class/{ALL}/step")
+    wicked = tuple(
+        replace(outcome, title=ALL, id=ALL, finding=replace(outcome.finding, seen=ALL, cause=ALL, diagnosis=SCRIPTS[0]))
+        for outcome in hostile.outcomes
+    )
+    for name in ("javascript:pwned(1)", '" onmouseover=pwned(2) x="', "<script>pwned(3)<"):
+        (folder / f"{name}.json").write_text(to_json(replace(hostile, outcomes=wicked)), "utf-8")
+        (folder / f"{name}.html").write_text("")
+    tags = Tags(class_page(read_class(folder)))
+    assert {name for name, _ in tags.elements} == plain
+    assert all((link["href"] or "").startswith(("#", "./")) for link in tags.all("a"))
+    assert not [name for _, attributes in tags.elements for name in attributes if name.startswith("on")]
+
+
+def test_a_folder_without_reports_is_told(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="There is no report below"):
+        read_class(tmp_path)
+    with pytest.raises(UsageError, match="There is no folder"):
+        read_class(tmp_path / "no")
+
+
+def test_the_page_of_several_exercises_tells_them_apart(folder: Path) -> None:
+    other = replace(report("failed", submission="class/student0/other"), exercise="04-pose-subscriber")
+    (folder / "other.json").write_text(to_json(other), "utf-8")
+    save_class_page(folder, folder / "index.html")
+    page = (folder / "index.html").read_text("utf-8")
+    assert '<th scope="col" data-sort="text">exercise</th>' in page
+    assert 'value="04-pose-subscriber/circle"' in page
+    assert 'value="03-circle-publisher/circle"' in page
