@@ -30,6 +30,8 @@ NOTHING_THERE_S = 0.5
 _POLL_S = 0.01
 _WAKE_S = 0.1
 """Python's own handling of Ctrl-C waits for calls into rclpy to return."""
+HIGHEST_DOMAIN = 232
+"""Beyond it there are no ports (DDSI-RTPS, 9.6.1)."""
 PREFIX = "_ros2cli"
 _UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
@@ -41,6 +43,7 @@ def cli_node(name: str | None = None) -> Iterator[Node]:
     Raises:
         Ros2Error: it could not be made: say, the domain id is wrong.
     """
+    _check_domain()
     # No log file for a look at the graph. Signals stay Python's, since rclpy's shut down in the middle of a verb.
     arguments = ["--ros-args", "--disable-external-lib-logs"]
     try:
@@ -64,6 +67,14 @@ def cli_node(name: str | None = None) -> Iterator[Node]:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         node.destroy_node()
         rclpy.try_shutdown()
+
+
+def _check_domain() -> None:
+    """Say what is wrong with a domain id; Fast DDS would end the process."""
+    text = os.environ.get("ROS_DOMAIN_ID", "") or "0"
+    if not text.isdecimal() or int(text) > HIGHEST_DOMAIN:
+        message = f"ROS_DOMAIN_ID is '{text}'; a whole number from 0 to {HIGHEST_DOMAIN} was expected"
+        raise Ros2Error(message)
 
 
 def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> None:

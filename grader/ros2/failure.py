@@ -21,4 +21,6 @@ def did_you_mean(name: str, candidates: Iterable[str], text: str = "") -> str:
     """`text`, and below it the candidate most like `name`, if any is."""
     others = [candidate for candidate in candidates if candidate != name]
     found = others[0] if len(others) == 1 and others[0].endswith(f"/{name}") else nearest(name, others)
+    if not found and len(name) > 2:
+        found = next((other for other in sorted(others) if other.startswith(name)), None)
     return "\n".join(part for part in (text, f"Did you mean '{printable(found)}'?" if found else "") if part)

@@ -125,9 +125,8 @@ def _call(args: argparse.Namespace) -> int:
 def _say_why(node: Any, name: str, asked: str) -> None:  # noqa: ANN401
     """Say what may be wrong when nobody answers: the type, or the name."""
     found = dict(_services(node))
-    if name in found and asked not in found[name]:
-        hint = f"The service {name} has the type {', '.join(found[name])}."
-    else:
-        hint = did_you_mean(name, found)
+    # Our own client is one of those who say what type it has.
+    others = [kind for kind in found.pop(name, []) if kind != asked]
+    hint = f"The service {name} has the type {', '.join(others)}." if others else did_you_mean(name, found)
     if hint:
         print(hint, file=sys.stderr, flush=True)

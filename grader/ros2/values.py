@@ -25,9 +25,10 @@ def load_type(name: str, kind: str, what: str) -> Any:  # noqa: ANN401
     Raises:
         Ros2Error: it is not installed; `what` is what it was asked for as ("message type").
     """
-    package, *middle, last = name.split("/")
+    parts = name.split("/")
+    package, last = parts[0], parts[-1]
     try:
-        if middle not in ([], [kind]):
+        if parts not in ([package, last], [package, kind, last]):
             raise ModuleNotFoundError
         return getattr(importlib.import_module(f"{package}.{kind}"), last)
     except (ImportError, AttributeError, ValueError, TypeError) as error:

@@ -71,12 +71,12 @@ class World:
     env: dict[str, str]
     running: list[Running] = field(default_factory=list)
 
-    def run(self, command: str, *, stdin: str = "", cwd: Path | None = None, **env: str) -> Done:
+    def run(self, command: str, *, stdin: str = "", **env: str) -> Done:
         """Type a command and wait for its end."""
         done = subprocess.run(
             ["bash", "-c", command],
             env={**self.env, **env},
-            cwd=cwd or self.home,
+            cwd=self.home,
             input=stdin,
             capture_output=True,
             text=True,

@@ -1,0 +1,173 @@
+"""What the commands say when something is wrong: what it is, the nearest name, an exit code; never a traceback."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests.ros2.world import World, world
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@pytest.fixture(scope="module")
+def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    """turtlesim, and nobody who drives."""
+    for made in world(tmp_path_factory.mktemp("still")):
+        made.turtlesim()
+        yield made
+
+
+SPAWN = "ros2 service call /spawn turtlesim/srv/Spawn"
+PUB = "ros2 topic pub --once /turtle1/cmd_vel geometry_msgs/msg/Twist"
+FILES_ONLY = {
+    # command -> exit code, what stands on standard error
+    "ros2 lst": (2, ["invalid choice: 'lst'"]),
+    "ros2 topci list": (2, ["invalid choice: 'topci'", "Did you mean 'topic'?"]),
+    "ros2 topic lst": (2, ["invalid choice: 'lst'", "Did you mean 'list'?"]),
+    "ros2 topic info": (2, ["the following arguments are required: topic_name"]),
+    "ros2 run turtlesm turtlesim_node": (1, ["Package 'turtlesm' not found", "Did you mean 'turtlesim'?"]),
+    "ros2 run turtlesim turtlesim": (1, ["No executable found", "Did you mean 'turtlesim_node'?"]),
+    "ros2 run rclpy node": (1, ["No executable found", "Executables of rclpy: none"]),
+    "ros2 run --prefix nope turtlesim turtlesim_node": (1, ["there is no command 'nope'"]),
+    'ros2 run --prefix "\'" turtlesim turtlesim_node': (1, ["The prefix cannot be read"]),
+    "ros2 pkg prefix turtlesm": (1, ["Package not found", "Did you mean 'turtlesim'?"]),
+    "ros2 pkg executables turtlesm": (1, ["Package 'turtlesm' not found", "Did you mean 'turtlesim'?"]),
+    "ros2 pkg create --build-type ament_python 1robot": (1, ["Aborted!", "name '1robot' cannot be used"]),
+    "ros2 pkg create --build-type ament_python my-robot": (1, ["Aborted!", "name 'my-robot' cannot be used"]),
+    "ros2 pkg create --build-type ament_python test": (1, ["Aborted!", "name 'test' cannot be used"]),
+    "ros2 pkg create --build-type ament_python a --node-name b-c": (1, ["node name 'b-c' cannot be used"]),
+    "ros2 pkg create --build-type ament_python a --destination-directory no/where": (1, ["There is no directory"]),
+    "ros2 pkg create my_robot": (1, ["--build-type ament_python"]),
+    "ros2 pkg create --build-type python my_robot": (2, ["invalid choice: 'python'"]),
+    "ros2 interface show geometry_msgs/msg/Twst": (1, ["Could not find", "Did you mean 'geometry_msgs/msg/Twist'?"]),
+    "ros2 interface show geometry_msg/msg/Twist": (1, ["Unknown package", "Did you mean 'geometry_msgs'?"]),
+    "ros2 interface show geometry_msgs/Twist": (1, ["Expected three parts", "Did you mean 'geometry_msgs/msg/Twist'?"]),
+    "ros2 interface show Twist": (1, ["Expected three parts", "Did you mean 'geometry_msgs/msg/Twist'?"]),
+    "ros2 interface show -": (1, ["Expected stdin"]),
+    "ros2 interface package turtlesm": (1, ["Unknown package 'turtlesm'", "Did you mean 'turtlesim'?"]),
+    "ros2 topic pub /a geometry_msgs/msg/Twst": (
+        1,
+        ["message type is invalid", "Did you mean 'geometry_msgs/msg/Twist'?"],
+    ),
+    "ros2 topic pub /a Twist": (1, ["message type is invalid", "Did you mean 'geometry_msgs/msg/Twist'?"]),
+    "ros2 topic pub /a geometry_msgs/srv/Twist": (1, ["message type is invalid"]),
+    "ros2 topic pub /a ../msg/Twist": (1, ["message type is invalid"]),
+    "ros2 topic pub -r 0 /a geometry_msgs/msg/Twist": (2, ["a number above 0 was expected, not '0'"]),
+    "ros2 topic pub -r nan /a geometry_msgs/msg/Twist": (2, ["a number above 0 was expected"]),
+    "ros2 topic pub -t 0 /a geometry_msgs/msg/Twist": (2, ["a whole number above 0 was expected"]),
+    "ros2 topic hz -w x /a": (2, ["a whole number above 0 was expected"]),
+    f"{PUB} '{{linear: {{x: 2.0}}'": (1, ["not YAML", "expected ',' or '}'"]),
+    f"{PUB} '{{linear: [}}'": (1, ["not YAML"]),
+    f"{PUB} 'linear'": (1, ["needs to be a dictionary in YAML format"]),
+    f"{PUB} 'x:2.0'": (1, ["needs to be a dictionary in YAML format", "blank is needed after each colon"]),
+    f"{PUB} '{{lineer: {{x: 2.0}}}}'": (1, ["object has no attribute 'lineer'", "Did you mean 'linear'?"]),
+    f"{PUB} '{{linear: 2.0}}'": (1, ["Failed to populate field: 'linear'", "{x: ...}"]),
+    f"{PUB} '{{linear: {{x: fast}}}}'": (1, ["Failed to populate field: 'x' (double)", "'fast'"]),
+    f"{PUB} '{{linear: {{x: [1.0]}}}}'": (1, ["Failed to populate field: 'x' (double)"]),
+    f"{SPAWN} '{{xx: 3}}'": (1, ["object has no attribute 'xx'"]),
+    f"{SPAWN} '{{name: {{a: 1}}}}'": (1, ["Failed to populate field: 'name' (string)"]),
+    "ros2 topic pub /a std_msgs/msg/UInt8 '{data: 256}'": (1, ["Failed to populate field: 'data' (uint8)"]),
+    "ros2 topic pub /a std_msgs/msg/UInt8 '{data: 2.5}'": (1, ["a whole number was expected"]),
+    "ros2 topic pub /a std_msgs/msg/Bool '{data: 2}'": (1, ["true or false was expected"]),
+    "ros2 topic pub '/a b' std_msgs/msg/Bool": (1, ["The topic '/a b' cannot be published on"]),
+    "ros2 topic pub -n 'a b' /a std_msgs/msg/Bool": (1, ["No ROS 2 node could be made"]),
+}
+WITH_TURTLESIM = {
+    "ros2 topic info /turtle1/cmd_vl": (1, ["Unknown topic", "Did you mean '/turtle1/cmd_vel'?"]),
+    "ros2 topic type /turtle1/pos": (1, ["Did you mean '/turtle1/pose'?"]),
+    "ros2 topic find geometry_msgs/msg/Twst": (0, ["Did you mean 'geometry_msgs/msg/Twist'?"]),
+    "ros2 topic echo --once /turtle1/pos": (1, ["Could not determine the type", "Did you mean '/turtle1/pose'?"]),
+    "ros2 topic echo --once /turtle1/pose --field linear": (1, ["Invalid field 'linear'", "'linear_velocity'"]),
+    "ros2 node info /turtlesm": (1, ["Unable to find node '/turtlesm'", "Did you mean '/turtlesim'?"]),
+    "ros2 service type /spwn": (1, ["Did you mean '/spawn'?"]),
+    "ros2 service find turtlesim/srv/Spwn": (0, ["Did you mean 'turtlesim/srv/Spawn'?"]),
+    "ros2 service call /spawn turtlesim/srv/Spwn": (1, ["service type is invalid", "'turtlesim/srv/Spawn'"]),
+    "ros2 param get /turtlesm background_r": (1, ["Node not found", "Did you mean '/turtlesim'?"]),
+    "ros2 param get /turtlesim backgroun_r": (1, ["Parameter not set", "Did you mean 'background_"]),
+    "ros2 param describe /turtlesim nope": (1, ["Parameter 'nope' is not declared by /turtlesim"]),
+    "ros2 param set /turtlesim background_r red": (0, ["Setting parameter failed"]),
+    "ros2 param set /turtlesim backgroun_r 1": (0, ["Setting parameter failed", "Did you mean 'background_"]),
+    "ros2 param set /turtlesim background_r '[1, '": (0, ["Setting parameter failed"]),
+    "ros2 action info /turtle1/rotate": (1, ["Unknown action", "Did you mean '/turtle1/rotate_absolute'?"]),
+    "ros2 action send_goal /turtle1/rotate_absolute turtlesim/action/Rotate {}": (1, ["action type is invalid"]),
+}
+
+
+def check(where: World, command: str, code: int, said: list[str]) -> None:
+    done = where.run(command)
+    assert done.code == code, done
+    for text in said:
+        assert text in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("command", FILES_ONLY)
+def test_without_anybody_running(command: str, still: World) -> None:
+    check(still, command, *FILES_ONLY[command])
+
+
+@pytest.mark.parametrize("command", WITH_TURTLESIM)
+def test_beside_turtlesim(command: str, still: World) -> None:
+    check(still, command, *WITH_TURTLESIM[command])
+
+
+def test_a_refused_package_leaves_nothing_behind(still: World) -> None:
+    assert still.run("ros2 pkg create --build-type ament_python My-Robot").code == 1
+    assert not [path for path in still.home.iterdir() if "obot" in path.name]
+
+
+@pytest.mark.parametrize(
+    ("command", "hint"),
+    [
+        ("ros2 service call /spwn turtlesim/srv/Spawn", "Did you mean '/spawn'?"),
+        ("ros2 service call /spawn turtlesim/srv/Kill", "The service /spawn has the type turtlesim/srv/Spawn."),
+        (
+            "ros2 action send_goal /turtle1/rotate turtlesim/action/RotateAbsolute '{theta: 1}'",
+            "Did you mean '/turtle1/rotate_absolute'?",
+        ),
+        ("ros2 topic hz /turtle1/pos", "Did you mean '/turtle1/pose'?"),
+        (
+            "ros2 topic pub --once /turtle1/cmd_vl geometry_msgs/msg/Twist",
+            "Did you mean '/turtle1/cmd_vel'?",
+        ),
+    ],
+)
+def test_who_waits_in_vain_says_for_what_and_ends_on_ctrl_c(command: str, hint: str, still: World) -> None:
+    waiting = still.start(command, hint)
+    assert waiting.stop() == 2
+    assert "Traceback" not in "\n".join(waiting.lines)
+
+
+def test_two_turtlesims_are_told(tmp_path_factory: pytest.TempPathFactory) -> None:
+    for where in world(tmp_path_factory.mktemp("two")):
+        where.turtlesim()
+        where.turtlesim()
+        listed = where.run("ros2 node list")
+        assert (listed.stdout, listed.code) == ("/turtlesim\n/turtlesim\n", 0)
+        assert "share an exact name" in listed.stderr
+        info = where.run("ros2 node info /turtlesim")
+        assert 'There are 2 nodes in the graph with the exact name "/turtlesim"' in info.stderr
+        assert where.run("ros2 topic info /turtle1/cmd_vel").stdout.endswith("Subscription count: 2\n")
+
+
+def test_a_domain_that_does_not_exist(still: World) -> None:
+    done = still.run("ros2 topic list", ROS_DOMAIN_ID="500")
+    assert done.code == 1
+    assert "Traceback" not in done.stderr
+    assert done.stderr == "ROS_DOMAIN_ID is '500'; a whole number from 0 to 232 was expected\n"
+
+
+def test_whoever_reads_us_may_go(still: World) -> None:
+    done = still.run("set -o pipefail; ros2 topic echo /turtle1/pose | head -n 1")
+    assert done.stdout.startswith("x: ")
+    assert done.stderr == ""
+
+
+def test_help_without_arguments(still: World) -> None:
+    for command in ("ros2", "ros2 topic", "ros2 --help"):
+        done = still.run(command)
+        assert done.stdout.startswith("usage: ros2")
+        assert (done.stderr, done.code) == ("", 0)
