@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Optional
 import typer
 
 from grader.errors import GraderError, UsageError
+from grader.learner import cli as learner
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -56,8 +57,9 @@ ExerciseId = Annotated[
 @app.command(epilog="Example: grader check ~/ros2_ws/src/my_robot_controller --exercise 03-circle-publisher")
 def check(
     submission: Annotated[
-        Path, typer.Argument(help="A package's folder, or a folder with one package below it.")
-    ] = Path(),
+        Optional[Path],  # noqa: UP045
+        typer.Argument(help="A package's folder, or a folder with one below it; your current step's when left out."),
+    ] = None,
     exercise: ExerciseId = None,
     clock: Annotated[
         Clock, typer.Option(help="auto: simulated time, and wall time where that may misjudge.")
@@ -79,12 +81,20 @@ def check(
         _writable(file)
     if recording:
         archive.check_free(recording)
+    if submission is None:
+        from grader.learner.cli import place
+
+        known, submission = place(None, exercise)
+        exercise = known.id
     asked, opened = _opened(exercise, submission)
     options = Options(in_cell=sandbox.usable(), clock=clock.value, seed=seed)
     with _progress() as tell:
         graded = grade(asked, opened, options, tell)
         if recording:
             archive.save(recording, graded.evidence, graded.report.ros, graded.prefixes)
+    from grader.learner import steps
+
+    steps.note(asked, opened.package_dir, graded.report)
     _show(graded.report, graded.evidence, json, image, html)
 
 
@@ -191,6 +201,9 @@ def shell(domain: Domain = None) -> None:
     print(f"A shell with ROS 2, in domain {wanted['ROS_DOMAIN_ID']}. To leave it: exit")
     sys.stdout.flush()
     shells.open_shell(wanted)
+
+
+learner.add_to(app)
 
 
 def main() -> None:

@@ -16,7 +16,7 @@ from watchfiles import DefaultFilter, watch
 from grader.errors import UsageError
 from grader.grade import Graded, Options, grade
 from grader.learner.rebuild import Rebuild
-from grader.submission import open_submission
+from grader.submission import open_answers, open_submission
 from grader.trial.trial import Plan, Trial
 
 if TYPE_CHECKING:
@@ -128,7 +128,7 @@ class Watched:
             self._warm = None
 
     def _open(self) -> Submission:
-        return open_submission(self.folder)
+        return open_submission(self.folder) if self.exercise.package else open_answers(self.folder)
 
     def _next_trial(self, plan: Plan, here: Ros, underlay: Path | None, *, in_cell: bool) -> Trial:
         if plan.clock == "simulated":

@@ -1,0 +1,105 @@
+"""The learner's verbs of the command `grader`: start, watch, hint, status, solution. No logic."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Optional
+
+import typer
+
+from grader.errors import UsageError
+
+if TYPE_CHECKING:
+    from grader.exercise import Exercise
+
+Workspace = Annotated[
+    Optional[Path],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
+    typer.Option(help="Your colcon workspace; else $ROS2_WORKSPACE, else ~/ros2_ws.", metavar="DIR"),
+]
+Step = Annotated[Optional[str], typer.Argument(help="A step, as in 03-circle-publisher or 03.", metavar="STEP")]  # noqa: UP045
+
+
+def add_to(app: typer.Typer) -> None:
+    """Add these verbs to the command."""
+    app.command(epilog="Example: grader start 01")(start)
+    app.command(epilog="Example: grader watch")(watch)
+    app.command(epilog="Example: grader hint")(hint)
+    app.command(epilog="Example: grader status")(status)
+    app.command(epilog="Example: grader solution 01")(solution)
+
+
+def start(
+    step: Annotated[str, typer.Argument(help="A step, as in 03-circle-publisher or 03; or next.", metavar="STEP|next")],
+    workspace: Workspace = None,
+    student: Annotated[Optional[str], typer.Option(help="Who you are; your numbers are drawn from it.")] = None,  # noqa: UP045
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Begin from the step's starting point; your work is kept aside.")
+    ] = False,
+) -> None:
+    """Add to your workspace what a step needs and you lack. Nothing of yours is overwritten."""
+    from grader.learner import steps
+
+    begun = steps.start(step, workspace, student=student, fresh=fresh)
+    typer.echo(steps.told(begun))
+
+
+def hint(step: Step = None, workspace: Workspace = None) -> None:
+    """Show the next hint for the step you are at: from a nudge to nearly the answer."""
+    from grader.learner import steps
+
+    typer.echo(steps.hint(step, workspace))
+
+
+def status(workspace: Workspace = None) -> None:
+    """Show how far you are."""
+    from rich.console import Console
+
+    from grader.learner import steps
+
+    steps.print_status(workspace, Console(highlight=False))
+
+
+def solution(
+    step: Annotated[str, typer.Argument(help="A step that has passed, as in 03.", metavar="STEP")],
+    workspace: Workspace = None,
+) -> None:
+    """Show a step's solution beside your own, once yours has passed."""
+    from rich.console import Console
+
+    from grader.learner.compare import print_solution
+
+    print_solution(step, workspace, Console(highlight=False))
+
+
+def watch(
+    path: Annotated[Path | None, typer.Argument(help="A package's folder; your current step's when left out.")] = None,
+    exercise: Annotated[Optional[str], typer.Option(help="Which exercise, where the folder does not say it.")] = None,  # noqa: UP045
+    workspace: Workspace = None,
+) -> None:
+    """Grade again after every save. Keys: h hint, l list, n next, r rerun, q quit."""
+    from grader.learner.screen import run
+
+    run(*place(path, exercise, workspace), workspace)
+
+
+def place(path: Path | None, exercise: str | None, workspace: Path | None = None) -> tuple[Exercise, Path]:
+    """Which exercise is meant, and where the work on it lies.
+
+    Raises:
+        UsageError: neither path nor progress says it.
+    """
+    from grader.exercise import exercise_of_folder, find_exercise
+    from grader.learner import steps
+
+    current = steps.current(workspace)
+    if path is None and current is not None and exercise in (None, current[0].id):
+        return current
+    folder = path or Path()
+    known = find_exercise(exercise) if exercise else exercise_of_folder(folder)
+    if known is None and current is not None and current[1].resolve() == folder.resolve():
+        known = current[0]
+    if known is None:
+        name = folder.resolve().name
+        message = f"Which exercise is {name} for? Say it with --exercise, or begin a step: `grader start 01`."
+        raise UsageError(message)
+    return known, folder

@@ -1,0 +1,87 @@
+"""A step's solution beside the learner's own, file by file."""
+
+from __future__ import annotations
+
+import difflib
+from typing import TYPE_CHECKING
+
+from grader import tree
+from grader.errors import UsageError
+from grader.exercise import find_exercise
+from grader.learner import progress, workspace
+from grader.markers import solved, syntax_of
+from grader.words import printable
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rich.console import Console
+
+WIDE = 120
+"""From this many columns on, the two stand side by side; below it, as a unified diff."""
+
+
+def print_solution(step: str, folder: Path | None, console: Console) -> None:
+    """Print where the two differ.
+
+    Raises:
+        UsageError: the step has not passed yet.
+    """
+    exercise = find_exercise(step)
+    root = progress.workspace_of(folder)
+    if not progress.load(root).step(exercise.id).passed:
+        message = (
+            f"The solution of {exercise.id} is shown once yours has passed. Until then: `grader hint {exercise.id}`."
+        )
+        raise UsageError(message)
+    ideal = workspace.solution(exercise)
+    ours = _texts(ideal / exercise.package if exercise.package else ideal)
+    theirs = _texts(workspace.work_folder(exercise, root))
+    same = [path for path in ours if theirs.get(path) == ours[path]]
+    for path in ours:
+        if path not in same:
+            _print_file(path, theirs.get(path, ""), ours[path], console)
+    if same:
+        console.print(f"The same in both: {', '.join(same)}", soft_wrap=True, markup=False)
+
+
+def _texts(folder: Path) -> dict[str, str]:
+    with tree.open_folder(str(folder)) as opened:
+        files = tree.read_tree(opened).files
+    texts = {}
+    for path in sorted(files, key=tree.sort_key):
+        try:
+            text = files[path].decode("utf-8").replace("\r\n", "\n")
+        except UnicodeDecodeError:
+            continue
+        syntax = syntax_of(path)
+        texts[path] = solved(text, syntax, path) if syntax else text
+    return texts
+
+
+def _print_file(path: str, theirs: str, ours: str, console: Console) -> None:
+    from rich.text import Text
+
+    console.print(Text(f"\n{path}", style="bold"))
+    if console.is_terminal and console.width >= WIDE:
+        _print_beside(theirs, ours, console)
+        return
+    lines = difflib.unified_diff(theirs.splitlines(), ours.splitlines(), "yours", "the solution", lineterm="")
+    styles = {"+": "green", "-": "red", "@": "cyan"}
+    for line in lines:
+        console.print(Text(printable(line.expandtabs(4)), style=styles.get(line[:1], "")), soft_wrap=True)
+
+
+def _print_beside(theirs: str, ours: str, console: Console) -> None:
+    from rich.syntax import Syntax
+    from rich.table import Table
+
+    table = Table(expand=True)
+    table.add_column("yours", ratio=1)
+    table.add_column("the solution", ratio=1)
+    table.add_row(*(Syntax(_shown(text), "python", word_wrap=True) for text in (theirs, ours)))
+    console.print(table)
+
+
+def _shown(text: str) -> str:
+    return "\n".join(printable(line.expandtabs(4)) for line in text.splitlines())

@@ -1,0 +1,111 @@
+"""What `grader watch` shows, and its keys."""
+
+from __future__ import annotations
+
+from contextlib import closing, contextmanager
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from grader import sandbox
+from grader.errors import GraderError, UsageError
+from grader.grade import Options
+from grader.learner import steps
+from grader.learner.keys import single_keys
+from grader.learner.watch import Events, Watched
+from grader.report import terminal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from grader.exercise import Exercise
+
+KEYS = "h hint · l list · n next · r rerun · q quit"
+
+
+def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
+    """Grade, and grade again after every save, until q, Ctrl-C or the end of the terminal.
+
+    Raises:
+        UsageError: there is no such folder.
+    """
+    if not folder.is_dir():
+        message = f"There is no folder {folder}. Begin a step with `grader start`, or name the folder of your package."
+        raise UsageError(message)
+    console = Console(highlight=False)
+    options = Options(in_cell=sandbox.usable())
+    with single_keys() as read_key:
+        while True:
+            screen = _Screen(exercise, folder, workspace, options, console)
+            with closing(Events(folder, read_key)) as events, closing(screen.watched):
+                chosen = screen.show(events)
+            if chosen is None:
+                return
+            exercise, folder = chosen
+
+
+class _Screen:
+    """One exercise on the screen."""
+
+    def __init__(
+        self, exercise: Exercise, folder: Path, workspace: Path | None, options: Options, console: Console
+    ) -> None:
+        self.watched = Watched(exercise, folder, options)
+        self._exercise = exercise
+        self._workspace = workspace
+        self._console = console
+
+    def show(self, events: Events) -> tuple[Exercise, Path] | None:
+        """Show verdicts until the learner leaves; the step and folder to go on with, None for the end."""
+        self._grade()
+        for happened in events:
+            if happened.kind == "saved":
+                if self.watched.changed():
+                    self._grade()
+            elif happened.key == "r":
+                self._grade()
+            elif happened.key == "h":
+                self._say(steps.hint(self._exercise.id, self._workspace))
+            elif happened.key == "l":
+                steps.print_status(self._workspace, self._console)
+            elif happened.key == "n":
+                begun = self._next()
+                if begun is not None:
+                    return begun
+            elif happened.key in ("q", "\x04"):
+                return None
+        return None
+
+    def _grade(self) -> None:
+        if self._console.is_terminal:
+            self._console.clear()
+        try:
+            with self._working() as tell:
+                graded = self.watched.grade(tell)
+        except GraderError as error:
+            self._say(str(error))
+        else:
+            terminal.render(graded.report, self._console)
+            steps.note(self._exercise, self.watched.folder, graded.report, self._workspace)
+        self._say(f"\nWatching {self.watched.folder}   {KEYS if self._console.is_terminal else ''}".rstrip())
+
+    def _next(self) -> tuple[Exercise, Path] | None:
+        try:
+            begun = steps.start("next", self._workspace)
+        except GraderError as error:
+            self._say(str(error))
+            return None
+        self._say(steps.told(begun))
+        return begun.exercise, begun.started.folder
+
+    @contextmanager
+    def _working(self) -> Iterator[Callable[[str], None]]:
+        if not self._console.is_terminal:
+            yield lambda _: None
+            return
+        with self._console.status("Reading") as status:
+            yield lambda text: status.update(f"{text} ...")
+
+    def _say(self, text: str) -> None:
+        self._console.print(text, markup=False, soft_wrap=True)

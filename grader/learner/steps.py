@@ -1,0 +1,157 @@
+"""The steps in order: begin one, look how far one is, read a hint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.errors import UsageError
+from grader.exercise import catalogue, find_exercise
+from grader.learner import progress, workspace
+from grader.words import count
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from rich.console import Console
+
+    from grader.exercise import Exercise
+    from grader.learner.workspace import Started
+    from grader.outcome import Report
+
+
+@dataclass(frozen=True)
+class Begun:
+    """A step that was begun: what was done for it, and where the lesson is."""
+
+    exercise: Exercise
+    started: Started
+    root: Path
+
+
+def start(step: str, folder: Path | None, *, student: str | None = None, fresh: bool = False) -> Begun:
+    """Begin a step, or the next one ("next"), in the workspace.
+
+    Raises:
+        UsageError: there is no such step; the current one has not passed yet (for "next").
+    """
+    root = progress.workspace_of(folder)
+    exercise = _next(progress.load(root)) if step == "next" else find_exercise(step)
+    if student is not None and not student.strip():
+        message = "--student wants a name or a number."
+        raise UsageError(message)
+
+    def stand(before: progress.Progress) -> progress.Progress:
+        named = progress.Progress(student.strip(), before.current, before.steps) if student else before
+        return named.at(exercise.id)
+
+    started = workspace.start(exercise, root, fresh=fresh)
+    progress.update(root, stand)
+    return Begun(exercise, started, root)
+
+
+def told(begun: Begun) -> str:
+    """What `start` says: what was added, what was left as it is, what to type next."""
+    started = begun.started
+    lines = [f"{begun.exercise.id}: {begun.exercise.title}, in {started.folder}"]
+    if started.kept:
+        lines.append(f"Your work so far is in {started.kept}.")
+    if started.added:
+        lines.append(f"Added {', '.join(started.added)}.")
+    if started.present:
+        lines.append(f"Left as {'it is' if len(started.present) == 1 else 'they are'}: {', '.join(started.present)}.")
+    lesson = begun.exercise.folder / "lesson.md"
+    lines += ["", f"The lesson:       {lesson}", "A verdict:        grader check", "After every save: grader watch"]
+    return "\n".join(lines)
+
+
+def current(folder: Path | None) -> tuple[Exercise, Path] | None:
+    """The step the learner is at, and where the work on it lies; None before the first `start`."""
+    root = progress.workspace_of(folder)
+    name = progress.load(root).current
+    if name is None or name not in catalogue():
+        return None
+    exercise = find_exercise(name)
+    return exercise, workspace.work_folder(exercise, root)
+
+
+def note(exercise: Exercise, submission: Path, report: Report, folder: Path | None = None) -> None:
+    """Remember a verdict, if it is on the work in the learner's workspace."""
+    root = progress.workspace_of(folder)
+    if not submission.resolve().is_relative_to(root) or progress.load(root).current is None:
+        return
+    passed = report.exit_code == 0
+    progress.update(root, lambda before: before.graded(exercise.id, report.points, report.max, passed=passed))
+
+
+def hint(step: str | None, folder: Path | None) -> str:
+    """The next hint of a step, the current one when left out; the last one again when all were read.
+
+    Raises:
+        UsageError: no step was begun.
+    """
+    root = progress.workspace_of(folder)
+    if step is None:
+        at = current(folder)
+        if at is None:
+            message = "Hints for which step? Name it, as in `grader hint 03`, or begin one: `grader start 01`."
+            raise UsageError(message)
+        exercise = at[0]
+    else:
+        exercise = find_exercise(step)
+    if not exercise.hints:
+        return f"{exercise.id} has no hints."
+    read = progress.load(root).step(exercise.id).hints
+    index = min(read, len(exercise.hints) - 1)
+
+    def one_more(before: progress.Progress) -> progress.Progress:
+        known = before.step(exercise.id)
+        return before.with_step(exercise.id, progress.StepProgress(known.points, known.max, known.passed, index + 1))
+
+    progress.update(root, one_more)
+    last = " (the last)" if index + 1 == len(exercise.hints) else ""
+    return f"Hint {index + 1} of {len(exercise.hints)}{last}: {exercise.hints[index]}"
+
+
+def print_status(folder: Path | None, console: Console) -> None:
+    """Print all steps with what is known of them."""
+    from rich.table import Table
+
+    root = progress.workspace_of(folder)
+    known = progress.load(root)
+    table = Table(box=None, pad_edge=False)
+    for heading in ("", "step", "", "points", "hints"):
+        table.add_column(heading)
+    for name in catalogue():
+        step = known.step(name)
+        sign = "✓" if step.passed else ("→" if name == known.current else "·")
+        points = f"{step.points:g}/{step.max:g}" if step.max else ""
+        style = "green" if step.passed else ("bold" if name == known.current else "dim")
+        table.add_row(sign, name, find_exercise(name).title, points, str(step.hints or ""), style=style)
+    console.print(table)
+    passed = sum(known.step(name).passed for name in catalogue())
+    console.print(f"\n{passed} of {count(len(catalogue()), 'step')} passed, in {root}", soft_wrap=True)
+    if known.current is None:
+        console.print("Begin with: grader start 01")
+    elif known.step(known.current).passed:
+        console.print("Go on with: grader start next")
+
+
+def _next(known: progress.Progress) -> Exercise:
+    names = list(catalogue())
+    if known.current is None or known.current not in names:
+        return find_exercise(names[0])
+    if not known.step(known.current).passed:
+        message = (
+            f"{known.current} has not passed yet: `grader check` tells what is missing, `grader hint` helps. To leave "
+            "it for now, name the step that you want, as in `grader start 04`."
+        )
+        raise UsageError(message)
+    later = names[names.index(known.current) + 1 :]
+    waiting = [name for name in later if not known.step(name).passed] or later
+    if not waiting:
+        message = (
+            f"{known.current} was the last step, and it has passed: you are through. `grader status` shows it all."
+        )
+        raise UsageError(message)
+    return find_exercise(waiting[0])
