@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 HIGHEST_DOMAIN = 101
-COMMANDS = ("ros2",)
+COMMANDS = ("ros2", "rqt_graph")
 """The commands whose words the shell completes."""
 
 

@@ -1,0 +1,74 @@
+"""The Tab key after `source <(grader env)`, in bash on a terminal."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pexpect  # type: ignore[import-untyped]
+import pytest
+
+from grader.tests.ros2.world import HANG_S, World, world
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@pytest.fixture(scope="module")
+def beside(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    for made in world(tmp_path_factory.mktemp("completion")):
+        made.turtlesim()
+        yield made
+
+
+@pytest.fixture(scope="module")
+def shell(beside: World) -> Iterator[pexpect.spawn]:
+    cache = os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))
+    # As a new terminal has it; ROS 2 comes from what is sourced.
+    kept = {name: beside.env[name] for name in ("PATH", "HOME", "LANG", "TERM")}
+    # Wide, or bash moves the line that is being typed.
+    size = (24, 500)
+    bash = pexpect.spawn(
+        "bash",
+        ["--norc", "--noprofile", "-i"],
+        env={**kept, "XDG_CACHE_HOME": cache},
+        cwd=beside.home,
+        encoding="utf-8",
+        timeout=HANG_S,
+        dimensions=size,
+    )
+    bash.sendline("bind 'set bell-style none'; PS1=ready'> '")
+    bash.expect("ready> ")
+    bash.sendline(f"source <(grader env --domain {beside.env['ROS_DOMAIN_ID']}) && echo sourced''!")
+    bash.expect("sourced!")
+    bash.expect("ready> ")
+    yield bash
+    bash.close(force=True)
+
+
+@pytest.mark.parametrize(
+    ("typed", "completed"),
+    [
+        ("ros2 inter", "ros2 interface "),
+        ("ros2 topic ec", "ros2 topic echo "),
+        ("ros2 run turtlesim turtlesim_", "ros2 run turtlesim turtlesim_node "),
+        ("ros2 run turtles", "ros2 run turtlesim "),
+        ("ros2 interface show geometry_msgs/msg/Twi", "ros2 interface show geometry_msgs/msg/Twist"),
+        ("ros2 topic info /turtle1/cm", "ros2 topic info /turtle1/cmd_vel "),
+        ("ros2 topic pub /pose turtlesim/msg/Po", "ros2 topic pub /pose turtlesim/msg/Pose "),
+        ("ros2 node info /turt", "ros2 node info /turtlesim "),
+        ("rqt_graph --out", "rqt_graph --output "),
+    ],
+)
+def test_tab_completes(shell: pexpect.spawn, typed: str, completed: str) -> None:
+    shell.send(f"{typed}\t")
+    try:
+        shell.expect(re.escape(completed))
+    finally:
+        # Take the line back.
+        shell.send("\x15")
+        shell.sendline("echo next''!")
+        shell.expect("next!")
+        shell.expect("ready> ")
