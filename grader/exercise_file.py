@@ -1,9 +1,9 @@
 """Read exercise.toml, and tell its author all that is wrong with it at once.
 
 schema = 1. `[exercise]` id, title, package, executable, node; without the last three answers.toml alone is handed in.
-`[scenario]` duration_s, start, rename, pose_every, `[[scenario.drive]]` from_s, linear_x_m_s, angular_z_rad_s (one
-number, or two to draw from). `[[trial]]` id, executable, node, `[trial.scenario]`. `[[check]]` id, kind, points, needs (ids),
-title, trial, hidden, and the parameters of its kind. `[[hint]]` text, from a nudge to nearly the answer.
+`[scenario]` duration_s, start, rename, pose_every; `[[scenario.drive]]` from_s, linear_x_m_s, angular_z_rad_s (one
+number, or two to draw from). `[[trial]]` id, executable, node, `[trial.scenario]`. `[[check]]` id, kind, points, needs
+(ids), title, trial, hidden, and the parameters of its kind. `[[hint]]` text, from a nudge to nearly the answer.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from grader.checks import seen
+from grader.checks.answers_file import Answers, read_answers
 from grader.checks.code import Code, module_file, read_code
 from grader.checks.manifest import Manifest, read_manifest
 from grader.checks.setup_py import SetupPy, read_setup_py
@@ -68,6 +69,12 @@ class Evidence:
         """What setup.py says, read without running it; None when there is no setup.py."""
         data = self.submission.files.get("setup.py")
         return None if data is None else read_setup_py(data)
+
+    @cached_property
+    def answers(self) -> Answers | None:
+        """What answers.toml says; None when there is no answers.toml."""
+        data = self.submission.files.get("answers.toml")
+        return None if data is None else read_answers(data)
 
     @cached_property
     def node_file(self) -> str | None:

@@ -99,13 +99,15 @@ def number(
     return _field(Allowed(words, accept), MISSING if default is None else default)
 
 
-def text(words: str = "a text", *, start: str = "") -> Any:
-    """A text that is not empty and begins with `start`."""
+def text(words: str = "a text", *, start: str = "", default: str | None = None) -> Any:
+    """A text that is not empty and begins with `start`; without a default it must be given."""
 
     def accept(value: object) -> str | None:
         return value if isinstance(value, str) and value.strip() and value.startswith(start) else None
 
-    return _field(Allowed(f"{words} beginning with {start}" if start else words, accept))
+    return _field(
+        Allowed(f"{words} beginning with {start}" if start else words, accept), MISSING if default is None else default
+    )
 
 
 def texts() -> Any:

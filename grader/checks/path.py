@@ -61,14 +61,15 @@ def circle(evidence: Evidence, params: CircleParams) -> Finding:
     """The turtle drives the circle: round, in the right sense, of the right size, in the right place, all the way."""
     turns = "1 turn" if params.turns == 1.0 else f"{params.turns:g} turns"
     expected = f"A circle of radius {params.radius_m:.1f} m, {params.sense}, at least {turns}."
-    moved = _moved_otherwise(evidence, expected)
+    moved = moved_otherwise(evidence, expected)
     if moved is not None:
         return moved
     track = evidence.track
     return _no_circle(evidence, track, expected) or _measured(evidence, params, track, expected)
 
 
-def _moved_otherwise(evidence: Evidence, expected: str) -> Finding | None:
+def moved_otherwise(evidence: Evidence, expected: str) -> Finding | None:
+    """A failed finding where something other than commands moved the turtle."""
     means = next((each for each in evidence.trial.interventions if each in MEANS), None)
     if means is None:
         return None
@@ -199,7 +200,7 @@ def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     """No frame was clamped to the canvas; nothing is said of a turtle that never moved."""
     track = evidence.track
     # Whoever is put back in time never meets a wall.
-    moved = _moved_otherwise(evidence, "It stays clear of the walls all the time.")
+    moved = moved_otherwise(evidence, "It stays clear of the walls all the time.")
     if moved is not None:
         return moved
     if track.wall.any():

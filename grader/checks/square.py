@@ -1,0 +1,126 @@
+"""Check of a square: four straight sides, with turns on the spot between them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from grader.checks.kind import Kind, choice, number
+from grader.checks.path import MOVED_M, moved_otherwise
+from grader.checks.tolerance import Band
+from grader.checks.track import RESTS_M
+from grader.outcome import Finding, failed, passed
+from grader.words import count
+
+if TYPE_CHECKING:
+    from grader.checks.evidence import Evidence
+    from grader.checks.track import Track
+
+SIDES = 4
+ORDINALS = ("first", "second", "third", "fourth")
+STRAIGHT_RAD_M = 0.2
+"""A way that bends by no more than this many radians a metre (a radius of 5 m) is a side, not a curve."""
+CURVED_SHARE = 0.1
+"""More of the way than this in curves is no square."""
+SHORT_M = 0.05
+"""A straight piece shorter than this is no side."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Square:
+    """Sides of this length, corners of 90 degrees, the turtle back at its start after the fourth side."""
+
+    side_m: float = number(above=0, at_most=5)
+    side_tolerance_m: float = number(0.15, above=0)
+    corner_tolerance_deg: float = number(7.0, above=0)
+    closing_m: float = number(0.4, above=0)
+    sense: str = choice("counter-clockwise", "clockwise", "either")
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Straight pieces: how long each is (m), by how much it is turned between them (rad), where each ends (m)."""
+
+    lengths: tuple[float, ...]
+    corners: tuple[float, ...]
+    ends: tuple[tuple[float, float], ...]
+    curved_share: float
+
+
+def sides_of(track: Track) -> Sides:
+    """Take the way apart at its corners."""
+    moves = track.steps > RESTS_M
+    straight = moves & (np.abs(track.turn) <= STRAIGHT_RAD_M * track.steps)
+    curved = moves & ~straight
+    frames = np.flatnonzero(straight)
+    turned = np.cumsum(track.turn)
+    # A side ends where the heading has changed by more than noise before the next straight frame.
+    breaks = np.flatnonzero(np.abs(np.diff(turned[frames])) > math.radians(10.0)) + 1
+    pieces = [piece for piece in np.split(frames, breaks) if track.steps[piece].sum() > SHORT_M]
+    return Sides(
+        lengths=tuple(float(track.steps[piece].sum()) for piece in pieces),
+        corners=tuple(float(turned[after[0]] - turned[before[-1]]) for before, after in pairwise(pieces)),
+        ends=tuple((float(track.x[piece[-1] + 1]), float(track.y[piece[-1] + 1])) for piece in pieces),
+        curved_share=float(track.steps[curved].sum()) / track.length_m if track.length_m else 0.0,
+    )
+
+
+def square(evidence: Evidence, params: Square) -> Finding:
+    """The turtle drives a square."""
+    expected = f"Four straight sides of {params.side_m:.1f} m, with a turn of 90 degrees on the spot after each."
+    where = evidence.place("publish")
+    track = evidence.track
+    moved = moved_otherwise(evidence, expected)
+    if moved is not None:
+        return moved
+    if not track.finite or track.length_m <= MOVED_M:
+        return failed("not-moving", "The turtle did not drive.", expected, where=where)
+    if track.wall.any():
+        return failed("wall", "The turtle ran into a wall.", expected, "Some side is too long.", where=where)
+    sides = sides_of(track)
+    if sides.curved_share > CURVED_SHARE:
+        seen = f"{100.0 * sides.curved_share:.0f} % of the way are curves."
+        cause = "Drive with angular.z 0, then turn with linear.x 0: never both at once."
+        return failed("curves", seen, expected, cause, where=where)
+    if len(sides.lengths) < SIDES:
+        seen = f"The way has {count(len(sides.lengths), 'side')}."
+        cause = (
+            "Four sides and the turns between them must fit into the time; and the state must change back each time."
+        )
+        return failed("too-few-sides", seen, expected, cause, where=where)
+    return _measured(evidence, params, sides, expected)
+
+
+def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -> Finding:
+    where = evidence.place("publish")
+    long, right = Band.around(params.side_m, params.side_tolerance_m), Band.around(90.0, params.corner_tolerance_deg)
+    corners = [math.degrees(corner) for corner in sides.corners[: SIDES - 1]]
+    sign = -1.0 if params.sense == "clockwise" or (params.sense == "either" and corners[0] < 0.0) else 1.0
+    near = long.near(*sides.lengths[:SIDES]) or right.near(*(sign * corner for corner in corners))
+    if all(sign * corner < 0.0 for corner in corners):
+        seen = "The turtle turns to the wrong side at its corners."
+        return failed("wrong-sense", seen, f"The square is driven {params.sense}.", where=where)
+    for name, length in zip(ORDINALS, sides.lengths, strict=False):
+        if not long.holds(length):
+            more = length - params.side_m
+            seen = f"The {name} side is {length:.2f} m long: {abs(more):.2f} m too {'long' if more > 0 else 'short'}."
+            cause = "A side is speed times time, and the time is a number of calls of the timer."
+            return failed("side-length", seen, expected, cause, where=where, near_edge=near)
+    for name, corner in zip(ORDINALS, corners, strict=False):
+        if not right.holds(sign * corner):
+            seen = f"The {name} corner turns by {sign * corner:.0f} degrees."
+            cause = "A quarter turn is pi / 2 rad: turning speed times time."
+            return failed("corner-angle", seen, expected, cause, where=where, near_edge=near)
+    gap = math.dist(sides.ends[SIDES - 1], (evidence.trial.start.x, evidence.trial.start.y))
+    closed = Band.at_most(params.closing_m)
+    if not closed.holds(gap):
+        seen = f"The fourth side ends {gap:.2f} m beside the start."
+        return failed("square-gap", seen, expected, where=where, near_edge=True)
+    return passed(f"The turtle drove a square of {params.side_m:.1f} m.", near_edge=near or closed.near(gap))
+
+
+SQUARE = Kind("square", "trial", "The turtle drives a square", Square, square)

@@ -1,0 +1,74 @@
+"""Own numbers: the circle that a student drives in step 07, drawn from the student's id.
+
+`grader start` writes them into the package as my_numbers.toml. They follow from the id alone, so numbers that
+were changed by hand are found out.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from dataclasses import dataclass
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+FILE = "my_numbers.toml"
+RADII_M = (0.8, 1.0, 1.2, 1.4, 1.6, 1.8)
+RATES_HZ = (2.0, 2.5, 4.0, 5.0)
+SENSES = ("counter-clockwise", "clockwise")
+
+
+@dataclass(frozen=True)
+class OwnNumbers:
+    """A circle of `radius_m`, driven `sense`, by `rate_hz` commands a second."""
+
+    student: str
+    radius_m: float
+    sense: str
+    rate_hz: float
+
+
+def draw_numbers(student: str) -> OwnNumbers:
+    """The numbers of a student; the same on every machine."""
+    drawn = hashlib.sha256(f"07-challenges {student}".encode()).digest()
+    return OwnNumbers(
+        student,
+        RADII_M[drawn[0] % len(RADII_M)],
+        SENSES[drawn[1] % len(SENSES)],
+        RATES_HZ[drawn[2] % len(RATES_HZ)],
+    )
+
+
+def to_toml(numbers: OwnNumbers) -> str:
+    """The text of my_numbers.toml. The id may be any text."""
+    escaped = "".join(
+        char if char.isprintable() and char not in '"\\' else f"\\U{ord(char):08X}" for char in numbers.student
+    )
+    return (
+        "# Your own circle, drawn from your id: leave this file as it is, and write the numbers into your node.\n"
+        f'student = "{escaped}"\n'
+        f"radius_m = {numbers.radius_m}\n"
+        f'sense = "{numbers.sense}"\n'
+        f"rate_hz = {numbers.rate_hz}\n"
+    )
+
+
+def from_toml(data: bytes) -> OwnNumbers:
+    """The numbers in a my_numbers.toml. Raises ValueError that says what is wrong with it."""
+    try:
+        table = tomllib.loads(data.decode("utf-8-sig"))
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        message = f"it cannot be read ({error})"
+        raise ValueError(message) from error
+    student, sense = table.get("student"), table.get("sense")
+    radius, rate = table.get("radius_m"), table.get("rate_hz")
+    if not (isinstance(student, str) and isinstance(sense, str)):
+        message = "student or sense is missing, or no text"
+        raise ValueError(message)  # noqa: TRY004
+    if not (isinstance(radius, int | float) and isinstance(rate, int | float)):
+        message = "radius_m or rate_hz is missing, or no number"
+        raise ValueError(message)  # noqa: TRY004
+    return OwnNumbers(student, float(radius), sense, float(rate))
