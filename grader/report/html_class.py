@@ -5,6 +5,7 @@ Reports are the JSON files below a folder; a page or recording beside a report w
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -128,7 +129,13 @@ def read_class(folder: Path) -> ClassReports:
         raise UsageError(message)
     names = _short([report.submission for _, report in found])
     entries = [Entry(report, name, _link(file, folder)) for (file, report), name in zip(found, names, strict=True)]
-    return ClassReports(tuple(sorted(entries, key=lambda entry: entry.name)), tuple(unreadable))
+    return ClassReports(tuple(sorted(entries, key=lambda entry: _natural(entry.name))), tuple(unreadable))
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """For sorting as people do, and as the page's script does: 2 before 10, A with a."""
+    parts = re.findall(r"[0-9]{1,18}|[^0-9]+", name.casefold())
+    return [(int(part), "") if part[0] in "0123456789" else (-1, part) for part in parts]
 
 
 def _short(names: Sequence[str]) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 from contextlib import contextmanager
+from importlib.resources import files
 from typing import TYPE_CHECKING
 
 import pytest
@@ -14,7 +15,7 @@ from grader.machine import BROWSERS, SYSTEM_PATH
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from playwright.sync_api import Browser
+    from playwright.sync_api import Browser, Page
 
 FLAGS = (
     # Root has no sandbox in Chromium; it opens nothing but files of ours.
@@ -56,3 +57,13 @@ def launched(executable: str) -> Iterator[Browser]:
         browser = playwright.chromium.launch(executable_path=executable, args=list(FLAGS))
         yield browser
         browser.close()
+
+
+def violations(page: Page) -> list[str]:
+    """What axe-core finds wrong with the page as it is, in words."""
+    page.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
+    found: list[str] = page.evaluate(
+        "() => axe.run().then(all => all.violations.map(each => "
+        "each.id + ': ' + each.help + ' ' + each.nodes.map(node => node.html).join(' ')))"
+    )
+    return found
