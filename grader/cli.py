@@ -203,6 +203,41 @@ def shell(domain: Domain = None) -> None:
     shells.open_shell(wanted)
 
 
+@app.command(epilog="Example: grader release --to ../for-students")
+def release(
+    check: Annotated[bool, typer.Option("--check", help="Change nothing; fail when exercises/ is stale.")] = False,
+    to: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option(help="Write the students' repository, without solutions, into this new folder.", metavar="DIR"),
+    ] = None,
+) -> None:
+    """Make exercises/ from solutions/, for authors."""
+    from grader.release import main as make_exercises
+
+    if to:
+        from grader.handout import hand_out
+
+        hand_out(to)
+        typer.echo(f"The students' repository: {to}")
+        return
+    raise typer.Exit(make_exercises(["--check"] if check else []))
+
+
+@app.command(epilog="Example: grader validate 03-circle-publisher")
+def validate(
+    exercises: Annotated[list[str] | None, typer.Argument(help="Which ones; all when left out.", metavar="ID")] = None,
+) -> None:
+    """See whether exercises, solutions, starting points and lessons are as they should be, for authors."""
+    from grader.validate import validate as problems_of
+
+    with _progress() as tell:
+        problems = problems_of(exercises or [], tell)
+    for problem in problems:
+        typer.echo(f"- {problem}")
+    typer.echo(f"{len(problems)} problems." if problems else "Everything is as it should be.")
+    raise typer.Exit(1 if problems else 0)
+
+
 learner.add_to(app)
 
 

@@ -1,0 +1,66 @@
+"""Handout: the course as an instructor gives it to students, without solutions and without what tests them."""
+
+from __future__ import annotations
+
+import shutil
+from typing import TYPE_CHECKING
+
+from grader.errors import MachineError, UsageError
+from grader.exercise import catalogue, course_folder, find_exercise
+from grader.release import release
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore")
+_NOT_FOR_STUDENTS = shutil.ignore_patterns("tests", "benchmarks", "__pycache__", "*.pyc")
+
+
+def hand_out(to: Path) -> None:
+    """Write the students' repository into the new folder `to`.
+
+    Raises:
+        UsageError: the folder holds something already, or this is no checkout of the course.
+        MachineError: it cannot be written.
+    """
+    root = course_folder().parent
+    if to.exists() and (not to.is_dir() or any(to.iterdir())):
+        message = f"{to} is not an empty folder: name a new one."
+        raise UsageError(message)
+    if not (root / "solutions").is_dir() or not (root / "Makefile").is_file():
+        message = f"The course is handed out from a checkout with solutions/; {root} is none."
+        raise UsageError(message)
+    try:
+        to.mkdir(parents=True, exist_ok=True)
+        for name in _FILES:
+            shutil.copy2(root / name, to / name)
+        shutil.copytree(root / "course", to / "course", ignore=_NOT_FOR_STUDENTS)
+        shutil.copytree(root / "grader", to / "grader", ignore=_NOT_FOR_STUDENTS)
+        for name in catalogue():
+            release(root / "solutions" / name, to / "exercises" / name)
+        (to / "README.md").write_text(_readme(), encoding="utf-8")
+    except OSError as error:
+        message = f"{error.filename or to} could not be written: {error.strerror}."
+        raise MachineError(message) from error
+
+
+def _readme() -> str:
+    steps = "\n".join(
+        f"{number}. [{find_exercise(name).title}](course/{name}/lesson.md)"
+        for number, name in enumerate(catalogue(), start=1)
+    )
+    return f"""# ROS 2 topics, graded by doing
+
+You need Linux on x86-64 and Python 3.10 or newer; nothing of ROS. Once:
+
+    make demo
+    source .venv/bin/activate
+
+Then, step by step:
+
+    grader start 01      # puts the step's starting point into ~/ros2_ws
+    grader watch         # a verdict after every save; h is for a hint
+    grader start next    # when the step has passed
+
+{steps}
+"""
