@@ -86,6 +86,8 @@ class Exercise:
     folder: Path
     digest: str = ""
     """sha256 of exercise.toml: what the exercise asks for, and how it is judged."""
+    unsolved: tuple[str, ...] = ()
+    """The checks that the starting point must fail (for its author: `grader validate`); what needs them is skipped."""
     trials: tuple[TrialSpec, ...] = ()
     """Further trials, after the exercise's own."""
     trial: str = ""

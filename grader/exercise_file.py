@@ -1,6 +1,7 @@
 """Read exercise.toml, and tell its author all that is wrong with it at once.
 
-schema = 1. `[exercise]` id, title, package, executable, node; without the last three answers.toml alone is handed in.
+schema = 1. `[exercise]` id, title, package, executable, node; without the last three answers.toml alone is handed in;
+starting_point_fails: the checks (ids) that exercises/ must fail, for `grader validate`.
 `[scenario]` duration_s, start, rename, pose_every; `[[scenario.drive]]` from_s, linear_x_m_s, angular_z_rad_s (one
 number, or two to draw from). `[[trial]]` id, executable, node, `[trial.scenario]`. `[[check]]` id, kind, points, needs
 (ids), title, trial, hidden, and the parameters of its kind. `[[hint]]` text, from a nudge to nearly the answer.
@@ -164,6 +165,7 @@ def _exercise(top: _Table, folder: Path, digest: str) -> Exercise:
         scenario=_scenario(top.table("scenario")),
         checks=_checks(top, tuple(trial.id for trial in trials)),
         hints=tuple(_hint(table) for table in top.tables("hint")),
+        unsolved=head.texts("starting_point_fails"),
         folder=folder,
         digest=digest,
         trials=trials,
