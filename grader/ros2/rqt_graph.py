@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -33,6 +34,10 @@ _NOTHING = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit code: 0 drawn, 1 no node is running, else as in design.md."""
     argv = list(sys.argv[1:] if arguments is None else arguments)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        # As Ctrl-C does, so that the node leaves the graph in order.
+        if signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, signal.default_int_handler)
     try:
         hand_over("rqt_graph", "rqt_graph")
         options = _parse(argv)
