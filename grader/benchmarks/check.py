@@ -14,14 +14,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from grader import underlay
+from grader.benchmarks.bare import bare_costs
 from grader.benchmarks.measure import Cost, cost
-from grader.ros import environment, find_ros
-from grader.submission import open_submission, write_copy
 
 _ROOT = Path(__file__).resolve().parents[2]
-_NODE = "import rclpy; rclpy.init(); node = rclpy.create_node('bare'); node.destroy_node(); rclpy.shutdown()"
-_COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
 _GRADER = str(Path(sys.executable).with_name("grader"))
 
 
@@ -41,16 +37,10 @@ def main() -> None:
 
 
 def _round(submission: Path, folder: Path, stages: dict[str, list[float]]) -> dict[str, Cost]:
-    here = find_ros()
-    env = environment(here, home=folder, underlay=underlay.ensure(here))
-    opened = open_submission(submission)
-    write_copy(opened, folder / "ws" / "src" / opened.package_dir.name)
-    python = str(here.python)
     report = folder / "report.json"
     check = [_GRADER, "check", str(submission), "--json", str(report)]
     measured = {
-        "colcon build": cost([python, "-c", _COLCON, "build", "--base-paths", "src"], env=env, cwd=folder / "ws"),
-        "rclpy node": cost([python, "-c", _NODE], env=env),
+        **bare_costs(submission, folder),
         "check, simulated": cost([*check, "--clock", "simulated"]),
     }
     for stage, seconds in json.loads(report.read_text())["seconds"].items():

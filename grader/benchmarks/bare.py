@@ -1,0 +1,29 @@
+"""What F is made of: a bare colcon build of a package, and a bare process with one rclpy node."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader import underlay
+from grader.benchmarks.measure import Cost, cost
+from grader.ros import environment, find_ros
+from grader.submission import open_submission, write_copy
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_NODE = "import rclpy; rclpy.init(); node = rclpy.create_node('bare'); node.destroy_node(); rclpy.shutdown()"
+_COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
+
+
+def bare_costs(submission: Path, folder: Path) -> dict[str, Cost]:
+    """The two costs, measured in a folder that is empty so far; F is the sum of their wall times."""
+    here = find_ros()
+    env = environment(here, home=folder, underlay=underlay.ensure(here))
+    opened = open_submission(submission)
+    write_copy(opened, folder / "ws" / "src" / opened.package_dir.name)
+    python = str(here.python)
+    return {
+        "colcon build": cost([python, "-c", _COLCON, "build", "--base-paths", "src"], env=env, cwd=folder / "ws"),
+        "rclpy node": cost([python, "-c", _NODE], env=env),
+    }
