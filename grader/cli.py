@@ -72,6 +72,9 @@ def check(
         typer.Option(help="Keep all that was seen, to judge it again with `grader regrade`.", metavar="DIR"),
     ] = None,
     seed: Annotated[Optional[int], typer.Option(help="Start the turtle at a place drawn from this number.")] = None,  # noqa: UP045
+    confined: Annotated[
+        bool, typer.Option("--sandbox", help="Run nothing unless it is confined; else that is done where it can be.")
+    ] = False,
 ) -> None:
     """Build and run one submission, and say what is right and what is not."""
     from grader import archive, sandbox
@@ -87,7 +90,7 @@ def check(
         known, submission = place(None, exercise)
         exercise = known.id
     asked, opened = _opened(exercise, submission)
-    options = Options(in_cell=sandbox.usable(), clock=clock.value, seed=seed)
+    options = Options(in_cell=sandbox.require() if confined else sandbox.usable(), clock=clock.value, seed=seed)
     with _progress() as tell:
         graded = grade(asked, opened, options, tell)
         if recording:

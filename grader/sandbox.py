@@ -149,6 +149,24 @@ def usable() -> bool:
     return why_unavailable() is None
 
 
+def require(*, trusted: bool = False) -> bool:
+    """Whether student code is to be confined, for whoever grades strangers for marks.
+
+    `trusted`: they are trusted where there is no sandbox; without a word of that, nothing of theirs runs.
+
+    Raises:
+        MachineError: there is no sandbox here, and they are not trusted.
+    """
+    why = why_unavailable()
+    if why is None or trusted:
+        return why is None
+    message = (
+        f"Code of others runs in a sandbox only, and there is none here: {why}. On "
+        "a machine that you can lose, --trust-submissions runs it all the same, with limits on time, memory and output."
+    )
+    raise MachineError(message)
+
+
 def why_unavailable() -> str | None:
     """Try a cell; None when it works, else what is wrong and what to do."""
     if bubblewrap() is None:
@@ -172,7 +190,8 @@ def why_unavailable() -> str | None:
     said = done.stderr.strip().splitlines()[-1:] or ["no message"]
     return (
         f"bubblewrap cannot make its namespaces ({said[0]}). On Ubuntu 24.04 an ordinary user is refused them by "
-        "AppArmor: `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows them until the next start; "
+        "AppArmor: `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows them until the next start, and "
+        'README.md, "The sandbox", has the rule that allows bubblewrap alone and for good; '
         "in a container, start it with `--security-opt seccomp=unconfined --security-opt apparmor=unconfined`"
     )
 

@@ -1,0 +1,66 @@
+"""What confinement costs, in F: the same grading with the student's code in cells and without.
+
+    python -m grader.benchmarks.sandbox [--times N] [--submission FOLDER]
+
+Everything is measured in one run on the same machine, alternating, so that a busy moment strikes all alike.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+
+from grader import sandbox
+from grader.benchmarks.bare import bare_costs
+from grader.benchmarks.measure import Cost, cost
+from grader.errors import MachineError
+
+_ROOT = Path(__file__).resolve().parents[2]
+_EXERCISE = "03-circle-publisher"
+_MOST = 0.5
+"""What confinement may cost (F)."""
+# Both in a process of its own, as a check is.
+_GRADE = """
+import sys
+from grader.exercise import find_exercise
+from grader.grade import Options, grade
+from grader.submission import open_submission
+options = Options(sys.argv[3] == "cell", "simulated")
+report = grade(find_exercise(sys.argv[1]), open_submission(sys.argv[2]), options).report
+sys.exit(report.exit_code)
+"""
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
+    parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _EXERCISE)
+    asked = parser.parse_args()
+    sandbox.require()
+    costs: dict[str, list[Cost]] = {}
+    for _ in range(asked.times):
+        with tempfile.TemporaryDirectory() as folder:
+            measured = dict(bare_costs(asked.submission, Path(folder)))
+        for how in ("cell", "bare"):
+            command = [sys.executable, "-c", _GRADE, _EXERCISE, str(asked.submission), how]
+            measured[f"graded, {'confined' if how == 'cell' else 'not confined'}"] = cost(command)
+        for name, one in measured.items():
+            costs.setdefault(name, []).append(one)
+    wall = {name: statistics.median(one.wall_s for one in of) for name, of in costs.items()}
+    cpu = {name: statistics.median(one.cpu_s for one in of) for name, of in costs.items()}
+    f_s = wall["colcon build"] + wall["rclpy node"]
+    print(f"F = {f_s:.2f} s wall (medians of {asked.times})\n")
+    for name, seconds in wall.items():
+        print(f"{name:24}{seconds:8.2f} s{seconds / f_s:8.2f} F{cpu[name]:8.2f} s CPU")
+    extra = wall["graded, confined"] - wall["graded, not confined"]
+    print(f"\nconfinement: {extra:+.2f} s, {extra / f_s:+.2f} F (at most {_MOST} F)")
+    if extra > _MOST * f_s:
+        raise MachineError("Confinement costs more than it may; was the machine busy?")  # noqa: EM101
+
+
+if __name__ == "__main__":
+    main()
