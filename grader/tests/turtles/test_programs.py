@@ -8,7 +8,7 @@ import signal
 import time
 from typing import TYPE_CHECKING
 
-import pexpect  # type: ignore[import-untyped]
+import pexpect
 import pytest
 
 from grader.simulator.turtle import FRAME_S
