@@ -1,0 +1,200 @@
+"""What the commands do beyond the recordings: starting, handing over, ending, and options."""
+
+from __future__ import annotations
+
+import os
+import signal
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests.ros2.world import World, world
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+
+@pytest.fixture(scope="module")
+def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    """turtlesim, and nobody who drives."""
+    for made in world(tmp_path_factory.mktemp("still")):
+        made.turtlesim()
+        yield made
+
+
+def package(prefix: Path, name: str, **executables: str) -> None:
+    """Install a package with executables by hand, as a colcon workspace would."""
+    marker = prefix / "share/ament_index/resource_index/packages" / name
+    marker.parent.mkdir(parents=True)
+    marker.touch()
+    for executable, text in executables.items():
+        path = prefix / "lib" / name / executable
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        path.chmod(0o755)
+
+
+@pytest.fixture
+def tools(still: World, tmp_path: Path) -> World:
+    """The same world with a package on top."""
+    said = '#!/bin/sh\nprintf "%s|" "$@"\necho\nexit 7\n'
+    package(
+        tmp_path / "tools", "tools", say=said, wait="#!/bin/sh\necho waits\nexec sleep 600\n", broken="#!/no/such\n"
+    )
+    (tmp_path / "tools/lib/tools/notes.txt").write_text("not an executable")
+    return World(still.home, {**still.env, "AMENT_PREFIX_PATH": f"{tmp_path}/tools:{still.env['AMENT_PREFIX_PATH']}"})
+
+
+def test_run_passes_arguments_and_the_exit_code_on(tools: World) -> None:
+    done = tools.run("ros2 run tools say one 'two words' --ros-args -p x:=1 --prefix")
+    assert (done.stdout, done.code) == ("one|two words|--ros-args|-p|x:=1|--prefix|\n", 7)
+
+
+def test_run_starts_it_with_a_prefix(tools: World) -> None:
+    assert tools.run("ros2 run --prefix 'env A=5 sh -c \"echo $A; exec $0 $@\"' tools say one").stdout.endswith(
+        "one|\n"
+    )
+    assert tools.run("ros2 run --prefix echo tools say one").stdout.split()[1:] == ["one"]
+
+
+def test_run_passes_signals_on(tools: World) -> None:
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        assert tools.start("ros2 run tools wait", "waits").stop(number) == -number
+
+
+def test_run_of_what_cannot_be_started(tools: World) -> None:
+    done = tools.run("ros2 run tools broken")
+    assert done.code == 1
+    assert "could not be started" in done.stderr
+    listed = tools.run("ros2 pkg executables tools").stdout.splitlines()
+    assert listed == ["tools broken", "tools say", "tools wait"]
+
+
+def test_the_first_of_two_prefixes_counts(tools: World, tmp_path: Path) -> None:
+    package(tmp_path / "over", "tools", say="#!/bin/sh\necho over\n")
+    env = {"AMENT_PREFIX_PATH": f"{tmp_path}/over:{tools.env['AMENT_PREFIX_PATH']}:/does/not/exist"}
+    assert tools.run("ros2 run tools say", **env).stdout == "over\n"
+    assert tools.run("ros2 pkg prefix tools", **env).stdout == f"{tmp_path}/over\n"
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_where_ros2cli_is_installed_its_ros2_is_used(first: bool, still: World, tmp_path: Path) -> None:
+    sourced = tmp_path / "opt/ros/jazzy"
+    package(sourced, "ros2cli")
+    theirs = sourced / "bin/ros2"
+    theirs.parent.mkdir()
+    theirs.write_text('#!/bin/sh\necho theirs "$@"\n')
+    theirs.chmod(0o755)
+    parts = [str(theirs.parent), still.env["PATH"]]
+    env = {
+        "PATH": os.pathsep.join(parts if first else parts[::-1]),
+        "AMENT_PREFIX_PATH": f"{sourced}:{still.env['AMENT_PREFIX_PATH']}",
+    }
+    assert still.run("ros2 topic list -t", **env).stdout == "theirs topic list -t\n"
+
+
+@pytest.mark.parametrize(
+    ("command", "ready"),
+    [
+        ("ros2 topic echo /turtle1/pose", "---"),
+        ("ros2 topic echo --csv /turtle1/pose", "5.54"),
+        ("ros2 topic echo /never std_msgs/msg/Empty", None),
+        ("ros2 topic hz /turtle1/pose", "average rate"),
+        ("ros2 topic pub -r 50 /chatter std_msgs/msg/String '{data: hi}'", "publishing #3"),
+        ("ros2 topic pub --once /nobody std_msgs/msg/String", "Waiting for at least 1"),
+        ("ros2 service call -r 20 /clear std_srvs/srv/Empty", "response:"),
+        (
+            "ros2 action send_goal --feedback /turtle1/rotate_absolute turtlesim/action/RotateAbsolute '{theta: 3}'",
+            "Feed",
+        ),
+    ],
+)
+def test_ctrl_c_ends_a_verb_quietly(command: str, ready: str | None, still: World) -> None:
+    running = still.start(command, ready)
+    if ready is None:  # it says nothing; it is there once others see its node
+        while "_ros2cli" not in still.run("ros2 node list -a").stdout.replace("\n/_ros2cli_x", ""):
+            assert running.process.poll() is None
+    assert running.stop() == 2
+    assert "Traceback" not in "\n".join(running.lines)
+
+
+def test_whoever_is_stopped_leaves_the_graph(still: World) -> None:
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        still.start("ros2 topic pub /left std_msgs/msg/String", "publishing #1").stop(number)
+        assert "/left" not in still.run("ros2 topic list").stdout
+
+
+def test_echo_of_a_part(still: World) -> None:
+    assert still.run("ros2 topic echo --once /turtle1/pose --field theta").stdout == "0.0\n---\n"
+    assert still.run("ros2 topic echo --once /turtle1/pose --field theta --csv").stdout == "0.0\n"
+
+
+def test_what_is_published_arrives(still: World) -> None:
+    echo = still.start("ros2 topic echo /numbers std_msgs/msg/Float64MultiArray", None)
+    sent = still.run(
+        "ros2 topic pub -t 2 -r 50 -p 2 /numbers std_msgs/msg/Float64MultiArray '{data: [1, 2.5, 1e-3]}'"
+    ).stdout
+    assert "publishing #2" in sent
+    assert "publishing #1" not in sent
+    echo.wait_for("---", times=2)
+    assert echo.lines[: echo.lines.index("---")] == [
+        "layout:",
+        "  dim: []",
+        "  data_offset: 0",
+        "data:",
+        "- 1.0",
+        "- 2.5",
+        "- 0.001",
+    ]
+    echo.stop()
+
+
+def test_the_last_message_is_kept_for_who_comes_later(still: World) -> None:
+    # /rosout keeps what was said: echo asks for it, since all who publish there keep it.
+    assert "Spawning turtle [turtle1]" in still.run("ros2 topic echo --once /rosout --field msg").stdout
+
+
+def test_param_dump_is_a_parameter_file(still: World) -> None:
+    dumped = still.run("ros2 param dump /turtlesim").stdout
+    assert dumped.startswith("/turtlesim:\n  ros__parameters:\n    background_b: 255\n")
+    assert "    qos_overrides:\n      /parameter_events:\n        publisher:\n          depth: 1000\n" in dumped
+    (still.home / "params.yaml").write_text(dumped.replace("background_b: 255", "background_b: 12"))
+    other = still.start(
+        "ros2 run turtlesim turtlesim_node --ros-args --params-file params.yaml", "Spawning", ROS_DOMAIN_ID="1"
+    )
+    assert still.run("ros2 param get /turtlesim background_b --hide-type", ROS_DOMAIN_ID="1").stdout == "12\n"
+    other.stop()
+
+
+def test_options_of_lists(still: World) -> None:
+    assert still.run("ros2 param list /turtlesim --param-type").stdout.startswith("  background_b (type: integer)\n")
+    assert still.run("ros2 node list -c").stdout == "1\n"
+    assert "/_ros2cli" in still.run("ros2 node list -a").stdout
+    assert still.run("ros2 action info /turtle1/rotate_absolute -t").stdout.endswith(
+        "    /turtlesim [turtlesim/action/RotateAbsolute]\n"
+    )
+    assert still.run("ros2 service find std_srvs/srv/Empty").stdout == "/clear\n/reset\n"
+    assert "/turtle1/rotate_absolute/_action/status" in still.run("ros2 topic list -a").stdout
+
+
+def test_types_and_interfaces_work_together(still: World) -> None:
+    shown = still.run("ros2 topic type /turtle1/pose | ros2 interface show -")
+    assert shown.stdout.startswith("float32 x\n")
+    listed = still.run("ros2 interface list -a").stdout
+    assert listed == "Actions:\n    turtlesim/action/RotateAbsolute\n"
+    assert "geometry_msgs\n" in still.run("ros2 interface packages -m").stdout
+
+
+def test_a_new_package_is_right_by_the_courses_own_checks(still: World) -> None:
+    create = "ros2 pkg create --build-type ament_python --license MIT --description 'It says \"it'\"'\"'s\" & <more>'"
+    assert still.run(f"{create} --node-name my_node --dependencies rclpy std_msgs -- my_package").code == 0
+    folder = still.home / "my_package"
+    assert "Permission is hereby granted" in (folder / "LICENSE").read_text()
+    built = still.run(
+        "colcon build --base-paths my_package --build-base b --install-base i && . i/setup.bash && ros2 run my_package my_node"
+    )
+    assert built.stdout.endswith("Hi from my_package.\n"), built
+    assert "WARNING" not in built.stderr
+    tested = still.run("cd my_package && python3 -m pytest -q test")
+    assert tested.code in (0, 5), tested
