@@ -97,6 +97,12 @@ def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: f
         time.sleep(_POLL_S)
 
 
+def published(node: Node, topic: str) -> bool:
+    """Whether anybody else publishes on a topic; the node itself does so on /rosout."""
+    own = node.get_name()
+    return any(publisher.node_name != own for publisher in node.get_publishers_info_by_topic(topic))
+
+
 def spin_until(node: Node, done: Callable[[], bool], timeout_s: float | None = None) -> bool:
     """Handle what comes until it is `done` or the time is up; returns whether it is done."""
     end = None if timeout_s is None else time.monotonic() + timeout_s

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 
 from grader.ros2 import values
-from grader.ros2.discovery import cli_node, settle, spin_until
+from grader.ros2.discovery import cli_node, published, settle, spin_until
 from grader.ros2.failure import Ros2Error
 from grader.ros2.names import absolute
 from grader.ros2.topic import unknown_topic
@@ -35,7 +35,7 @@ def echo(args: argparse.Namespace) -> int:
 
     with cli_node() as node:
         # With the type given there is nothing to wait for but the publishers, by whom the QoS is chosen.
-        settle(node, lambda: node.count_publishers(topic) > 0, args.spin_time)
+        settle(node, lambda: published(node, topic), args.spin_time)
         name = args.message_type or type_of(node, topic)
         made = values.load_type(name, "msg", "message type")
         if args.field:

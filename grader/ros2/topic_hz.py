@@ -48,7 +48,7 @@ def hz(args: argparse.Namespace) -> int:
     import rclpy
 
     from grader.ros2 import values
-    from grader.ros2.discovery import cli_node, settle, spin_until
+    from grader.ros2.discovery import cli_node, published, settle, spin_until
     from grader.ros2.failure import did_you_mean
     from grader.ros2.names import absolute
     from grader.ros2.topic_echo import qos_of, type_of
@@ -62,7 +62,7 @@ def hz(args: argparse.Namespace) -> int:
             found: list[str] = next((found for name, found in node.get_topic_names_and_types() if name == topic), [])
             return found
 
-        settle(node, lambda: node.count_publishers(topic) > 0, args.spin_time)
+        settle(node, lambda: published(node, topic), args.spin_time)
         if not types():
             text = f"WARNING: topic [{topic}] does not appear to be published yet"
             known = [name for name, _ in node.get_topic_names_and_types()]
