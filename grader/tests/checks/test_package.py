@@ -239,6 +239,12 @@ def test_each_fault_of_the_entry_point(
     assert str(found.where).startswith(where)
 
 
+def test_a_setup_cfg_that_is_there_is_a_place_to_look() -> None:
+    nowhere = replace(BUILD, executables=())
+    assert of("entry-point", {"setup.cfg": None}, nowhere).cause == "setup.cfg is missing."
+    assert str(of("entry-point", {}, nowhere).where) == "setup.cfg"
+
+
 @pytest.mark.parametrize(
     "text",
     [
