@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from grader.errors import UsageError
@@ -41,12 +41,12 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
         message = "--student wants a name or a number."
         raise UsageError(message)
 
-    def stand(before: progress.Progress) -> progress.Progress:
-        named = progress.Progress(student.strip(), before.current, before.steps) if student else before
-        return named.at(exercise.id)
-
-    started = workspace.start(exercise, root, fresh=fresh)
-    progress.update(root, stand)
+    # First who it is, drawn once and kept; the step only when all is in its place.
+    known = progress.update(
+        root, lambda before: replace(before, student=student.strip() if student else before.student)
+    )
+    started = workspace.start(exercise, root, known.student, fresh=fresh)
+    progress.update(root, lambda before: before.at(exercise.id))
     return Begun(exercise, started, root)
 
 

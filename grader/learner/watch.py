@@ -66,22 +66,29 @@ class Events:
                 return
             yield happened
 
+    def await_ready(self) -> None:
+        """Wait until no save can be missed any more."""
+        self._ready.wait()
+
     def close(self) -> None:
         """End the watching."""
         self._stop.set()
         self._queue.put(Happened("end"))
 
     def _watch(self, folder: Path) -> None:
-        for _ in watch(
+        for changes in watch(
             folder,
             watch_filter=_Sources(),
             debounce=DEBOUNCE_MS,
             step=10,
-            rust_timeout=500,
+            rust_timeout=200,
+            yield_on_timeout=True,
             stop_event=self._stop,
             raise_interrupt=False,
         ):
-            self._queue.put(Happened("saved"))
+            self._ready.set()
+            if changes:
+                self._queue.put(Happened("saved"))
 
     def _keys(self, read_key: Callable[[], str]) -> None:
         while key := read_key():

@@ -6,11 +6,13 @@ import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader import tree
+from grader import own_numbers, tree
 from grader.errors import MachineError, UsageError
 from grader.exercise import course_folder
+from grader.own_numbers import draw_numbers, to_toml
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from grader.exercise import Exercise
@@ -57,8 +59,10 @@ def work_folder(exercise: Exercise, workspace: Path) -> Path:
     return workspace / "src" / exercise.package if exercise.package else workspace / "answers" / exercise.id
 
 
-def start(exercise: Exercise, workspace: Path, *, fresh: bool = False) -> Started:
+def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = False) -> Started:
     """Add what the step needs and the workspace lacks. With `fresh`, older work is put aside first.
+
+    Where the step has numbers of the student's own, they are those of `student`.
 
     Raises:
         UsageError: the workspace is no folder.
@@ -70,7 +74,7 @@ def start(exercise: Exercise, workspace: Path, *, fresh: bool = False) -> Starte
     folder = work_folder(exercise, workspace)
     try:
         kept = _put_aside(folder, workspace) if fresh and folder.exists() else None
-        added, present = _add(source, folder)
+        added, present = _add(source, folder, {own_numbers.FILE: to_toml(draw_numbers(student)).encode()})
     except (FileExistsError, NotADirectoryError) as error:
         message = f"{error.filename} is a file, where a folder is needed. Name another workspace with --workspace."
         raise UsageError(message) from error
@@ -80,7 +84,7 @@ def start(exercise: Exercise, workspace: Path, *, fresh: bool = False) -> Starte
     return Started(folder, added, present, kept)
 
 
-def _add(source: Path, folder: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _add(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     with tree.open_folder(str(source)) as opened:
         found = tree.read_tree(opened)
     added, present = [], []
@@ -89,7 +93,7 @@ def _add(source: Path, folder: Path) -> tuple[tuple[str, ...], tuple[str, ...]]:
         target.parent.mkdir(parents=True, exist_ok=True)
         try:
             with target.open("xb") as file:
-                file.write(found.files[path])
+                file.write(instead.get(path, found.files[path]))
         except FileExistsError:
             if target.is_dir():
                 raise

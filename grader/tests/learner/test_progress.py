@@ -1,0 +1,144 @@
+from __future__ import annotations
+
+import json
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.errors import MachineError, UsageError
+from grader.learner import progress, steps, workspace
+from grader.learner.progress import Progress, StepProgress
+from grader.own_numbers import draw_numbers, from_toml
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FIRST, SECOND = "01-first-node", "02-discover-topics"
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A learner of this test's own."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.delenv("XDG_STATE_HOME", raising=False)
+    monkeypatch.delenv("ROS2_WORKSPACE", raising=False)
+    return tmp_path
+
+
+def passed(name: str) -> None:
+    root = progress.workspace_of(None)
+    progress.update(root, lambda before: before.graded(name, 100.0, 100.0, passed=True))
+
+
+def test_progress_survives_and_is_kept_apart_by_workspace(home: Path) -> None:
+    progress.update(home / "one", lambda before: before.at(FIRST))
+    progress.update(home / "two", lambda before: before.at(SECOND))
+    assert progress.load(home / "one").current == FIRST
+    assert progress.load(home / "two").current == SECOND
+    assert progress.load(home / "three").current is None
+
+
+def test_a_student_keeps_the_id_that_was_drawn_once(home: Path) -> None:
+    drawn = progress.update(home, lambda before: before.at(FIRST)).student
+    assert drawn
+    assert progress.update(home, lambda before: before.at(SECOND)).student == drawn
+
+
+def test_points_never_go_down_and_what_has_passed_stays_passed() -> None:
+    known = Progress("x").graded(FIRST, 100.0, 100.0, passed=True).graded(FIRST, 20.0, 100.0, passed=False)
+    assert known.step(FIRST) == StepProgress(100.0, 100.0, passed=True)
+
+
+def test_forty_writers_at_once_lose_nothing(home: Path) -> None:
+    def one_hint(before: Progress) -> Progress:
+        known = before.step(FIRST)
+        return before.with_step(FIRST, replace(known, hints=known.hints + 1))
+
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda _: progress.update(home, one_hint), range(40)))
+    assert progress.load(home).step(FIRST).hints == 40
+
+
+@pytest.mark.parametrize("content", ["{", "[]", '{"schema": 99}', ""])
+def test_a_damaged_file_is_told_and_not_touched(home: Path, content: str) -> None:
+    file = progress.state_file()
+    file.parent.mkdir(parents=True)
+    file.write_text(content)
+    with pytest.raises(MachineError, match=r"progress\.json"):
+        progress.update(home, lambda before: before.at(FIRST))
+    assert file.read_text() == content
+
+
+def test_start_adds_what_lacks_and_overwrites_nothing(home: Path) -> None:
+    begun = steps.start("01", None)
+    package = home / "ros2_ws/src/my_robot_controller"
+    assert begun.started.folder == package
+    assert "package.xml" in begun.started.added
+    (package / "setup.py").write_text("mine")
+    (package / "package.xml").unlink()
+    again = steps.start("01", None)
+    assert again.started.added == ("package.xml",)
+    assert "setup.py" in again.started.present
+    assert (package / "setup.py").read_text() == "mine"
+
+
+def test_fresh_keeps_the_old_work_aside_where_colcon_does_not_look(home: Path) -> None:
+    steps.start("01", None)
+    package = home / "ros2_ws/src/my_robot_controller"
+    (package / "setup.py").write_text("mine")
+    begun = steps.start("01", None, fresh=True)
+    assert begun.started.kept is not None
+    assert (begun.started.kept / "setup.py").read_text() == "mine"
+    assert (begun.started.kept.parent / "COLCON_IGNORE").exists()
+    assert (package / "setup.py").read_text() != "mine"
+
+
+def test_next_waits_until_the_step_has_passed(home: Path) -> None:
+    assert steps.start("next", None).exercise.id == FIRST
+    with pytest.raises(UsageError, match="has not passed yet"):
+        steps.start("next", None)
+    passed(FIRST)
+    assert steps.start("next", None).exercise.id == SECOND
+    assert json.loads(progress.state_file().read_text())["workspaces"][str(home / "ros2_ws")]["current"] == SECOND
+
+
+def test_after_the_last_step_there_is_no_next() -> None:
+    steps.start("07", None)
+    passed("07-challenges")
+    with pytest.raises(UsageError, match="you are through"):
+        steps.start("next", None)
+
+
+def test_hints_come_one_by_one_and_the_last_one_again() -> None:
+    begun = steps.start("01", None)
+    hints = begun.exercise.hints
+    read = [steps.hint(None, None) for _ in range(len(hints) + 2)]
+    for index, text in enumerate(read):
+        assert hints[min(index, len(hints) - 1)] in text
+
+
+def test_hints_without_a_step_say_how_to_begin() -> None:
+    with pytest.raises(UsageError, match="grader start 01"):
+        steps.hint(None, None)
+
+
+def test_a_workspace_that_is_a_file_is_told(home: Path) -> None:
+    (home / "ros2_ws").write_text("")
+    with pytest.raises(UsageError, match="is a file"):
+        steps.start("01", None)
+
+
+def test_work_on_answers_lies_in_a_folder_of_its_own(home: Path) -> None:
+    begun = steps.start("02", None)
+    assert begun.started.folder == home / "ros2_ws/answers/02-discover-topics"
+    assert "answers.toml" in begun.started.added
+    assert workspace.work_folder(begun.exercise, home / "ros2_ws") == begun.started.folder
+
+
+def test_the_last_step_begins_with_numbers_of_the_students_own(home: Path) -> None:
+    steps.start("07", None, student="4711")
+    file = home / "ros2_ws/src/my_robot_controller/my_numbers.toml"
+    assert from_toml(file.read_bytes()) == draw_numbers("4711")
+    assert steps.start("07", None).started.added == ()
