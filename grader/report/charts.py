@@ -125,7 +125,7 @@ def intervals(evidence: Evidence) -> Chart | None:
     top = max(1.25 * wanted, 1.1 * max(measured.intervals), 1.15 * rate.max_interval_s if rate else 0.0)
     area = Area(end_s, 0.0, max(top, 1e-3))
     low, high = min(measured.intervals), max(measured.intervals)
-    caption = f"{len(series)} intervals, {measured.mean_s:.2f} s on average, from {low:.2f} to {high:.2f} s."
+    caption = f"{len(series)} intervals, {_s(measured.mean_s)} s on average, from {_s(low)} to {_s(high)} s."
     if stalled:
         caption += f" {stalled} more were lengthened by the machine, not by the node, and are left out."
     drawn = ""
@@ -145,6 +145,11 @@ def intervals(evidence: Evidence) -> Chart | None:
         key="intervals",
     )
     return Chart(svg, caption)
+
+
+def _s(seconds: float) -> str:
+    """Hundredths of a second, and two digits of what is shorter."""
+    return f"{seconds:.2f}" if seconds >= 0.1 else f"{seconds:.2g}"
 
 
 def values(evidence: Evidence) -> Chart | None:

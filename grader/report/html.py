@@ -89,11 +89,15 @@ def html_page(evidence: Evidence, report: Report) -> str:
     value_chart = charts.values(evidence) if recording else None
     graph = draw_graph(recording) if recording else None
     shown = list(_shown(evidence, report))
+    fault = evidence.fault.message if evidence.fault else ""
+    # One fault of the machine is told once, not with every check that it took along.
+    unmade = [check for check in shown if check.kind == "error" and check.outcome.finding.seen == fault]
     values = {
         "report": report,
         "verdict": verdict(report),
         "tone": tone(report),
-        "mend": [check for check in shown if check.kind in ("failed", "error", "advice")],
+        "mend": [each for each in shown if each.kind in ("failed", "error", "advice") and each not in unmade],
+        "unmade": unmade,
         "skipped": [check for check in shown if check.kind == "skipped"],
         "passed": [check for check in shown if check.kind == "passed"],
         "recording": recording,
@@ -112,7 +116,7 @@ def html_page(evidence: Evidence, report: Report) -> str:
         "graph_svg": Markup(graph.svg) if graph else "",
         "logs": logs_of(evidence),
         "again": _again(report),
-        "fault": evidence.fault.message if evidence.fault else "",
+        "fault": fault,
     }
     return make_page("report.html", "report.js", _run(evidence), values)
 
