@@ -94,7 +94,7 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
         (
             'title = "A test"',
             'titel = "A test"',
-            '[exercise]: unknown key "titel". Did you mean "title"? Allowed: id, title, package, executable, node.',
+            '[exercise]: unknown key "titel". Did you mean "title"? Allowed: id, title, package, executable, node',
         ),
         (
             'package = "my_package"',
