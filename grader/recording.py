@@ -160,6 +160,11 @@ class Recording:
     stalls: tuple[tuple[float, float], ...] = ()
     """When the machine gave simulator or node no time to run in a wall-clock trial: (from, to) on its clock (s)."""
 
+    @property
+    def stalled_s(self) -> float:
+        """How long all stalls were together (s)."""
+        return sum(end - begin for begin, end in self.stalls)
+
     def stalled(self, t_s: float) -> bool:
         """Whether an arrival at this time says nothing about the node: it fell in a stall, or right after one."""
         return any(begin <= t_s <= end + AFTER_STALL_S for begin, end in self.stalls)

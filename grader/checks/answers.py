@@ -170,7 +170,7 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
             "period-for-rate",
             "This is the time between two messages in seconds; the rate is 1 divided by it.",
         )
-    return _wrong(evidence, params.answer, f"{given:g}", diagnosis, cause)
+    return _wrong(evidence, params.answer, given, diagnosis, cause)
 
 
 def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Finding:

@@ -24,7 +24,7 @@ Answer = str | float | tuple[str, ...]
 
 @dataclass(frozen=True)
 class Answers:
-    """The table [answers], by id; what is neither text, number nor list of texts is left out, as is an empty answer.
+    """The table [answers], by id; what is neither text, number nor list of texts is left out, so is what is empty or 0.
 
     `lines` are where the answers stand, from 1. `problem` says why the file cannot be read.
     """
@@ -56,7 +56,7 @@ def _answer(value: object) -> Answer | None:
     if isinstance(value, bool):
         return None
     if isinstance(value, int | float):
-        return float(value) if abs(value) < 1e300 else None
+        return float(value) if 0.0 < abs(value) < 1e300 else None
     if isinstance(value, str):
         return value.strip() or None
     if isinstance(value, list) and value and all(isinstance(item, str) for item in value):

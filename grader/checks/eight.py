@@ -11,7 +11,7 @@ import numpy as np
 from grader.checks.circle import Circle, fit_circle
 from grader.checks.kind import Kind, choice, number
 from grader.checks.path import MOVED_M, moved_otherwise
-from grader.checks.tolerance import Band
+from grader.checks.tolerance import Band, unless_starved
 from grader.checks.track import RESTS_M, STRAIGHT_RAD
 from grader.outcome import Finding, failed, passed
 
@@ -97,6 +97,7 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
 def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: bool) -> tuple[Finding | None, bool]:
     """What is wrong with a lobe, if anything; and whether a value is near its edge."""
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
+    recording = evidence.trial
     told = f"The {name} lobe, to the {lobe.side},"
     wanted = f"Radius {params.radius_m:.1f} m and 360 degrees, in both lobes."
     round_ = Band.at_most(params.residual_m)
@@ -124,13 +125,17 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
         else:
             seen = f"{told} goes on for {degrees - 360.0:.0f} degrees after it is closed."
         cause = "A full circle takes 2 pi / angular.z seconds: how many calls of the timer is that?"
-        return failed("lobe-angle", seen, wanted, cause, where=evidence.place("create_timer"), near_edge=near), near
+        finding = failed("lobe-angle", seen, wanted, cause, where=evidence.place("create_timer"), near_edge=near)
+        turning = math.degrees(float(np.abs(recording.frames.angular).max()))
+        return unless_starved(finding, recording, abs(degrees - 360.0) - params.angle_tolerance_deg, turning), near
     start = (evidence.trial.start.x, evidence.trial.start.y)
     gap = math.dist(lobe.end, start)
     meets = Band.at_most(params.closing_m)
     if not last and not meets.holds(gap):
         seen = f"{told} ends {gap:.2f} m beside the turtle's start."
-        return failed("lobe-gap", seen, "Both lobes meet at the start.", where=where, near_edge=True), near
+        finding = failed("lobe-gap", seen, "Both lobes meet at the start.", where=where, near_edge=True)
+        speed = float(recording.frames.linear.max())
+        return unless_starved(finding, recording, gap - params.closing_m, speed), near
     return None, near
 
 

@@ -149,6 +149,11 @@ def _is_installed(evidence: Evidence, file: str) -> bool:
 def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
     executable = evidence.exercise.executable
     name = attribute.partition(".")[0]
+    if not name:
+        seen = f"The entry point {executable} leads to {module.file}, and names no function in it."
+        return failed(
+            "entry-point-function", seen, f"{FORM}.", "The part with the colon is missing.", where=_line(evidence)
+        )
     bound = list(_bindings(module, name))
     if not bound:
         defined = [node.name for node in module.nodes if isinstance(node, ast.FunctionDef) and node.col_offset == 0]

@@ -11,7 +11,7 @@ import numpy as np
 
 from grader.checks.kind import Kind, choice, number
 from grader.checks.path import MOVED_M, moved_otherwise
-from grader.checks.tolerance import Band
+from grader.checks.tolerance import Band, unless_starved
 from grader.checks.track import RESTS_M
 from grader.outcome import Finding, failed, passed
 from grader.words import count
@@ -96,7 +96,8 @@ def square(evidence: Evidence, params: Square) -> Finding:
 
 
 def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -> Finding:
-    where = evidence.place("publish")
+    where, recording = evidence.place("publish"), evidence.trial
+    speed = recording.frames.linear
     long, right = Band.around(params.side_m, params.side_tolerance_m), Band.around(90.0, params.corner_tolerance_deg)
     corners = [math.degrees(corner) for corner in sides.corners[: SIDES - 1]]
     sign = -1.0 if params.sense == "clockwise" or (params.sense == "either" and corners[0] < 0.0) else 1.0
@@ -109,17 +110,21 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
             more = length - params.side_m
             seen = f"The {name} side is {length:.2f} m long: {abs(more):.2f} m too {'long' if more > 0 else 'short'}."
             cause = "A side is speed times time, and the time is a number of calls of the timer."
-            return failed("side-length", seen, expected, cause, where=where, near_edge=near)
+            finding = failed("side-length", seen, expected, cause, where=where, near_edge=near)
+            return unless_starved(finding, recording, abs(more) - params.side_tolerance_m, float(speed.max()))
     for name, corner in zip(ORDINALS, corners, strict=False):
         if not right.holds(sign * corner):
             seen = f"The {name} corner turns by {sign * corner:.0f} degrees."
             cause = "A quarter turn is pi / 2 rad: turning speed times time."
-            return failed("corner-angle", seen, expected, cause, where=where, near_edge=near)
+            finding = failed("corner-angle", seen, expected, cause, where=where, near_edge=near)
+            off = abs(sign * corner - 90.0) - params.corner_tolerance_deg
+            return unless_starved(finding, recording, off, math.degrees(float(np.abs(recording.frames.angular).max())))
     gap = math.dist(sides.ends[SIDES - 1], (evidence.trial.start.x, evidence.trial.start.y))
     closed = Band.at_most(params.closing_m)
     if not closed.holds(gap):
         seen = f"The fourth side ends {gap:.2f} m beside the start."
-        return failed("square-gap", seen, expected, where=where, near_edge=True)
+        finding = failed("square-gap", seen, expected, where=where, near_edge=True)
+        return unless_starved(finding, recording, gap - params.closing_m, SIDES * float(speed.max()))
     return passed(f"The turtle drove a square of {params.side_m:.1f} m.", near_edge=near or closed.near(gap))
 
 

@@ -3,6 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.outcome import Finding, Status
+
+if TYPE_CHECKING:
+    from grader.recording import Recording
 
 NEAR = 0.2
 """A value is near an edge when this share of the tolerance or less lies between (design, decision 3)."""
@@ -50,3 +56,13 @@ class Band:
         near_low = self.low is not None and abs(value - self.low) <= NEAR * self.low_width
         near_high = self.high is not None and abs(value - self.high) <= NEAR * self.high_width
         return near_low or near_high
+
+
+def unless_starved(finding: Finding, recording: Recording, off: float, per_s: float) -> Finding:
+    """The finding, unless the machine's stalls explain it: `off` is how far the value lies outside of its tolerance.
+
+    `per_s`: how fast the value changes with time. A node that is kept waiting goes on with its last command.
+    """
+    if finding.status is Status.FAILED and recording.stalls and off <= per_s * recording.stalled_s:
+        return Finding(Status.ERROR, "The machine was too busy to judge this in wall time. Try again when it is not.")
+    return finding

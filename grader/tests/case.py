@@ -41,6 +41,8 @@ class Case:
     """A key of EXIT_CODES."""
     base: str = "03-circle-publisher"
     """The solution that `files` is laid over; empty for none."""
+    edit: tuple[Mapping[str, str], ...] = ()
+    """Changes of the base: in `file`, `old` becomes `new`, everywhere."""
     remove: tuple[str, ...] = ()
     """Paths of the base that are taken away."""
     give: str = "."
@@ -71,7 +73,7 @@ def read_case(folder: Path) -> Case:
     if unknown or values["result"] not in EXIT_CODES:
         message = f"{folder.name}/expected.toml: {unknown or values['result']}"
         raise ValueError(message)
-    for key in ("remove", "failed", "skipped", "advice", "never"):
+    for key in ("edit", "remove", "failed", "skipped", "advice", "never"):
         values[key] = tuple(values.get(key, ()))
     for key in ("diagnosis", "where", "says"):
         values[key] = values.get(key, {})
@@ -86,9 +88,14 @@ def read_cases() -> tuple[Case, ...]:
 def make_submission(case: Case, to: Path) -> Path:
     """Write what is handed in below the new folder `to`, and return its path."""
     to.mkdir(parents=True)
-    package = to / "my_robot_controller" if case.base else to
+    has_package = bool(case.base) and (ROOT / "solutions" / case.base / "my_robot_controller").is_dir()
+    package = to / "my_robot_controller" if has_package else to
     if case.base:
         copy_solution(case.base, package)
+    for edit in case.edit:
+        text = (package / edit["file"]).read_text("utf-8")
+        assert edit["old"] in text, f"{case.name}: {edit}"
+        (package / edit["file"]).write_text(text.replace(edit["old"], edit["new"]), "utf-8")
     for path in case.remove:
         target = package / path
         if target.is_dir():
@@ -110,8 +117,9 @@ def make_submission(case: Case, to: Path) -> Path:
 
 
 def copy_solution(step: str, to: Path) -> None:
-    """A solution's package as a learner would have written it: no markers in it."""
-    source = ROOT / "solutions" / step / "my_robot_controller"
+    """A solution's package (in step 02: its answers) as a learner would have written it: no markers in it."""
+    source = ROOT / "solutions" / step
+    source = source / "my_robot_controller" if (source / "my_robot_controller").is_dir() else source
     for file in sorted(path for path in source.rglob("*") if path.is_file() and "__pycache__" not in path.parts):
         target = to / file.relative_to(source)
         target.parent.mkdir(parents=True, exist_ok=True)

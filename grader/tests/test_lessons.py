@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from grader.checks.answers_file import read_answers
+from grader.checks.manifest import read_manifest
 from grader.ros import environment, find_ros
 from grader.tests.console import Block, blocks, differs, run
 
@@ -48,7 +50,16 @@ def test_links_and_pictures_are_there(lesson: Path) -> None:
 
 def test_every_block_says_what_it_is(lesson: Path) -> None:
     kinds = {(block.language, block.about) for block in blocks(lesson.read_text("utf-8"))}
-    assert kinds <= {("console", ""), ("console", "solved"), ("console", "ros2"), ("python", ""), ("python", "part")}
+    assert kinds <= {
+        ("console", ""),
+        ("console", "solved"),
+        ("console", "ros2"),
+        ("python", ""),
+        ("python", "part"),
+        ("python", "example"),
+        ("toml", ""),
+        ("xml", ""),
+    }
 
 
 @pytest.mark.parametrize("block", [*blocks_of("console", ""), *blocks_of("console", "solved")])
@@ -74,6 +85,28 @@ def test_answers_of_ros2_are_those_that_were_recorded(block: Block) -> None:
 def test_parts_of_files_are_in_the_step(block: Block) -> None:
     """A part is quoted from the solution, which is where it would change."""
     assert any(block.text in path.read_text("utf-8") for path in (ROOT / "solutions").glob("*/**/*.py"))
+
+
+@pytest.mark.parametrize("block", blocks_of("python", "example"))
+def test_examples_can_be_imported(block: Block, tmp_path: Path) -> None:
+    ros = find_ros()
+    done = subprocess.run(
+        [ros.python, "-c", block.text],
+        env=environment(ros, home=tmp_path, domain=91),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+
+
+@pytest.mark.parametrize("block", [*blocks_of("toml", ""), *blocks_of("xml", "")])
+def test_examples_of_files_can_be_read(block: Block) -> None:
+    if block.language == "toml":
+        assert read_answers(f"[answers]\n{block.text}".encode()).problem is None
+    else:
+        assert read_manifest(block.text.encode()).problem is None
 
 
 @pytest.mark.parametrize("block", blocks_of("python", ""))
