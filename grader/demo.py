@@ -28,7 +28,7 @@ STAGES = {
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Grade `solutions/03-circle-publisher`; returns 0, or the exit code of `grader check` if it is another than expected."""
+    """Grade `solutions/03-circle-publisher`; returns 0, or what `grader check` ended with if that was not expected."""
     parser = argparse.ArgumentParser(description="Grade the solution of a step and say what to type next.")
     parser.add_argument("--since", type=float, default=time.time(), help="when the command began, seconds since 1970")
     since = parser.parse_args(arguments).since
