@@ -1,12 +1,13 @@
 """`grader doctor`: is everything here that grading needs? Each line is ok, or says what to do.
 
-What can be tried is tried: the turtlesim interfaces are built if they are not yet, and a node starts in a cell.
+What can be tried is tried: the turtlesim interfaces are built if they are not yet, and a node talks from a cell.
 """
 
 from __future__ import annotations
 
 import os
 import platform
+import shlex
 import shutil
 import subprocess
 import sys
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING, Literal
 
 from grader import bootstrap, machine, sandbox, underlay
 from grader.errors import MachineError
-from grader.ros import DISTRO, Ros, environment, find_ros, has_turtlesim
+from grader.ros import DISTRO, FASTDDS_PROFILE, Ros, environment, find_ros, has_turtlesim
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -32,11 +33,26 @@ LEAST_DISK = GIB // 4
 LITTLE_DISK = 2 * GIB
 LITTLE_MEMORY = 1 * GIB
 
-_NODE = """
+_TALKER = """
 import rclpy, turtlesim.msg, turtlesim.srv
+from std_msgs.msg import String
 rclpy.init()
-rclpy.create_node("doctor").destroy_node()
-rclpy.shutdown()
+node = rclpy.create_node("talker")
+publisher = node.create_publisher(String, "doctor", 10)
+node.create_timer(0.05, lambda: publisher.publish(String(data="well")))
+rclpy.spin(node)
+"""
+_LISTENER = """
+import sys, time, rclpy
+from std_msgs.msg import String
+rclpy.init()
+node = rclpy.create_node("listener")
+heard = []
+node.create_subscription(String, "doctor", heard.append, 10)
+deadline = time.monotonic() + 20.0
+while not heard and time.monotonic() < deadline:
+    rclpy.spin_once(node, timeout_sec=0.5)
+sys.exit(None if heard else "nothing was heard of it within 20 s")
 """
 
 
@@ -198,24 +214,27 @@ def look_at_sandbox() -> Line:
 
 
 def look_at_node(ros: Ros, ours: Path | None) -> Line:
-    """Start a node in a cell: interpreter, ROS 2, its middleware and the interfaces, all at once."""
+    """Let a node in a cell talk to one outside, as in a trial: interpreter, ROS 2, network and interfaces at once."""
     env = environment(ros, home=sandbox.HOME, underlay=ours)
-    view = sandbox.ros_view(ros, *([ours] if ours else []))
-    command = sandbox.lone_cell([str(ros.python), "-c", _NODE], view, env=env, limits=sandbox.Limits())
+    view = sandbox.ros_view(ros, FASTDDS_PROFILE, *([ours] if ours else []))
+    talker = sandbox.cell([str(ros.python), "-c", _TALKER], view, env=env, network=True)
+    # The talker goes when the listener does: cells die with their parent.
+    script = f"{shlex.join(talker)} & exec {shlex.join([str(ros.python), '-c', _LISTENER])}"
+    command = sandbox.room(["sh", "-c", script], view, env=env)
     try:
         done = subprocess.run(
             command, capture_output=True, text=True, timeout=60, check=False, stdin=subprocess.DEVNULL
         )
         said = done.stderr.strip().splitlines()[-1:] or [f"exit code {done.returncode}"]
         if done.returncode == 0:
-            return Line("a node", "starts in a cell and ends")
+            return Line("a node", "starts in a cell and is heard outside")
     except subprocess.TimeoutExpired:
         said = ["no answer within 60 s"]
     closed = machine.closed_folder(os.path.realpath(sys.executable))
     todo = "please report this, with all these lines"
     if closed and os.getuid() == 0:
-        todo = f"other users cannot enter {closed}, where this Python lies: make demo PYTHON=/usr/bin/python3"
-    return Line("a node", f"does not start in a cell: {said[0]}", "broken", todo)
+        todo += f"; it may help that other users can enter {closed}, where this Python lies"
+    return Line("a node", f"is not heard from a cell: {said[0]}", "broken", todo)
 
 
 def _cache() -> Path:

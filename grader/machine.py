@@ -154,9 +154,9 @@ def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
     """Programs that the system lacks. Where turtlesim is installed, its messages need no compiler."""
     tools = {
         "bwrap": Need("bubblewrap, the sandbox that student code runs in", "bubblewrap"),
-        "setpriv": Need("setpriv and prlimit, which set the sandbox's limits", "util-linux"),
-        "prlimit": Need("setpriv and prlimit, which set the sandbox's limits", "util-linux"),
     }
+    limits = Need("setpriv, prlimit and choom, which set the sandbox's limits", "util-linux")
+    tools.update({"setpriv": limits, "prlimit": limits, "choom": limits})
     if not (ros and ros.turtlesim):
         tools["g++"] = Need("a C++ compiler, for turtlesim's messages", "g++")
         tools["cmake"] = Need("cmake, for turtlesim's messages", "cmake")
