@@ -70,7 +70,7 @@ def _missing(evidence: Evidence) -> Finding:
             where=Where("setup.py", joined.line),
         )
     guess = nearest(executable, others)
-    if guess is not None:
+    if guess is not None and guess != executable:
         where = next((Where("setup.py", point.line) for point in points if point.name == guess), _line(evidence))
         return failed(
             "entry-point-name",

@@ -60,10 +60,16 @@ class OwnCircle:
 
 def own_circle(evidence: Evidence, params: OwnCircle) -> Finding:
     """The turtle drives the student's own circle."""
+    asked = own_circle_params(evidence, params)
+    return asked if isinstance(asked, Finding) else circle(evidence, asked)
+
+
+def own_circle_params(evidence: Evidence, params: OwnCircle) -> CircleParams | Finding:
+    """The circle that this student is asked for; the finding where the numbers cannot be read."""
     own = _drawn(evidence)
     if isinstance(own, Finding):
         return own
-    asked = CircleParams(
+    return CircleParams(
         radius_m=own.radius_m,
         radius_tolerance_m=params.radius_tolerance_m,
         centre_tolerance_m=params.centre_tolerance_m,
@@ -71,7 +77,6 @@ def own_circle(evidence: Evidence, params: OwnCircle) -> Finding:
         turns=params.turns,
         sense=own.sense,
     )
-    return circle(evidence, asked)
 
 
 @dataclass(frozen=True, kw_only=True)

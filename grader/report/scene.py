@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from grader.checks import seen
+from grader.checks.own import OwnCircle, own_circle_params
 from grader.checks.path import CircleParams, expected_centre
 
 if TYPE_CHECKING:
@@ -105,12 +106,19 @@ P = TypeVar("P")
 
 
 def params_of(evidence: Evidence, kind: str, params: type[P]) -> P | None:
-    """The parameters of the exercise's first check of this kind that is not hidden; None without one."""
+    """The parameters of the first check of this kind of the trial that is not hidden; None without one."""
     for spec in evidence.exercise.checks:
-        if spec.kind == kind and not spec.hidden:
+        if spec.kind == kind and spec.trial == evidence.exercise.trial and not spec.hidden:
             given: dict[str, Any] = dict(spec.params)
             return params(**given)
     return None
+
+
+def asked_circle(evidence: Evidence) -> CircleParams | None:
+    """The circle that the exercise asks for in this trial, the student's own where it does so; None without one."""
+    own = params_of(evidence, "own_circle", OwnCircle)
+    found = own_circle_params(evidence, own) if own is not None else None
+    return found if isinstance(found, CircleParams) else params_of(evidence, "circle", CircleParams)
 
 
 def scene_of(evidence: Evidence) -> Scene:
@@ -127,11 +135,11 @@ def scene_of(evidence: Evidence) -> Scene:
     if len(points) > 1:
         shapes.append(Line("way", tuple(points)))
         legend.append(("way", "the turtle's way"))
-    params = params_of(evidence, "circle", CircleParams)
+    params = asked_circle(evidence)
     if params is not None:
         shapes.append(Ring("expected", expected_centre(recording.start, params), params.radius_m))
         legend.append(("expected", f"asked for: radius {params.radius_m:.2f} m"))
-    fitted = track.circle if moved else None
+    fitted = track.circle if moved and params is not None else None
     if fitted is not None and fitted.radius <= SIDE_M:
         shapes.append(Ring("fitted", (fitted.x, fitted.y), fitted.radius))
         legend.append(("fitted", f"best fit: radius {fitted.radius:.2f} m"))
