@@ -95,22 +95,22 @@ def ticks(low: float, high: float, most: int = 5) -> list[float]:
     return [index * step for index in range(first, last + 1)]
 
 
-def thin(series: Series, end_s: float) -> Series:
+def thin(series: Series, end_s: float, bins: int = BINS) -> Series:
     """The series itself, or of each stretch of time its lowest and highest value; what is no number is left out."""
     finite = tuple((t, min(max(value, -HUGE), HUGE)) for t, value in series if math.isfinite(value))
-    if len(finite) <= 2 * BINS:
+    if len(finite) <= 2 * bins:
         return finite
-    bins: dict[int, list[tuple[float, float]]] = {}
+    stretches: dict[int, list[tuple[float, float]]] = {}
     for t, value in finite:
-        bins.setdefault(int(t / end_s * BINS), []).append((t, value))
+        stretches.setdefault(int(t / end_s * bins), []).append((t, value))
     kept: list[tuple[float, float]] = []
-    for inside in bins.values():
+    for inside in stretches.values():
         ends = {min(inside, key=lambda each: each[1]), max(inside, key=lambda each: each[1])}
         kept += sorted(ends)
     return tuple(kept)
 
 
-def intervals(evidence: Evidence) -> Chart | None:
+def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> Chart | None:
     """The time since the command before, for each one, with the band that is allowed; None with fewer than two."""
     measured = measure(evidence)
     if not measured.intervals:
@@ -132,7 +132,9 @@ def intervals(evidence: Evidence) -> Chart | None:
     if rate:
         caption += f" Asked for: {wanted:.2f} s; allowed: {allowed[0]:.2f} to {allowed[1]:.2f} s (the green band)."
         drawn += _band(area, *allowed) + _dashes(area, wanted)
-    drawn += "".join(_dot(area, t, value, good=allowed[0] <= value <= allowed[1]) for t, value in thin(series, end_s))
+    drawn += "".join(
+        _dot(area, t, value, good=allowed[0] <= value <= allowed[1]) for t, value in thin(series, end_s, bins)
+    )
     svg = picture(
         area.frame("seconds since the command before"),
         drawn,
@@ -143,6 +145,7 @@ def intervals(evidence: Evidence) -> Chart | None:
         title="Intervals between commands over time",
         about=caption,
         key="intervals",
+        name=name,
     )
     return Chart(svg, caption)
 
@@ -152,7 +155,7 @@ def _s(seconds: float) -> str:
     return f"{seconds:.2f}" if seconds >= 0.1 else f"{seconds:.2g}"
 
 
-def values(evidence: Evidence) -> Chart | None:
+def values(evidence: Evidence, name: str = "values", bins: int = BINS) -> Chart | None:
     """What the commands said over time: the fields that were asked for and those that ever were not 0."""
     commands = evidence.commands
     if not commands:
@@ -166,7 +169,7 @@ def values(evidence: Evidence) -> Chart | None:
         series = tuple((command.t_s, six(command)[index]) for command in commands)
         unit = "m/s" if index < 3 else "rad/s"
         top = TOP + row * (HEIGHT + GAP)
-        rows.append(_steps(series, wanted[index] if asked else None, f"{FIELDS[index]} ({unit})", end_s, top))
+        rows.append(_steps(series, wanted[index] if asked else None, f"{FIELDS[index]} ({unit})", end_s, (top, bins)))
         captions.append(_said(series, FIELDS[index], unit, wanted[index] if asked else None))
     height = TOP + len(shown) * HEIGHT + (len(shown) - 1) * GAP + BOTTOM
     caption = " ".join(captions)
@@ -178,6 +181,7 @@ def values(evidence: Evidence) -> Chart | None:
         title="Values in the commands over time",
         about=caption,
         key="values",
+        name=name,
     )
     return Chart(svg, caption)
 
@@ -191,9 +195,10 @@ def _end_s(evidence: Evidence) -> float:
     return max(seen.end_s(evidence.trial), 0.1)
 
 
-def _steps(series: Series, wanted: float | None, label: str, end_s: float, top: float) -> str:
-    """One field: a step at each command, a dashed line for what was asked for."""
-    drawn = thin(series, end_s)
+def _steps(series: Series, wanted: float | None, label: str, end_s: float, where: tuple[float, int]) -> str:
+    """One field: a step at each command, a dashed line for what was asked for; `where`: its top, its bins."""
+    top, bins = where
+    drawn = thin(series, end_s, bins)
     known = [value for _, value in drawn] + ([wanted] if wanted is not None else []) + [0.0]
     low, high = min(known), max(known)
     margin = 0.15 * (high - low) or 1.0

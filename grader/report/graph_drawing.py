@@ -37,7 +37,7 @@ class GraphDrawing:
     left_out: int
 
 
-def draw_graph(recording: Recording) -> GraphDrawing | None:
+def draw_graph(recording: Recording, name: str = "graph") -> GraphDrawing | None:
     """All nodes and topics that were ever in the graph, but those that every node has; None when nothing was seen."""
     nodes = sorted({node for graph in recording.graphs for node in graph.nodes})
     ends = {end: None for graph in recording.graphs for end in graph.endpoints}
@@ -57,7 +57,7 @@ def draw_graph(recording: Recording) -> GraphDrawing | None:
     left = _ordered([name for topic in shown for name in topic.publishers]) + [node.name for node in graph.alone]
     right = _ordered([name for topic in shown for name in topic.subscribers])
     dropped = len(topics) - len(shown) + sum(max(len(names) - MOST_NODES, 0) for names in (left, right))
-    svg = _draw(shown, types, left[:MOST_NODES], right[:MOST_NODES])
+    svg = _draw(shown, types, left[:MOST_NODES], right[:MOST_NODES], name)
     return GraphDrawing(svg, tuple(rows[:60]), dropped)
 
 
@@ -65,7 +65,7 @@ def _of_student(topic: Topic, own: set[str]) -> bool:
     return bool({*topic.publishers, *topic.subscribers} - own)
 
 
-def _draw(topics: Sequence[Topic], types: dict[str, list[str]], left: list[str], right: list[str]) -> str:
+def _draw(topics: Sequence[Topic], types: dict[str, list[str]], left: list[str], right: list[str], name: str) -> str:
     height = max(len(left), len(right), len(topics), 1) * ROW + 34
     middle_x, right_x = (WIDTH - MIDDLE) / 2, WIDTH - SIDE - 2
     parts = [
@@ -76,17 +76,23 @@ def _draw(topics: Sequence[Topic], types: dict[str, list[str]], left: list[str],
     heights = _places([topic.name for topic in topics], height)
     for topic in topics:
         y = heights[topic.name]
-        parts += [_arrow(2 + SIDE, lefts[name], middle_x, y) for name in topic.publishers if name in lefts]
-        parts += [_arrow(middle_x + MIDDLE, y, right_x, rights[name]) for name in topic.subscribers if name in rights]
+        parts += [_arrow(2 + SIDE, lefts[node], middle_x, y) for node in topic.publishers if node in lefts]
+        parts += [_arrow(middle_x + MIDDLE, y, right_x, rights[node]) for node in topic.subscribers if node in rights]
         parts.append(_topic(topic.name, types.get(topic.name, []), middle_x, y))
-    parts += [_node(name, 2.0, y) for name, y in lefts.items()]
-    parts += [_node(name, right_x, y) for name, y in rights.items()]
+    parts += [_node(node, 2.0, y) for node, y in lefts.items()]
+    parts += [_node(node, right_x, y) for node, y in rights.items()]
     about = " ".join(
         f"On {shorten(topic.name)} {_who(topic.publishers)} publishes and {_who(topic.subscribers)} subscribes."
         for topic in topics
     )
     return picture(
-        *parts, width=WIDTH, height=height, title="The ROS graph: nodes and topics", about=about, key="graph"
+        *parts,
+        width=WIDTH,
+        height=height,
+        title="The ROS graph: nodes and topics",
+        about=about,
+        key="graph",
+        name=f"{name}-picture",
     )
 
 

@@ -236,5 +236,12 @@ def distribution(shares: Iterable[float]) -> str:
     base = tag("path", d=f"M8 {top + height}H{width - 8}", stroke="currentColor")
     label = words("% of the points, or up to 9 more", width - 10, top + height + 40, "end")
     return picture(
-        *parts, base, label, width=width, height=top + height + 44, title="Distribution of points", key="distribution"
+        *parts,
+        base,
+        label,
+        width=width,
+        height=top + height + 44,
+        title="Distribution of points",
+        key="distribution",
+        name="distribution",
     )

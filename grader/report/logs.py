@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from grader.report.plain import Cut, cut, plain_line, size
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from grader.checks.evidence import Evidence
     from grader.recording import Output
 
@@ -18,6 +20,15 @@ LOOKED_AT = 400_000
 MOST_ERRORS = 40
 ERROR = re.compile(r"\b(?:Traceback \(most|\w*Error\b|\w*Exception\b|error:|ERROR|FATAL|Failed\b)|\[ERROR\]")
 BEGINS = "Traceback (most recent call last):"
+
+
+@dataclass(frozen=True)
+class Size:
+    """How many bytes of a page a log's beginning, its end and its errors may take."""
+
+    head: int
+    tail: int
+    errors: int
 
 
 @dataclass(frozen=True)
@@ -32,40 +43,48 @@ class Log:
     note: str = ""
 
 
-def logs_of(evidence: Evidence) -> tuple[Log, ...]:
-    """The build's log, the node's output, what it logged; those with errors first."""
+def logs_of(evidences: Sequence[Evidence]) -> tuple[Log, ...]:
+    """The build's log, and of each trial the node's output and what it logged; those with errors first."""
     logs = []
-    build, recording = evidence.build, evidence.recording
+    build = evidences[0].build
+    # All of them share the page's room.
+    size = Size(HEAD_BYTES // len(evidences), TAIL_BYTES // len(evidences), ERROR_BYTES)
     if build is not None:
         note = f"colcon ended with exit code {build.exit_code}." if build.exit_code else ""
-        logs.append(_log("build", "What colcon said while it built", build.log, note))
-    if recording is not None:
+        logs.append(_log("build", "What colcon said while it built", build.log, size, note))
+    for number, evidence in enumerate(evidences):
+        recording = evidence.recording
+        if recording is None:
+            continue
+        end = f"-{number}" if number else ""
+        node = f"the node {evidence.exercise.executable}" if len(evidences) > 1 else "the node"
         for key, title, output in (
-            ("stderr", "What the node wrote on stderr", recording.stderr),
-            ("stdout", "What the node printed on stdout", recording.stdout),
+            ("stderr", f"What {node} wrote on stderr", recording.stderr),
+            ("stdout", f"What {node} printed on stdout", recording.stdout),
         ):
-            logs.append(_log(key, title, output.text, _dropped(output)))
+            logs.append(_log(key + end, title, output.text, size, _dropped(output)))
         logged = "\n".join(f"{line.t_s:7.2f} s  {line.level:5}  {line.logger}: {line.text}" for line in recording.log)
-        logs.append(_log("rosout", "What was logged on /rosout, by arrival", logged))
+        beside = f" while {evidence.exercise.executable} ran" if len(evidences) > 1 else ""
+        logs.append(_log("rosout" + end, f"What was logged on /rosout{beside}, by arrival", logged, size))
     return tuple(sorted((log for log in logs if log.lines), key=lambda log: not log.errors))
 
 
-def _log(key: str, title: str, text: str, note: str = "") -> Log:
+def _log(key: str, title: str, text: str, room: Size, note: str = "") -> Log:
     text = text.rstrip("\n")
     lines = text.count("\n") + 1 if text.strip() else 0
-    return Log(key, title, lines, tuple(errors_in(text)), cut(text, HEAD_BYTES, TAIL_BYTES), note)
+    return Log(key, title, lines, tuple(errors_in(text, room.errors)), cut(text, room.head, room.tail), note)
 
 
 def _dropped(output: Output) -> str:
     return f"{output.dropped} bytes more were written and not kept." if output.dropped else ""
 
 
-def errors_in(text: str) -> list[tuple[int, str]]:
+def errors_in(text: str, room: int = ERROR_BYTES) -> list[tuple[int, str]]:
     """The lines that look like errors with their numbers from 1, tracebacks whole; not more than a page can take."""
     searched = text[-LOOKED_AT:]
     first = text.count("\n", 0, len(text) - len(searched)) + 1
     found: list[tuple[int, str]] = []
-    inside, room = False, ERROR_BYTES
+    inside = False
     for number, line in enumerate(searched.split("\n"), first):
         head = line[:2000]
         if BEGINS in head:

@@ -64,11 +64,11 @@ def points(of: Iterable[Point]) -> str:
     return " ".join(f"{coordinate(x)},{coordinate(y)}" for x, y in of)
 
 
-def picture(*children: str, width: float, height: float, title: str, about: str = "", key: str) -> str:
-    """A whole picture that scales with its page; `key` is its name among all pictures of a page."""
-    named = [tag("title", escape(printable(title)), id=f"picture-{key}-title")]
+def picture(*children: str, width: float, height: float, title: str, key: str, name: str, about: str = "") -> str:
+    """A whole picture that scales with its page; `key` is its sort, `name` tells it from all others of the page."""
+    named = [tag("title", escape(printable(title)), id=f"picture-{name}-title")]
     if about:
-        named.append(tag("desc", escape(printable(about)), id=f"picture-{key}-about"))
+        named.append(tag("desc", escape(printable(about)), id=f"picture-{name}-about"))
     return tag(
         "svg",
         *named,
@@ -76,8 +76,8 @@ def picture(*children: str, width: float, height: float, title: str, about: str 
         xmlns="http://www.w3.org/2000/svg",
         viewBox=f"0 0 {coordinate(width)} {coordinate(height)}",
         role="img",
-        aria_labelledby=f"picture-{key}-title",
-        aria_describedby=f"picture-{key}-about" if about else None,
+        aria_labelledby=f"picture-{name}-title",
+        aria_describedby=f"picture-{name}-about" if about else None,
         font_family="system-ui, sans-serif",
         font_size=13,
         class_=f"picture {key}",
@@ -90,15 +90,15 @@ def pixel(point: Point) -> Point:
     return LEFT + point[0] * scale, TOP + SIDE - point[1] * scale
 
 
-def scene_svg(scene: Scene, *, turtle: bool = False) -> str:
+def scene_svg(scene: Scene, *, turtle: bool = False, name: str = "canvas") -> str:
     """The canvas with its axes; `turtle` adds one that a player may move, and the part of the way it has gone."""
     scale = SIDE / SIDE_M
     shapes = "".join(_shape(shape, scale) for shape in scene.shapes)
     inside = [tag("rect", x=LEFT, y=TOP, width=SIDE, height=SIDE, fill=rgb(SEA)), tag("g", shapes)]
     if turtle:
         inside.append(_turtle())
-    clip = tag("clipPath", tag("rect", x=LEFT, y=TOP, width=SIDE, height=SIDE), id="canvas-edge")
-    canvas = tag("g", *inside, clip_path="url(#canvas-edge)")
+    clip = tag("clipPath", tag("rect", x=LEFT, y=TOP, width=SIDE, height=SIDE), id=f"{name}-edge")
+    canvas = tag("g", *inside, clip_path=f"url(#{name}-edge)")
     notice = _notice(scene.notice) if scene.notice else ""
     return picture(
         tag("defs", clip),
@@ -110,6 +110,7 @@ def scene_svg(scene: Scene, *, turtle: bool = False) -> str:
         title="The turtle's way on its canvas, 11 m by 11 m",
         about=". ".join([*([scene.notice] if scene.notice else []), *(text for _, text in scene.legend), *scene.facts]),
         key="canvas",
+        name=name,
     )
 
 
@@ -180,8 +181,10 @@ def _turtle() -> str:
     legs = [tag("ellipse", cx=x, cy=y, rx=5, ry=4, **skin) for x in (-9, 9) for y in (-12, 12)]
     tail = tag("path", d="M-21 0 L-14-2.5 L-14 2.5Z", **skin)
     eyes = [tag("circle", cx=21, cy=y, r=1.2, fill=rgb(DEEP)) for y in (-2, 2)]
-    gone = tag("polyline", id="gone", points="", fill="none", stroke="#ffffff", stroke_width=4, stroke_linejoin="round")
-    return gone + tag("g", tail, *legs, head, *eyes, shell, pattern, id="turtle", visibility="hidden")
+    gone = tag(
+        "polyline", class_="gone", points="", fill="none", stroke="#ffffff", stroke_width=4, stroke_linejoin="round"
+    )
+    return gone + tag("g", tail, *legs, head, *eyes, shell, pattern, class_="turtle", visibility="hidden")
 
 
 def sign(role: Role) -> str:

@@ -1,17 +1,11 @@
 "use strict";
 // The player: puts the turtle where it was at a time, and moves the time on. The page is whole without it.
-(function () {
-  var run = JSON.parse(document.getElementById("data").textContent);
-  var turtle = document.getElementById("turtle");
-  if (!turtle || !run.t || run.t.length < 2) return;
-
-  var player = document.getElementById("player");
-  var play = document.getElementById("play");
-  var time = document.getElementById("time");
-  var speed = document.getElementById("speed");
-  var now = document.getElementById("now");
-  var gone = document.getElementById("gone");
-  var heads = Array.prototype.slice.call(document.querySelectorAll(".head"));
+function replay(run, view) {
+  function find(name) { return view.querySelector("." + name); }
+  if (run.t.length < 2) return;
+  var turtle = find("turtle"), gone = find("gone"), player = find("player");
+  var play = find("play"), time = find("slider"), speed = find("speed"), now = find("now");
+  var heads = Array.prototype.slice.call(view.querySelectorAll(".head"));
   var canvas = run.canvas;
   var at = run.end, last = null;
 
@@ -93,7 +87,11 @@
   time.max = String(run.end);
   player.hidden = false;
   show(run.end);
-})();
+}
+
+JSON.parse(document.getElementById("data").textContent).forEach(function (run, index) {
+  replay(run, document.querySelectorAll(".run")[index]);
+});
 
 // On paper everything that explains is open; the logs stay as the reader left them.
 (function () {

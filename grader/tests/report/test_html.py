@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.exercise import find_exercise
 from grader.outcome import Finding, Outcome, Status
 from grader.recording import Output
 from grader.report.html import html_page, save_html
@@ -196,7 +197,7 @@ def test_logs_with_errors_come_first_and_their_errors_before_the_rest() -> None:
 def test_the_player_gets_the_way_without_what_is_no_number() -> None:
     given = evidence(recording(every(0.5, 2.0, float("nan"))))
     page = page_of(given)
-    data = json.loads(re.findall(r'id="data">(.*?)</script>', page)[0])
+    data = json.loads(re.findall(r'id="data">(.*?)</script>', page)[0])[0]
     assert len(data["t"]) == len(data["x"]) == len(data["theta"])
     assert data["x"][0] == pytest.approx(5.544)
     assert data["x"][-1] is None
@@ -210,6 +211,29 @@ def test_what_differs_from_run_to_run_is_not_on_the_page() -> None:
         for seconds, path in ((1.0, None), (77.7, "/tmp/rec"))
     )
     assert first == second
+
+
+def test_each_trial_of_an_exercise_is_shown() -> None:
+    whole = find_exercise("07-challenges")
+    first = replace(evidence(good()), exercise=whole)
+    others = {trial.id: replace(first.in_trial(trial.id), recording=recording([])) for trial in whole.trials}
+    page = page_of(replace(first, others=others))
+    tags = Tags(page)
+    ids = [attributes["id"] for _, attributes in tags.elements if "id" in attributes]
+    assert len(ids) == len(set(ids))
+    titles = [text.strip() for text in tags.texts["h3"]]
+    assert {trial.executable for trial in (*whole.trials, whole)} <= set(titles)
+    data = json.loads(re.findall(r'id="data">(.*?)</script>', page)[0])
+    assert [len(run["commands"]) > 0 for run in data] == [True, False, False, False]
+    assert page.count('class="player"') == len(data) == 4
+
+
+def test_a_circle_that_another_trial_asks_for_is_not_drawn() -> None:
+    given = EVIDENCE["passed"]
+    checks = tuple(replace(spec, trial="other") for spec in given.exercise.checks)
+    page = html_page(replace(given, exercise=replace(given.exercise, checks=checks)), report_of(given))
+    assert 'class="expected"' not in page
+    assert 'class="expected"' in page_of(given)
 
 
 def test_regrade_makes_the_same_page(tmp_path: Path) -> None:

@@ -94,7 +94,7 @@ def stand_still(page: Page) -> None:
 
 def turtle(page: Page) -> tuple[float, float, float]:
     """Where the turtle is drawn: x, y, and by how much it is turned (degrees)."""
-    transform = page.locator("#turtle").get_attribute("transform") or ""
+    transform = page.locator(".turtle").get_attribute("transform") or ""
     x, y, degrees = map(float, re.findall(r"-?[\d.]+", transform))
     return x, y, degrees
 
@@ -106,16 +106,16 @@ def test_the_replay_moves_the_turtle_at_the_chosen_speed_and_ends(page: Page, pa
     page.get_by_label("Speed").select_option("2")
     page.get_by_role("button", name="Play").click()
     page.clock.run_for(1000)
-    assert float(page.locator("#time").input_value()) == pytest.approx(2.0, abs=0.3)
+    assert float(page.locator(".slider").input_value()) == pytest.approx(2.0, abs=0.3)
     x, y, degrees = turtle(page)
     # After 2 s of which 0.5 s passed before the first command: 1.5 rad round the centre (5.54, 7.54) m, to the left.
     assert degrees == pytest.approx(-86, abs=17)
     assert (x, y) != rest[:2]
     button = page.get_by_role("button", name="Pause")
     button.click()
-    paused = page.locator("#time").input_value()
+    paused = page.locator(".slider").input_value()
     page.clock.run_for(1000)
-    assert page.locator("#time").input_value() == paused
+    assert page.locator(".slider").input_value() == paused
     page.get_by_role("button", name="Play").click()
     page.clock.run_for(5000)
     assert page.get_by_role("button", name="Play").is_visible()
@@ -129,7 +129,7 @@ def test_twenty_times_is_twenty_times(page: Page, pages: Path) -> None:
     page.get_by_label("Speed").select_option("20")
     page.get_by_role("button", name="Play").click()
     page.clock.run_for(250)
-    assert float(page.locator("#time").input_value()) == pytest.approx(5.0, abs=0.7)
+    assert float(page.locator(".slider").input_value()) == pytest.approx(5.0, abs=0.7)
 
 
 def test_the_slider_is_moved_by_keys_and_says_the_time(page: Page, pages: Path) -> None:
@@ -139,12 +139,12 @@ def test_the_slider_is_moved_by_keys_and_says_the_time(page: Page, pages: Path) 
     page.keyboard.press("Home")
     start = turtle(page)
     assert start[2] == 0
-    assert "no command yet" in page.locator("#now").inner_text()
+    assert "no command yet" in page.locator(".now").inner_text()
     for _ in range(20):
         page.keyboard.press("ArrowRight")
     assert slider.get_attribute("aria-valuetext") == "2.0 of 10.0 seconds"
     assert turtle(page) != start
-    assert "linear.x 2.00 m/s" in page.locator("#now").inner_text()
+    assert "linear.x 2.00 m/s" in page.locator(".now").inner_text()
     heads = page.locator(".head")
     assert heads.count() == 3
     assert {heads.nth(index).get_attribute("visibility") for index in range(3)} == {"visible"}
@@ -153,7 +153,7 @@ def test_the_slider_is_moved_by_keys_and_says_the_time(page: Page, pages: Path) 
 def test_the_way_gone_follows_the_turtle(page: Page, pages: Path) -> None:
     opened(page, pages, "passed")
     page.get_by_role("slider", name="Time").fill("4")
-    points = page.locator("#gone").get_attribute("points") or ""
+    points = page.locator(".gone").get_attribute("points") or ""
     last = points.split()[-1].split(",")
     assert [float(each) for each in last] == pytest.approx(turtle(page)[:2], abs=0.2)
 
@@ -161,16 +161,16 @@ def test_the_way_gone_follows_the_turtle(page: Page, pages: Path) -> None:
 def test_a_turtle_that_is_nowhere_is_not_drawn(page: Page, pages: Path) -> None:
     opened(page, pages, "nan")
     page.get_by_role("slider", name="Time").fill("9")
-    assert page.locator("#turtle").get_attribute("visibility") == "hidden"
-    assert "not a number" in page.locator("#now").inner_text()
+    assert page.locator(".turtle").get_attribute("visibility") == "hidden"
+    assert "not a number" in page.locator(".now").inner_text()
     page.get_by_role("slider", name="Time").fill("0.1")
-    assert page.locator("#turtle").get_attribute("visibility") == "visible"
+    assert page.locator(".turtle").get_attribute("visibility") == "visible"
 
 
 def test_without_scripts_the_page_is_whole(browser: Browser, pages: Path) -> None:
     tab = browser.new_page(java_script_enabled=False)
     tab.goto((pages / "failed.html").as_uri())
-    assert not tab.locator("#player").is_visible()
+    assert not tab.locator(".player").is_visible()
     assert tab.locator("svg.canvas").is_visible()
     assert tab.get_by_text("The circle's radius is 2.2 m.").is_visible()
     tab.close()
@@ -232,7 +232,7 @@ def looked_at(page: Page, pages: Path, name: str, scheme: str, width: int) -> li
 
 def test_axe_would_find_something(page: Page, pages: Path) -> None:
     opened(page, pages, "passed")
-    page.evaluate("document.getElementById('play').textContent = ''")
+    page.evaluate("document.querySelector('.play').textContent = ''")
     assert violations(page) != []
 
 
@@ -257,7 +257,7 @@ def test_on_paper_what_explains_is_open_and_the_player_is_gone(page: Page, pages
     assert page.evaluate("window.open_") == 2
     page.emulate_media(media="print")
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
-    assert not page.locator("#player").is_visible()
+    assert not page.locator(".player").is_visible()
     assert page.locator("details[open]").count() == 0
 
 
@@ -347,4 +347,4 @@ def test_the_policy_stops_what_escaping_would_let_through(
     page.locator("#bad").click()
     assert page.evaluate("window.ran") == []
     assert sum("Content Security Policy" in text for text in said) >= 4
-    assert page.locator("#player").is_visible(), "our own script still runs"
+    assert page.locator(".player").is_visible(), "our own script still runs"

@@ -1,0 +1,149 @@
+"""What a page shows of each trial: the canvas with its player, the charts, the graph, the commands as a table."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup
+
+from grader.checks import seen
+from grader.report import charts
+from grader.report.graph_drawing import GraphDrawing, draw_graph
+from grader.report.scene import SIDE_M, scene_of
+from grader.report.svg import LEFT, SIDE, TOP, scene_svg, sign
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from grader.checks.evidence import Evidence
+
+MOST_FRAMES = 1500
+"""Of the turtle's way in the players of a page together."""
+MOST_ROWS = 100
+"""Of the table of commands."""
+MOST_STEPS = 1000
+"""Of the commands that a player tells."""
+DRIVING = ("circle", "eight", "goal", "rate", "square", "values")
+"""Kinds of check for which a node has to command the turtle."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A chart, ready for the template."""
+
+    svg: Markup
+    caption: str
+
+
+@dataclass(frozen=True)
+class Run:
+    """A trial, ready for the template; `data` is what its player reads. `end` tells how the node's process ended.
+
+    `idle`: no command arrived, and some should have.
+    """
+
+    key: str
+    title: str
+    duration_s: float
+    canvas: Markup
+    legend: tuple[tuple[Markup, str], ...]
+    facts: tuple[str, ...]
+    end: str
+    charts: tuple[Picture, ...]
+    rows: tuple[tuple[str, ...], ...]
+    amount: int
+    idle: bool
+    graph: GraphDrawing | None
+    graph_svg: Markup
+    data: dict[str, object]
+
+
+def runs_of(evidences: Sequence[Evidence]) -> list[Run]:
+    """The trials that were run, in order; each is titled where there are several."""
+    several = len(evidences) > 1
+    tried = [(number, evidence) for number, evidence in enumerate(evidences) if evidence.recording is not None]
+    return [_run(evidence, f"run-{number}" if number else "run", several, len(tried)) for number, evidence in tried]
+
+
+def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
+    scene = scene_of(evidence)
+    bins = max(charts.BINS // among, 20)
+    found = (
+        charts.intervals(evidence, f"{key}-intervals", bins),
+        charts.values(evidence, f"{key}-values", bins),
+    )
+    recording = evidence.trial
+    graph = draw_graph(recording, f"{key}-graph")
+    trial = evidence.exercise.trial
+    driving = any(spec.kind in DRIVING and spec.trial == trial for spec in evidence.exercise.checks)
+    return Run(
+        key=key,
+        title=evidence.exercise.executable if several else "",
+        duration_s=recording.duration_s,
+        canvas=Markup(scene_svg(scene, turtle=True, name=f"{key}-canvas")),
+        legend=tuple((Markup(sign(role)), text) for role, text in scene.legend),
+        facts=scene.facts,
+        end=_end(evidence),
+        charts=tuple(Picture(Markup(each.svg), each.caption) for each in found if each is not None),
+        rows=tuple(_rows(evidence)),
+        amount=len(evidence.commands),
+        idle=driving and not evidence.commands,
+        graph=graph,
+        graph_svg=Markup(graph.svg if graph else ""),
+        data=_data(evidence, among),
+    )
+
+
+def _end(evidence: Evidence) -> str:
+    """How the node's process ended, in a sentence."""
+    end = evidence.trial.end
+    # A shell tells the end by a signal as 128 and the signal's number.
+    code = end.exit_code if end.exit_code >= 0 else 128 - end.exit_code
+    if end.by == "itself":
+        return f"The node ended by itself after {end.t_s:.1f} s, with exit code {code}."
+    told = {"SIGINT": "on Ctrl-C", "SIGTERM": "only on SIGTERM", "SIGKILL": "only when it was killed (SIGKILL)"}[end.by]
+    return f"The node stopped {told}, with exit code {code}."
+
+
+def _rows(evidence: Evidence) -> list[tuple[str, ...]]:
+    """Each command in words: when, how long after the one before, linear.x, angular.z."""
+    rows: list[tuple[str, ...]] = []
+    before: float | None = None
+    for command in evidence.commands[:MOST_ROWS]:
+        since = "" if before is None else f"{command.t_s - before:.3f}"
+        rows.append((f"{command.t_s:.3f}", since, f"{command.linear[0]:g}", f"{command.angular[2]:g}"))
+        before = command.t_s
+    return rows
+
+
+def _data(evidence: Evidence, among: int) -> dict[str, object]:
+    """What the player needs: the turtle (m, rad) at times (s), the commands; null for what is no finite number."""
+    recording = evidence.trial
+    end_s = seen.end_s(recording)
+    frames = recording.frames
+    count = int((frames.t_s <= end_s).sum())
+    every = count * among // MOST_FRAMES + 1
+    start = recording.start
+    commands = evidence.commands[: MOST_STEPS // among]
+    return {
+        "end": round(end_s, 3),
+        "canvas": {"left": LEFT, "bottom": TOP + SIDE, "scale": SIDE / SIDE_M},
+        "across": charts.WIDTH - charts.LEFT - charts.RIGHT,
+        "t": [0, *_numbers(frames.t_s[:count:every].tolist())],
+        "x": [round(start.x, 3), *_numbers(frames.x[:count:every].tolist())],
+        "y": [round(start.y, 3), *_numbers(frames.y[:count:every].tolist())],
+        "theta": [round(start.theta, 3), *_numbers(frames.theta[:count:every].tolist())],
+        "commands": [
+            [round(command.t_s, 3), _number(command.linear[0]), _number(command.angular[2])] for command in commands
+        ],
+    }
+
+
+def _numbers(values: list[float]) -> list[float | None]:
+    return [_number(value) for value in values]
+
+
+def _number(value: float) -> float | None:
+    return round(value, 3) if math.isfinite(value) else None
