@@ -153,8 +153,9 @@ def test_what_is_published_arrives(still: World) -> None:
 
 def test_the_last_message_is_kept_for_who_comes_later(still: World) -> None:
     # A publisher that keeps its last message is asked for it.
-    still.start(f"python3 -c '{KEEPS}'", "published")
+    keeper = still.start(f"python3 -c '{KEEPS}'", "published")
     assert still.run("ros2 topic echo --once /kept").stdout == "data: old news\n---\n"
+    keeper.stop()
 
 
 def test_param_dump_is_a_parameter_file(still: World) -> None:
@@ -163,9 +164,9 @@ def test_param_dump_is_a_parameter_file(still: World) -> None:
     assert "    qos_overrides:\n      /parameter_events:\n        publisher:\n          depth: 1000\n" in dumped
     (still.home / "params.yaml").write_text(dumped.replace("background_b: 255", "background_b: 12"))
     other = still.start(
-        "ros2 run turtlesim turtlesim_node --ros-args --params-file params.yaml", "Spawning", ROS_DOMAIN_ID="1"
+        "ros2 run turtlesim turtlesim_node --ros-args --params-file params.yaml", "Spawning", ROS_DOMAIN_ID="102"
     )
-    assert still.run("ros2 param get /turtlesim background_b --hide-type", ROS_DOMAIN_ID="1").stdout == "12\n"
+    assert still.run("ros2 param get /turtlesim background_b --hide-type", ROS_DOMAIN_ID="102").stdout == "12\n"
     other.stop()
 
 
@@ -199,3 +200,10 @@ def test_a_new_package_is_right_by_the_courses_own_checks(still: World) -> None:
     assert "WARNING" not in built.stderr
     tested = still.run("cd my_package && python3 -m pytest -q test")
     assert tested.code in (0, 5), tested
+
+
+@pytest.mark.exhaustive
+def test_the_list_is_complete_each_time(still: World) -> None:
+    whole = still.run("ros2 topic list -t").stdout
+    assert whole.count("\n") == 5
+    assert [still.run("ros2 topic list -t").stdout for _ in range(40)] == [whole] * 40
