@@ -7,7 +7,9 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -15,6 +17,9 @@ from grader.checks.answers_file import read_answers
 from grader.checks.manifest import read_manifest
 from grader.ros import environment, find_ros
 from grader.tests.console import Block, blocks, differs, run
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 ROOT = Path(__file__).parent.parent.parent
 GOLDEN = Path(__file__).parent / "golden" / "ros2"
@@ -54,6 +59,7 @@ def test_every_block_says_what_it_is(lesson: Path) -> None:
         ("console", ""),
         ("console", "solved"),
         ("console", "ros2"),
+        ("console", "kitchen"),
         ("python", ""),
         ("python", "part"),
         ("python", "example"),
@@ -80,6 +86,39 @@ def test_answers_of_ros2_are_those_that_were_recorded(block: Block) -> None:
         # The same question may have been asked several times, in different situations.
         answers = [ENDS.sub("", text).splitlines() for text in recorded if text.startswith(f"$ {step.command}\n")]
         assert [f"$ {step.command}", *step.printed] in answers
+
+
+@pytest.fixture
+def kitchen(tmp_path: Path) -> Iterator[dict[str, str]]:
+    """Thermometer and heater run; the environment of a shell in which they can be asked about."""
+    ros, domain = find_ros(), 92
+    with subprocess.Popen(
+        [ros.python, Path(__file__).with_name("kitchen.py")],
+        env=environment(ros, home=tmp_path, domain=domain),
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as process:
+        try:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "running\n"
+            path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+            yield {**os.environ, "PATH": path, "ROS_DOMAIN_ID": str(domain)}
+        finally:
+            process.terminate()
+
+
+@pytest.mark.parametrize("block", blocks_of("console", "kitchen"))
+def test_questions_about_the_kitchen_have_the_answers_shown(
+    block: Block, kitchen: dict[str, str], tmp_path: Path
+) -> None:
+    shell = replace(block, text=f"$ source <(grader env)\n{block.text}")
+    answers = run(shell, tmp_path, kitchen, 120.0)
+    for _ in range(5):  # On a busy machine programs may find each other late; then ask again.
+        if all(differs(step.printed, printed) is None for step, printed, _ in answers):
+            break
+        answers = run(shell, tmp_path, kitchen, 120.0)
+    for step, printed, _ in answers:
+        assert differs(step.printed, printed) is None, printed
 
 
 @pytest.mark.parametrize("block", blocks_of("python", "part"))
