@@ -134,6 +134,8 @@ def _read(done: process.Finished) -> Built:
     out_of = next((name for name, signs in _LIMITS_HIT.items() if any(sign in done.stderr for sign in signs)), None)
     cut = done.timed_out or done.too_much or done.out_of is not None
     files = {} if cut else read_tar(done.stdout, MOST_FILES)
+    if len(files) == MOST_FILES:
+        cut, files, out_of = True, {}, "files"
     package = next((path.parts[0] for path in files if len(path.parts) > 1), None)
     inside = {path.relative_to(package): member for path, member in files.items() if path.parts[0] == package}
     return Built(

@@ -60,6 +60,7 @@ class Trial:
         self._node_runs = False
         self._stack = ExitStack()
         self._started = False
+        self._domain: int | None = None
 
     def __enter__(self) -> Trial:  # noqa: PYI034 - typing.Self is Python 3.11's
         self.start()
@@ -126,7 +127,7 @@ class Trial:
 
     def _start(self) -> None:
         if self._in_cell:
-            self._workspace, self._home, self._domain = sandbox.WORKSPACE, sandbox.HOME, 0
+            self._workspace, self._home, self._domain = sandbox.WORKSPACE, sandbox.HOME, None
         else:
             folder = self._stack.enter_context(
                 tempfile.TemporaryDirectory(prefix="grader-", ignore_cleanup_errors=True)
@@ -154,7 +155,7 @@ class Trial:
 
     def _limit(self) -> None:
         # Whatever happens inside, the grader does not wait for ever; the trial's own deadlines are much tighter.
-        timer = Timer(60.0 + 4.0 * self._plan.duration_s, self._process.kill)
+        timer = Timer(120.0 + 6.0 * self._plan.duration_s, self._process.kill)
         timer.daemon = True
         timer.start()
         self._stack.callback(timer.cancel)
