@@ -1,0 +1,11 @@
+"""It reads a secret in the caller's home."""
+
+from pathlib import Path
+
+
+def main():
+    for path in [*Path("/home").glob("*/.secret"), Path.home() / ".secret", Path("/root/.secret")]:
+        try:
+            print(path.read_text())
+        except OSError as error:
+            print(error)

@@ -1,0 +1,13 @@
+"""setup.py leaves a process behind that waits."""
+
+import os
+import time
+
+if os.fork() == 0:
+    os.setsid()
+    if os.fork() == 0:
+        for fd in (0, 1, 2):
+            os.close(fd)
+        os.execv("/bin/sh", ["hostile-304", "-c", "sleep 60; true"])
+    os._exit(0)
+time.sleep(0.1)

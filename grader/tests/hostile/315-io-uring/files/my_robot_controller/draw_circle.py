@@ -1,0 +1,10 @@
+"""It asks for a way around the filter of system calls."""
+
+import ctypes
+
+
+def main():
+    call = ctypes.CDLL(None, use_errno=True).syscall
+    parameters = ctypes.create_string_buffer(120)
+    if call(425, 1, parameters) >= 0:
+        print("TRA" "CE")

@@ -1,0 +1,18 @@
+"""Each of its processes is small enough, all together are not."""
+
+import os
+import time
+
+
+def main():
+    ready, tell = os.pipe()
+    for _ in range(6):
+        if os.fork() == 0:
+            block = bytearray(450 << 20)
+            os.write(tell, b"x" if block else b"")
+            time.sleep(5)
+            os._exit(0)
+    for _ in range(6):
+        os.read(ready, 1)
+    time.sleep(0.5)
+    print("TRA" "CE 2.7 GB")

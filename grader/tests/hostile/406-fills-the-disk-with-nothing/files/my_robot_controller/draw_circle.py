@@ -1,0 +1,10 @@
+"""It makes empty files without end."""
+
+import os
+
+
+def main():
+    os.mkdir("/tmp/hostile-406")
+    for count in range(300_000):
+        os.close(os.open(f"/tmp/hostile-406/{count}", os.O_CREAT | os.O_WRONLY))
+    print("TRA" "CE 300000 files")

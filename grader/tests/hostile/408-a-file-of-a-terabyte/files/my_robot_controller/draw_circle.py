@@ -1,0 +1,8 @@
+"""It makes a file that has more bytes than the disk."""
+
+import os
+
+
+def main():
+    os.truncate(os.open("/tmp/hostile-408", os.O_CREAT | os.O_RDWR), 1 << 40)
+    print("TRA" "CE", os.path.getsize("/tmp/hostile-408"))

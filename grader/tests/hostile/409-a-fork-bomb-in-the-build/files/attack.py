@@ -1,0 +1,7 @@
+"""setup.py starts processes without end."""
+
+import os
+
+for _count in range(1500):
+    os.posix_spawn("/bin/sleep", ["sleep", "20"], {})
+print("TRA" "CE 1500 processes")

@@ -1,0 +1,3 @@
+"""Not the real one."""
+
+print("TRA" "CE of another grader")

@@ -1,0 +1,1 @@
+echo was here > /tmp/hostile-608

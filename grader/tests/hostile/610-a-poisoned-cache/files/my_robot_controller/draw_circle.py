@@ -1,0 +1,5 @@
+"""Does nothing; what is compiled does."""
+
+
+def main():
+    pass

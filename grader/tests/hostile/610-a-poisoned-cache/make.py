@@ -1,0 +1,15 @@
+"""A compiled file that Python takes without a look at the source."""
+
+import py_compile
+from pathlib import Path
+
+
+def make(package: Path) -> None:
+    """Compile another source in the place of draw_circle.py."""
+    folder = package / "my_robot_controller"
+    source = folder / "other.py"
+    source.write_text('print("TRACE of the cache")\n')
+    target = folder / "__pycache__" / "draw_circle.cpython-311.pyc"
+    mode = py_compile.PycInvalidationMode.UNCHECKED_HASH
+    py_compile.compile(str(source), str(target), "draw_circle.py", invalidation_mode=mode)
+    source.unlink()

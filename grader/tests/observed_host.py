@@ -1,0 +1,254 @@
+"""A host that is looked at before and after: a namespace with its own /tmp, home, shared memory, processes and network.
+
+What a submission leaves behind shows here and nowhere else, so an attack can also be run undefended: then bubblewrap
+and prlimit are replaced by programs that do nothing, and the real command finds that it has no sandbox.
+
+Run as a script, this file is what is inside: it offers what an attacker would like to reach (services, secrets), runs
+the command, and tells what is left.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(__file__).parent.parent.parent
+SECRET = "what-only-the-caller-knows"
+USER = 65531
+"""An ordinary user, where root runs the tests."""
+HANG_S = 400.0
+SETTLE_S = 0.5
+"""How long those who wait for the end of the grading get."""
+
+
+@dataclass(frozen=True)
+class Left:
+    """What one command left: `exit_code` is None where even the observer inside was ended."""
+
+    exit_code: int | None
+    stdout: str
+    stderr: str
+    files: frozenset[str]
+    """Below /tmp, /home and /dev/shm, but for the work folder."""
+    processes: tuple[str, ...]
+    sockets: tuple[str, ...]
+    seconds: float
+
+
+class Host:
+    """A host with a scratch folder; /tmp/work in it is the folder `work` outside."""
+
+    def __init__(self, scratch: Path, interfaces: Path | None, *, as_user: bool = False) -> None:
+        self._scratch = scratch
+        self._as_user = as_user and os.geteuid() == 0
+        for name in ("tmp/work", "caller", "shm", "cache/grader", "shims", "other/student"):
+            (scratch / name).mkdir(parents=True)
+        self.work = scratch / "tmp/work"
+        for path in _ours():
+            if path.is_relative_to("/tmp"):
+                # Where it will be mounted; not to be taken for something left behind.
+                (scratch / path.relative_to("/")).mkdir(parents=True)
+        (scratch / "caller/.secret").write_text(SECRET)
+        (scratch / "other/student/submission.txt").write_text(SECRET)
+        if interfaces is not None:
+            shutil.copytree(interfaces, scratch / "cache/grader" / interfaces.name, symlinks=True)
+        _program(scratch / "shims/bwrap", "exit 1")
+        _program(scratch / "shims/prlimit", 'while [ "$1" != "--" ]; do shift; done; shift; exec "$@"')
+
+    def run(self, command: list[str], *, defended: bool = True) -> Left:
+        """Run a command to its end."""
+        if self._as_user:
+            subprocess.run(["chown", "-R", f"{USER}:{USER}", str(self._scratch)], check=True)
+        before = self._files()
+        begun = time.monotonic()
+        script = [sys.executable, "-I", str(Path(__file__)), json.dumps(command)]
+        done = subprocess.run(
+            [*self._become(), *self._outer(defended=defended), *script],
+            capture_output=True,
+            timeout=HANG_S,
+            check=False,
+            stdin=subprocess.DEVNULL,
+            env={"PATH": "/usr/local/bin:/usr/bin:/bin", "LANG": "C.UTF-8"},
+        )
+        try:
+            told = json.loads(done.stdout)
+        except ValueError:
+            said = done.stderr.decode("utf-8", "replace")
+            told = {"exit_code": None, "stdout": "", "stderr": said, "processes": [], "sockets": []}
+        return Left(
+            told["exit_code"],
+            told["stdout"],
+            told["stderr"],
+            frozenset(self._files() - before),
+            tuple(told["processes"]),
+            tuple(told["sockets"]),
+            time.monotonic() - begun,
+        )
+
+    def _become(self) -> list[str]:
+        user = ["setpriv", f"--reuid={USER}", f"--regid={USER}", "--clear-groups", "--inh-caps=-all", "--"]
+        return user if self._as_user else []
+
+    def _outer(self, *, defended: bool) -> list[str]:
+        scratch = self._scratch
+        real = {name: shutil.which(name, path="/usr/local/bin:/usr/bin:/bin") or name for name in ("bwrap", "prlimit")}
+        ordinary = self._as_user or os.geteuid() != 0
+        command = [real["bwrap"], "--die-with-parent", "--unshare-pid", "--unshare-net", "--unshare-ipc"]
+        if ordinary:
+            command += ["--unshare-user"]
+        elif not defended:
+            # Nothing undefended as root, not even here.
+            command += ["--unshare-user", "--uid", str(USER), "--gid", str(USER)]
+        command += ["--dev-bind", "/", "/", "--remount-ro", "/", "--tmpfs", "/home"]
+        for inside, outside in {
+            "/tmp": "tmp",
+            "/home/caller": "caller",
+            "/home/cache": "cache",
+            "/home/other": "other",
+            "/dev/shm": "shm",
+        }.items():
+            command += ["--bind", str(scratch / outside), inside]
+        for path in map(str, _ours()):
+            command += ["--ro-bind", path, path]
+        if not defended:
+            command += [word for name, at in real.items() for word in ("--ro-bind", str(scratch / "shims" / name), at)]
+        if ordinary or not defended:
+            command += ["--proc", "/proc"]
+        for key, value in {
+            "HOME": "/home/caller",
+            "XDG_CACHE_HOME": "/home/cache",
+            "XDG_STATE_HOME": "/home/cache",
+            "GRADER_TOKEN": SECRET,
+        }.items():
+            command += ["--setenv", key, value]
+        return [*command, "--chdir", "/tmp/work", "--"]
+
+    def _files(self) -> set[str]:
+        found = set()
+        for top in ("tmp", "caller", "shm", "other"):
+            for folder, folders, files in os.walk(self._scratch / top):
+                if Path(folder) == self.work:
+                    folders.clear()
+                    continue
+                found |= {str((Path(folder) / name).relative_to(self._scratch)) for name in [*folders, *files]}
+        return found
+
+
+def _ours() -> list[Path]:
+    """Where the grader and its interpreter lie."""
+    found = [ROOT, Path(sys.prefix), Path(sys.base_prefix)]
+    return [
+        path
+        for path in found
+        if not path.is_relative_to("/usr") and not any(path.is_relative_to(o) and path != o for o in found)
+    ]
+
+
+def _program(path: Path, body: str) -> None:
+    path.write_text(f"#!/bin/sh\n{body}\n")
+    path.chmod(0o755)
+
+
+# --- inside -----------------------------------------------------------------------------------------------------
+
+
+def inside(command: list[str]) -> None:
+    """Offer services, run the command, tell what is left."""
+    if os.geteuid() == 0:
+        subprocess.run(["mount", "-t", "proc", "proc", "/proc"], check=True)
+    with _services():
+        child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        stdout, stderr = child.communicate()
+        time.sleep(SETTLE_S)
+        own = _sockets_of(os.getpid())
+        listening = sorted(_listening() - own)
+        alive = [line for pid, line in _processes() if pid not in (1, os.getpid())]
+    told = {"stdout": stdout.decode("utf-8", "replace"), "stderr": stderr.decode("utf-8", "replace")}
+    print(json.dumps({**told, "exit_code": child.returncode, "processes": alive, "sockets": listening}))
+    sys.stdout.flush()
+    with contextlib.suppress(OSError):
+        os.kill(-1, signal.SIGKILL)
+
+
+@contextlib.contextmanager
+def _services() -> Iterator[None]:
+    """A name server and a web server, of sorts, and two sockets by name: all say the secret to whoever asks."""
+    datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    datagrams.bind(("127.0.0.1", 5353))
+    threading.Thread(target=_answer_datagrams, args=(datagrams,), daemon=True).start()
+    listeners: list[tuple[int, str | tuple[str, int]]] = [
+        (socket.AF_INET, ("127.0.0.1", 8080)),
+        (socket.AF_UNIX, "\0host"),
+        (socket.AF_UNIX, "/tmp/host.sock"),
+    ]
+    for family, address in listeners:
+        server = socket.socket(family, socket.SOCK_STREAM)
+        server.bind(address)
+        server.listen()
+        threading.Thread(target=_answer, args=(server,), daemon=True).start()
+    yield
+    Path("/tmp/host.sock").unlink()
+
+
+def _answer(server: socket.socket) -> None:
+    while True:
+        connection, _ = server.accept()
+        connection.sendall(SECRET.encode())
+        connection.close()
+
+
+def _answer_datagrams(server: socket.socket) -> None:
+    while True:
+        _, who = server.recvfrom(1024)
+        server.sendto(SECRET.encode(), who)
+
+
+def _processes() -> list[tuple[int, str]]:
+    found = []
+    for pid in (int(entry.name) for entry in Path("/proc").iterdir() if entry.name.isdigit()):
+        with contextlib.suppress(OSError):
+            line = Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode("utf-8", "replace").strip()
+            if line:
+                found.append((pid, line))
+    return found
+
+
+def _listening() -> set[str]:
+    """Sockets that wait for others, by inode."""
+    found = set()
+    for name, state in (("tcp", "0A"), ("udp", "07")):
+        for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]:
+            words = line.split()
+            if words[3] == state:
+                found.add(f"{name} {words[1]} {words[9]}")
+    for line in Path("/proc/net/unix").read_text().splitlines()[1:]:
+        words = line.split()
+        if words[3] == "00010000":
+            found.add(f"unix {words[7] if len(words) > 7 else ''} {words[6]}")
+    return found
+
+
+def _sockets_of(pid: int) -> set[str]:
+    links = set()
+    for link in Path(f"/proc/{pid}/fd").iterdir():
+        with contextlib.suppress(OSError):
+            links.add(str(link.readlink()))
+    return {each for each in _listening() if f"socket:[{each.split()[-1]}]" in links}
+
+
+if __name__ == "__main__":
+    inside(json.loads(sys.argv[1]))

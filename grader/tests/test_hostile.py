@@ -1,0 +1,223 @@
+"""Every attack in hostile/: held where the sandbox is, and really an attack where it is not."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader import archive, ros, sandbox, underlay
+from grader.checks.judge import judge
+from grader.outcome import Status
+from grader.tests.attack import Attack, make_attack, read_attacks
+from grader.tests.case import copy_solution
+from grader.tests.observed_host import SECRET, USER, Host, Left
+from grader.trial.recorder import NAMESAKE, OWN_NAMESPACE
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from grader.checks.evidence import Evidence
+
+EXERCISE = "03-circle-publisher"
+ATTACKS = read_attacks()
+WAYS = ("defended", "as-user", "undefended")
+pytestmark = pytest.mark.skipif(not sandbox.usable(), reason="there is no sandbox here")
+
+
+@dataclass(frozen=True)
+class Run:
+    """An attack's grading: what the host was left with, and the folder with report.json, report.html and recording/."""
+
+    left: Left
+    work: Path
+
+    @property
+    def evidence(self) -> Evidence:
+        return archive.load(self.work / "recording").evidence
+
+    @property
+    def points(self) -> float:
+        return float(json.loads((self.work / "report.json").read_bytes())["points"])
+
+    @property
+    def said(self) -> str:
+        """What build and node wrote."""
+        evidence = self.evidence
+        log = evidence.build.log if evidence.build else ""
+        if evidence.recording is None:
+            return log
+        return log + evidence.recording.stdout.text + evidence.recording.stderr.text
+
+
+class Runs:
+    """Runs what this session asks for, as many at once as there are processors."""
+
+    def __init__(self, wanted: list[tuple[Attack, str]], folder: Path, pool: ThreadPoolExecutor) -> None:
+        self._futures: dict[tuple[str, str], Future[Run]] = {
+            (attack.name, way): pool.submit(run, attack, way, folder / f"{attack.name}.{way}") for attack, way in wanted
+        }
+
+    def of(self, attack: Attack, way: str) -> Run:
+        return self._futures[attack.name, way].result()
+
+
+def run(attack: Attack, way: str, folder: Path) -> Run:
+    host = Host(folder, underlay.ensure(ros.find_ros()), as_user=way == "as-user")
+    make_attack(attack, host.work)
+    if way == "undefended" and attack.raw:
+        raw = attack.raw.replace("{python}", shlex.quote(sys.executable))
+        script = f"cd my_robot_controller && {{ {raw}; }} 2>&1"
+        return Run(host.run(["sh", "-c", script], defended=False), host.work)
+    wanted = ["--json", "report.json", "--html", "report.html", "--recording", "recording", "--clock", attack.clock]
+    check = [sys.executable, "-m", "grader.cli", "check", "my_robot_controller", "--exercise", EXERCISE, *wanted]
+    return Run(host.run(check, defended=way != "undefended"), host.work)
+
+
+@pytest.fixture(scope="session")
+def runs(request: pytest.FixtureRequest) -> Iterator[Runs]:
+    wanted: dict[tuple[str, str], tuple[Attack, str]] = {}
+    for item in request.session.items:
+        attack = getattr(item, "callspec", None) and item.callspec.params.get("attack")  # type: ignore[attr-defined]
+        if isinstance(attack, Attack):
+            for mark in item.iter_markers("clocks"):
+                wanted.update({(attack.name, way): (attack, way) for way in mark.args})
+    # pytest's own folders are closed to other users.
+    with tempfile.TemporaryDirectory(prefix="hostile-") as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
+        Path(folder).chmod(0o755)
+        yield Runs(list(wanted.values()), Path(folder), pool)
+        pool.shutdown(cancel_futures=True)
+
+
+def each(which: Callable[[Attack], bool], *, sampled: bool = True) -> pytest.MarkDecorator:
+    def marks(attack: Attack) -> tuple[pytest.MarkDecorator, ...]:
+        return () if sampled and attack.sample else (pytest.mark.exhaustive,)
+
+    chosen = [pytest.param(attack, id=attack.name, marks=marks(attack)) for attack in ATTACKS if which(attack)]
+    return pytest.mark.parametrize("attack", chosen)
+
+
+def readable_by_others(path: Path) -> bool:
+    command = ["setpriv", f"--reuid={USER}", f"--regid={USER}", "--clear-groups", "test", "-r", str(path)]
+    return os.geteuid() != 0 or subprocess.run(command, check=False).returncode == 0
+
+
+@pytest.mark.clocks("defended")
+@each(lambda _: True)
+def test_an_attack_is_held(attack: Attack, runs: Runs) -> None:
+    assert_held(attack, runs.of(attack, "defended"))
+
+
+@pytest.mark.skipif(not readable_by_others(Path(__file__)), reason="other users cannot read this folder")
+@pytest.mark.skipif(os.geteuid() != 0, reason="the other tests run as an ordinary user already")
+@pytest.mark.clocks("as-user")
+@each(lambda _: True, sampled=False)
+def test_an_attack_is_held_for_an_ordinary_user(attack: Attack, runs: Runs) -> None:
+    assert_held(attack, runs.of(attack, "as-user"))
+
+
+def assert_held(attack: Attack, done: Run) -> None:
+    left = done.left
+    assert left.exit_code in (0, 1), left.stdout + left.stderr
+    assert (sorted(left.files), left.processes, left.sockets) == ([], (), ())
+    if attack.points >= 0.0:
+        assert done.points == pytest.approx(attack.points), left.stdout
+    else:
+        assert done.points < 100.0, left.stdout
+    said = done.said
+    assert SECRET not in said
+    if attack.says:
+        assert attack.says not in said
+    reports = [(done.work / name).read_text("utf-8") for name in ("report.json", "report.html")]
+    shown = [left.stdout, left.stderr, *reports]
+    assert [text for text in attack.never if any(text in each for each in shown)] == []
+    if attack.reaches:
+        assert attack.reaches in said or was_there(done.evidence, attack.reaches), said
+
+
+def was_there(evidence: Evidence, what: str) -> bool:
+    """Whether a topic, a node or an intervention is in the recording, or the build is what it should be."""
+    if evidence.overwhelmed is not None:
+        return True
+    if what.endswith(" files"):
+        return evidence.build is not None and evidence.build.out_of is not None
+    recording = evidence.trial
+    nodes = {node.lstrip("/") for graph in recording.graphs for node in graph.nodes}
+    return what in recording.topics or what in recording.interventions or what in nodes
+
+
+@pytest.mark.clocks("undefended")
+@each(lambda attack: attack.is_of_the_host, sampled=False)
+def test_undefended_an_attack_leaves_its_trace(attack: Attack, runs: Runs) -> None:
+    done = runs.of(attack, "undefended")
+    left = done.left
+    graded = (done.work / "recording").is_dir()
+    said = done.said if graded else left.stdout
+    if attack.kills:
+        assert left.exit_code in (None, -9, 137), left
+    if attack.says:
+        assert attack.says in said, left
+    if attack.secret:
+        assert SECRET in said, left
+    if attack.file:
+        assert attack.file in left.files, left
+    if attack.process:
+        assert any(attack.process in process for process in left.processes), left
+    if attack.socket:
+        assert any(attack.socket in each for each in left.sockets), left
+
+
+@pytest.mark.clocks("defended")
+@each(lambda attack: bool(attack.passes))
+def test_without_its_defence_a_check_would_pass(attack: Attack, runs: Runs) -> None:
+    evidence = runs.of(attack, "defended").evidence
+    recording = evidence.trial
+    if attack.without == "interventions":
+        blind = dataclasses.replace(recording, interventions=())
+    else:
+        graphs = tuple(
+            dataclasses.replace(graph, endpoints=tuple(each for each in graph.endpoints if not is_double(each.node)))
+            for graph in recording.graphs
+        )
+        blind = dataclasses.replace(recording, graphs=graphs)
+    before, after = (
+        {outcome.id: outcome.status for outcome in judge(each)}[attack.passes]
+        for each in (evidence, dataclasses.replace(evidence, recording=blind))
+    )
+    assert (before, after) == (Status.FAILED, Status.PASSED)
+
+
+def is_double(node: str) -> bool:
+    """Whether a student's node is called as one of the grader's."""
+    return node.endswith(NAMESAKE) or node.startswith(OWN_NAMESPACE)
+
+
+def test_the_next_submission_is_graded_as_if_the_attacker_had_not_been_there(tmp_path: Path) -> None:
+    host = Host(tmp_path / "host", underlay.ensure(ros.find_ros()))
+    chosen = [attack for attack in ATTACKS if attack.name[:3] in ("301", "304", "406")]
+    commands = []
+    for attack in chosen:
+        make_attack(attack, host.work / attack.name)
+        commands.append(f"{attack.name}/my_robot_controller")
+    copy_solution(EXERCISE, host.work / "honest")
+    commands.append("honest --json honest.json")
+    check = f"{shlex.quote(sys.executable)} -m grader.cli check --exercise {EXERCISE}"
+    left = host.run(["sh", "-c", "; ".join(f"{check} {command}" for command in commands)])
+    report = json.loads((host.work / "honest.json").read_bytes())
+    assert (left.exit_code, report["points"], sorted(left.files), left.processes) == (0, 100.0, [], ()), left.stdout
+
+
+def test_sixty_attacks_are_kept() -> None:
+    assert len(ATTACKS) >= 60
+    unproven = [a.name for a in ATTACKS if not (a.is_of_the_host or a.passes or a.reaches)]
+    assert unproven == []
