@@ -150,7 +150,8 @@ def doctor() -> None:
 
     from grader.doctor import exit_code, render, run_doctor
 
-    lines = run_doctor()
+    with _progress() as tell:
+        lines = run_doctor(tell=tell)
     render(lines, Console(highlight=False))
     raise typer.Exit(exit_code(lines))
 

@@ -215,7 +215,7 @@ def look_at_sandbox() -> Line:
 
 def look_at_node(ros: Ros, ours: Path | None) -> Line:
     """Let a node in a cell talk to one outside, as in a trial: interpreter, ROS 2, network and interfaces at once."""
-    env = environment(ros, home=sandbox.HOME, underlay=ours)
+    env = environment(ros, home=sandbox.HOME, underlay=ours, domain=None)
     view = sandbox.ros_view(ros, FASTDDS_PROFILE, *([ours] if ours else []))
     talker = sandbox.cell([str(ros.python), "-c", _TALKER], view, env=env, network=True)
     # The talker goes when the listener does: cells die with their parent.

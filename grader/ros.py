@@ -66,12 +66,13 @@ def find_ros(env: Mapping[str, str] = os.environ) -> Ros:
 
 
 def environment(
-    ros: Ros, *, home: Path, underlay: Path | None = None, overlays: Sequence[Path] = (), domain: int = 0
+    ros: Ros, *, home: Path, underlay: Path | None = None, overlays: Sequence[Path] = (), domain: int | None = 0
 ) -> dict[str, str]:
     """The whole environment of a child process: nothing of the caller's leaks in.
 
     `underlay` is the prefix of the turtlesim interfaces, `overlays` are install folders of packages
-    (install/<package>), searched first. `home` must be writable: HOME, ROS_LOG_DIR and TMPDIR lie there.
+    (install/<package>), searched first. `home` must be writable: HOME, ROS_LOG_DIR and TMPDIR lie there. `domain` is
+    None in a room (sandbox.py), whose network is its own.
     """
     local = [*overlays, *([underlay] if underlay else [])]
     env = {
@@ -87,8 +88,9 @@ def environment(
         "ROS_VERSION": "2",
         "ROS_PYTHON_VERSION": "3",
         "ROS_LOG_DIR": str(home / "log"),
-        "ROS_DOMAIN_ID": str(domain),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "ROS_DOMAIN_ID": str(domain or 0),
+        # LOCALHOST brings shared memory back, whatever the transports below say; room and cell do not share any.
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET" if domain is None else "LOCALHOST",
         "RCUTILS_COLORIZED_OUTPUT": "0",
         "AMENT_PREFIX_PATH": os.pathsep.join(map(str, [*local, *ros.prefixes])),
         "CMAKE_PREFIX_PATH": os.pathsep.join(map(str, [*local, *ros.prefixes])),
