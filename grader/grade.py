@@ -176,10 +176,15 @@ class _Grading:
     def _try_twice(
         self, evidence: Evidence, trial: Trial, clock: ClockName, why: str, here: Ros, extra: Path | None
     ) -> Evidence:
-        """A node that brings the simulator down once may have met a fault of the machine; twice, it is the node."""
+        """A node that brings the simulator down once may have met a fault of the machine; twice, it is the node.
+
+        One that kept it busy for minutes gets no second try: a class would wait too long.
+        """
         try:
             return self._try(evidence, trial, clock, why, here, extra)
         except OverwhelmedError as error:
+            if error.hung:
+                return dataclasses.replace(evidence, overwhelmed=str(error))
             self.tell(f"The simulator was brought down ({printable(str(error))}): once more")
         try:
             with self._trial(clock, here, extra) as again:

@@ -96,7 +96,7 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
 
 
 def _overwhelmed(how: str) -> Finding:
-    seen = f"The trial could not be finished, in two tries: the node brought the simulator down ({shorten(how, 150)})."
+    seen = f"The trial could not be finished: the node brought the simulator down ({shorten(how, 150)})."
     expected = "The simulator goes on whatever is published or called at a sensible rate."
     cause = "It sends without end, or what no simulator can read. If yours does neither, please report this."
     return failed("overwhelmed", seen, expected, cause)

@@ -41,8 +41,10 @@ class Attack:
 
     name: str
     why: str
-    points: float
-    """No fewer and no more."""
+    points: float = -1.0
+    """No fewer and no more; below 0, what the node does right may count."""
+    most: float = 100.0
+    """No more than that."""
     says: str = ""
     file: str = ""
     process: str = ""

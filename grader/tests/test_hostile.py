@@ -51,6 +51,10 @@ class Run:
         return float(json.loads((self.work / "report.json").read_bytes())["points"])
 
     @property
+    def too_busy(self) -> bool:
+        return "The machine was too busy" in self.left.stdout
+
+    @property
     def said(self) -> str:
         """What build and node wrote."""
         evidence = self.evidence
@@ -128,12 +132,13 @@ def test_an_attack_is_held_for_an_ordinary_user(attack: Attack, runs: Runs) -> N
 
 def assert_held(attack: Attack, done: Run) -> None:
     left = done.left
-    assert left.exit_code in (0, 1), left.stdout + left.stderr
+    # A machine that others keep busy says so; what an attacker does must not make it say so.
+    if not (done.too_busy and os.getloadavg()[0] > 2.0 * (os.cpu_count() or 1)):
+        assert left.exit_code in (0, 1), left.stdout + left.stderr
     assert (sorted(left.files), left.processes, left.sockets) == ([], (), ())
     if attack.points >= 0.0:
         assert done.points == pytest.approx(attack.points), left.stdout
-    else:
-        assert done.points < 100.0, left.stdout
+    assert done.points <= attack.most, left.stdout
     said = done.said
     assert SECRET not in said
     if attack.says:

@@ -32,7 +32,8 @@ LAUNCHER = Path(__file__).with_name("launcher.py")
 LIMITS = sandbox.Limits()
 BUSY = 0.5
 BUSY_S = 0.04
-"""While the node's processes worked for this share of a stall and this long, they made it, not the machine."""
+"""While the node's processes worked for this share of a stall and this long, they made it, not the machine; so too
+all stalls of a trial when they worked for this share of it."""
 
 
 class Overwhelmed(Exception):  # noqa: N818 - the simulator's, by the node's doing
@@ -126,6 +127,8 @@ def _run(stage: SimulatedTrial | WallTrial, duration_s: float) -> float:
 def _own_doing(stall: tuple[float, float], node: NodeProcess, now_s: float) -> bool:
     offset = time.monotonic() - now_s
     begin, end = stall
+    if node.worked_s(offset, time.monotonic()) >= BUSY * now_s:
+        return True
     return node.worked_s(begin + offset, end + offset) >= max(BUSY_S, BUSY * (end - begin))
 
 

@@ -46,7 +46,11 @@ class WallTimeNeeded(Exception):  # noqa: N818 - not an error
 
 
 class OverwhelmedError(Exception):
-    """The node has brought the simulator down, or would not let the trial end; the text says how."""
+    """The node has brought the simulator down, or would not let the trial end (`hung`); the text says how."""
+
+    def __init__(self, how: str, *, hung: bool = False) -> None:
+        super().__init__(how)
+        self.hung = hung
 
 
 class Trial:
@@ -186,19 +190,23 @@ class Trial:
             return answer[key]
         if self._node_runs:
             # The simulator was well until the node began, and nothing else was.
-            raise OverwhelmedError(answer.get("overwhelmed") or self._how_it_ended())
+            if "overwhelmed" in answer:
+                raise OverwhelmedError(answer["overwhelmed"])
+            raise self._end_seen()
         self._process.kill()
         self._errors.seek(0)
         said = answer.get("fault") or self._errors.read()[-2000:].decode("utf-8", "replace").strip()
         message = f"The simulator failed: {said or 'it said nothing'}. `grader doctor` tells what is missing."
         raise MachineError(message)
 
-    def _how_it_ended(self) -> str:
+    def _end_seen(self) -> OverwhelmedError:
         try:
             code = self._process.wait(5.0)
         except subprocess.TimeoutExpired:
-            return "it no longer answered"
-        return "it was still busy long after the end" if code == -signal.SIGKILL else f"it ended with exit code {code}"
+            return OverwhelmedError("it no longer answered", hung=True)
+        if code == -signal.SIGKILL:
+            return OverwhelmedError("it was still busy long after the end", hung=True)
+        return OverwhelmedError(f"it ended with exit code {code}")
 
     def _own_domain(self) -> int:
         """A ROS domain that no other trial of this machine uses now, for where there is no network of its own."""
