@@ -154,3 +154,11 @@ def test_whatever_a_student_sends_is_never_the_graders_fault(commands: list[Comm
 def test_whatever_a_student_hands_in_is_never_the_graders_fault(files: dict[str, bytes]) -> None:
     outcomes = judge(evidence(good(), submission(files)))
     assert [outcome for outcome in outcomes if outcome.status is Status.ERROR] == []
+
+
+def test_a_node_that_brings_the_simulator_down_has_failed_and_is_no_error() -> None:
+    given = replace(evidence(None), overwhelmed="MemoryError")
+    made = report(judge(given))
+    assert (made.points, made.max, made.exit_code) == (0.0, 100.0, 1)
+    (start,) = [outcome for outcome in made.outcomes if outcome.id == "start"]
+    assert (start.finding.diagnosis, "MemoryError" in start.finding.seen) == ("overwhelmed", True)
