@@ -56,7 +56,9 @@ class Attack:
     without: str = ""
     reaches: str = ""
     never: tuple[str, ...] = ()
-    """What no report may contain, nor the grader's own output."""
+    """What the grader may not print."""
+    never_html: tuple[str, ...] = ()
+    """What the page may not contain."""
     sample: bool = False
     clock: str = "auto"
 
@@ -77,7 +79,8 @@ def _read(folder: Path) -> Attack:
     if unknown:
         message = f"{folder.name}/expected.toml: {unknown}"
         raise ValueError(message)
-    return Attack(name=folder.name, **{**values, "never": tuple(values.get("never", ()))})
+    lists = {key: tuple(values.get(key, ())) for key in ("never", "never_html")}
+    return Attack(name=folder.name, **{**values, **lists})
 
 
 def make_attack(attack: Attack, to: Path) -> Path:

@@ -143,9 +143,10 @@ def assert_held(attack: Attack, done: Run) -> None:
     assert SECRET not in said
     if attack.says:
         assert attack.says not in said
-    reports = [(done.work / name).read_text("utf-8") for name in ("report.json", "report.html")]
-    shown = [left.stdout, left.stderr, *reports]
-    assert [text for text in attack.never if any(text in each for each in shown)] == []
+    html = (done.work / "report.html").read_text("utf-8")
+    assert SECRET not in html
+    assert [text for text in attack.never if text in left.stdout + left.stderr] == []
+    assert [text for text in attack.never_html if text in html] == []
     if attack.reaches:
         assert attack.reaches in said or was_there(done.evidence, attack.reaches), said
 

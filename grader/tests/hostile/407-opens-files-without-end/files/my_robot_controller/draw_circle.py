@@ -1,9 +1,12 @@
 """It opens files without end."""
 
 import os
+import resource
 
 
 def main():
-    for _ in range(20_000):
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+    for _ in range(2000):
         os.open("/dev/null", os.O_RDONLY)
-    print("TRA" "CE 20000 descriptors")
+    print("TRA" "CE 2000 descriptors")
