@@ -1,5 +1,6 @@
 """A compiled file that Python takes without a look at the source."""
 
+import importlib.util
 import py_compile
 from pathlib import Path
 
@@ -9,7 +10,7 @@ def make(package: Path) -> None:
     folder = package / "my_robot_controller"
     source = folder / "other.py"
     source.write_text('print("TRACE of the cache")\n')
-    target = folder / "__pycache__" / "draw_circle.cpython-311.pyc"
+    target = importlib.util.cache_from_source(str(folder / "draw_circle.py"))
     mode = py_compile.PycInvalidationMode.UNCHECKED_HASH
-    py_compile.compile(str(source), str(target), "draw_circle.py", invalidation_mode=mode)
+    py_compile.compile(str(source), target, "draw_circle.py", invalidation_mode=mode)
     source.unlink()
