@@ -35,10 +35,11 @@ def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
         raise UsageError(message)
     console = Console(highlight=False)
     options = Options(in_cell=sandbox.usable())
-    with single_keys() as read_key:
+    with single_keys() as read_key, closing(Events(read_key)) as events:
         while True:
             screen = _Screen(exercise, folder, workspace, options, console)
-            with closing(Events(folder, read_key)) as events, closing(screen.watched):
+            events.watch(folder)
+            with closing(screen.watched):
                 chosen = screen.show(events)
             if chosen is None:
                 return

@@ -46,15 +46,21 @@ class _Sources(DefaultFilter):
 
 
 class Events:
-    """Saves below a folder and keys, in the order in which they happen."""
+    """Keys, and saves below the folder that is watched, in the order in which they happen."""
 
-    def __init__(self, folder: Path, read_key: Callable[[], str] | None) -> None:
+    def __init__(self, read_key: Callable[[], str] | None) -> None:
         self._queue: SimpleQueue[Happened] = SimpleQueue()
         self._stop = Event()
         self._ready = Event()
-        Thread(target=self._watch, args=(folder,), daemon=True).start()
+        # One reader for all folders: a second would take keys that were meant for the first.
         if read_key is not None:
             Thread(target=self._keys, args=(read_key,), daemon=True).start()
+
+    def watch(self, folder: Path) -> None:
+        """Watch this folder from now on, and no other."""
+        self._stop.set()
+        self._stop, self._ready = Event(), Event()
+        Thread(target=self._watch, args=(folder, self._stop, self._ready), daemon=True).start()
 
     def __iter__(self) -> Iterator[Happened]:
         """Wait for what happens next; saves that came together are one."""
@@ -75,7 +81,7 @@ class Events:
         self._stop.set()
         self._queue.put(Happened("end"))
 
-    def _watch(self, folder: Path) -> None:
+    def _watch(self, folder: Path, stop: Event, ready: Event) -> None:
         for changes in watch(
             folder,
             watch_filter=_Sources(),
@@ -83,11 +89,11 @@ class Events:
             step=10,
             rust_timeout=200,
             yield_on_timeout=True,
-            stop_event=self._stop,
+            stop_event=stop,
             raise_interrupt=False,
         ):
-            self._ready.set()
-            if changes:
+            ready.set()
+            if changes and not stop.is_set():
                 self._queue.put(Happened("saved"))
 
     def _keys(self, read_key: Callable[[], str]) -> None:

@@ -94,13 +94,14 @@ def test_a_save_is_heard_however_the_editor_saves(package: Path, how: str) -> No
         "create": lambda: (node.parent / "new.py").write_text(""),
     }
     (package / "draw.tmp").write_text("x = 2\n")
-    events = Events(package, None)
+    events = Events(None)
+    events.watch(package)
     events.await_ready()
     saves[how]()
     assert next(iter(events)).kind == "saved"
     events.close()
 
 
-def test_keys_come_in_order_and_the_end_of_the_terminal_ends_the_loop(package: Path) -> None:
+def test_keys_come_in_order_and_the_end_of_the_terminal_ends_the_loop() -> None:
     keys = iter(["h", "r", ""])
-    assert [happened.key for happened in Events(package, lambda: next(keys))] == ["h", "r"]
+    assert [happened.key for happened in Events(lambda: next(keys))] == ["h", "r"]
