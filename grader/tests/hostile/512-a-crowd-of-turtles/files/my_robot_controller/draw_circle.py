@@ -21,7 +21,10 @@ class DrawCircle(Node):
 
     def attack(self):
         self.client = self.create_client(Spawn, "/spawn")
-        for _ in range(500):
+        self.create_timer(0.2, self.crowd)
+
+    def crowd(self):
+        for _ in range(20):
             self.client.call_async(Spawn.Request(x=1.0, y=1.0))
 
 
