@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.checks.kind import Kind, NoParams
-from grader.outcome import Finding, failed, passed
+from grader.outcome import Finding, Status, failed, passed
 
 if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
@@ -16,6 +16,8 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
     timers = evidence.code.calls("create_timer")
     if timers:
         return passed("A timer gives the rhythm.")
+    if evidence.code.node_file not in {module.file for module in evidence.code.modules if module.tree is not None}:
+        return Finding(Status.SKIPPED, "Not judged, since the node's file cannot be read.")
     cause = "In a loop of its own a node hears nothing from other nodes; a timer leaves the waiting to rclpy.spin."
     return failed(
         "no-timer",
