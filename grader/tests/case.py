@@ -39,6 +39,8 @@ class Case:
     """What is odd about the submission, for the reader of the tests."""
     result: str
     """A key of EXIT_CODES."""
+    folder: Path = CASES
+    """Where its files are; no key of expected.toml."""
     base: str = "03-circle-publisher"
     """The solution that `files` is laid over; empty for none."""
     edit: tuple[Mapping[str, str], ...] = ()
@@ -69,7 +71,7 @@ class Case:
 def read_case(folder: Path) -> Case:
     """The case in a folder; ValueError for a key that there is not."""
     values: dict[str, Any] = tomllib.loads((folder / "expected.toml").read_text("utf-8"))
-    unknown = values.keys() - {field.name for field in fields(Case)}
+    unknown = values.keys() - ({field.name for field in fields(Case)} - {"name", "folder"})
     if unknown or values["result"] not in EXIT_CODES:
         message = f"{folder.name}/expected.toml: {unknown or values['result']}"
         raise ValueError(message)
@@ -77,12 +79,12 @@ def read_case(folder: Path) -> Case:
         values[key] = tuple(values.get(key, ()))
     for key in ("diagnosis", "where", "says"):
         values[key] = values.get(key, {})
-    return Case(name=folder.name, **values)
+    return Case(name=folder.name, folder=folder, **values)
 
 
-def read_cases() -> tuple[Case, ...]:
-    """Every case, in the order of their names."""
-    return tuple(read_case(folder) for folder in sorted(CASES.iterdir()) if (folder / "expected.toml").is_file())
+def read_cases(below: Path = CASES) -> tuple[Case, ...]:
+    """Every case of a folder, in the order of their names."""
+    return tuple(read_case(folder) for folder in sorted(below.iterdir()) if (folder / "expected.toml").is_file())
 
 
 def make_submission(case: Case, to: Path) -> Path:
@@ -102,10 +104,10 @@ def make_submission(case: Case, to: Path) -> Path:
             shutil.rmtree(target)
         else:
             target.unlink()
-    files = CASES / case.name / "files"
+    files = case.folder / "files"
     if files.is_dir():
         shutil.copytree(files, package, dirs_exist_ok=True)
-    generator = CASES / case.name / "make.py"
+    generator = case.folder / "make.py"
     if generator.is_file():
         spec = importlib.util.spec_from_file_location("make", generator)
         assert spec is not None

@@ -4,16 +4,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.tests import case as module
-from grader.tests.case import Case, make_submission, read_case, read_cases
+from grader.tests.case import CASES, Case, make_submission, read_case, read_cases
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 
 @pytest.fixture
-def cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(module, "CASES", tmp_path / "cases")
+def cases(tmp_path: Path) -> Path:
     (tmp_path / "cases" / "001-x" / "files").mkdir(parents=True)
     return tmp_path / "cases"
 
@@ -21,7 +19,7 @@ def cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_files_are_laid_over_the_solution_without_its_markers(cases: Path, tmp_path: Path) -> None:
     (cases / "001-x" / "files" / "setup.py").write_text("mine")
     (cases / "001-x" / "make.py").write_text("def make(folder):\n    (folder / 'made').touch()\n")
-    case = Case("001-x", "", "failed", remove=("package.xml", "resource"))
+    case = Case("001-x", "", "failed", cases / "001-x", remove=("package.xml", "resource"))
     folder = make_submission(case, tmp_path / "in")
     package = folder / "my_robot_controller"
     assert (package / "setup.py").read_text() == "mine"
@@ -36,7 +34,7 @@ def test_files_are_laid_over_the_solution_without_its_markers(cases: Path, tmp_p
 
 def test_without_a_base_the_files_are_all_there_is(cases: Path, tmp_path: Path) -> None:
     (cases / "001-x" / "files" / "a.txt").touch()
-    folder = make_submission(Case("001-x", "", "usage", base=""), tmp_path / "in")
+    folder = make_submission(Case("001-x", "", "usage", cases / "001-x", base=""), tmp_path / "in")
     assert [path.name for path in folder.iterdir()] == ["a.txt"]
 
 
@@ -48,4 +46,4 @@ def test_a_slip_in_expected_toml_is_no_case_that_passes(cases: Path, text: str) 
 
 
 def test_every_folder_of_cases_is_a_case() -> None:
-    assert [case.name for case in read_cases()] == sorted(path.name for path in module.CASES.iterdir())
+    assert [case.name for case in read_cases()] == sorted(path.name for path in CASES.iterdir())
