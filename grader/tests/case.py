@@ -43,6 +43,8 @@ class Case:
     """Where its files are; no key of expected.toml."""
     base: str = "03-circle-publisher"
     """The solution that `files` is laid over; empty for none."""
+    exercise: str = ""
+    """The exercise that it is graded by; empty for the one of the base."""
     edit: tuple[Mapping[str, str], ...] = ()
     """Changes of the base: in `file`, `old` becomes `new`, everywhere."""
     remove: tuple[str, ...] = ()

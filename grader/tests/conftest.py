@@ -5,10 +5,14 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader import ros, underlay
+from grader.tests.grading import gradings_of
 from grader.tests.in_ros import InRos
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
+
+    from grader.tests.grading import Gradings
 
 
 @pytest.fixture(scope="session")
@@ -17,3 +21,9 @@ def in_ros(tmp_path_factory: pytest.TempPathFactory) -> InRos:
     here = ros.find_ros()
     home: Path = tmp_path_factory.mktemp("ros")
     return InRos(here, underlay.ensure(here), home)
+
+
+@pytest.fixture(scope="session")
+def gradings(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gradings]:
+    """All cases that this session's tests mark with `clocks`, graded side by side."""
+    yield from gradings_of(request, tmp_path_factory)

@@ -1,162 +1,29 @@
-"""Every case in cases/ is graded by the real command, in processes side by side, and compared with what it expects."""
+"""Every case in cases/ gets the report that it expects."""
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
-from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.tests.case import EXIT_CODES, Case, make_submission, read_cases
+from grader.tests.case import read_cases
+from grader.tests.grading import check_clocks_agree, check_report, each
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-EXERCISE = "03-circle-publisher"
-GRADER = Path(sys.executable).with_name("grader")
-HANG_S = 300.0
-"""Longer than any limit of the grader's own: beyond it the command hangs."""
+    from grader.tests.case import Case
+    from grader.tests.grading import Gradings
 
 CASES = read_cases()
 
 
-@dataclass(frozen=True)
-class Graded:
-    """What one `grader check` left: `report` is None where it wrote none."""
-
-    exit_code: int
-    stdout: str
-    stderr: str
-    report: dict[str, Any] | None
-
-    def outcomes(self) -> dict[str, dict[str, Any]]:
-        assert self.report is not None, self.stderr or self.stdout
-        return {outcome["id"]: outcome for outcome in self.report["outcomes"]}
-
-
-class Gradings:
-    """Grades the cases that this session asks for, as many at once as there are processors."""
-
-    def __init__(self, wanted: list[tuple[Case, str]], folder: Path, pool: ThreadPoolExecutor) -> None:
-        self._futures: dict[tuple[str, str], Future[Graded]] = {
-            (case.name, clock): pool.submit(grade, case, clock, folder / f"{case.name}.{clock}")
-            for case, clock in wanted
-        }
-
-    def of(self, case: Case, clock: str = "auto") -> Graded:
-        return self._futures[case.name, clock].result()
-
-
-def grade(case: Case, clock: str, folder: Path) -> Graded:
-    submission = make_submission(case, folder / "in")
-    json_file = folder / "report.json"
-    command = [
-        str(GRADER),
-        "check",
-        str(submission),
-        "--exercise",
-        case.base or EXERCISE,
-        "--clock",
-        clock,
-        "--json",
-        str(json_file),
-    ]
-    done = subprocess.run(command, capture_output=True, timeout=HANG_S, check=False, stdin=subprocess.DEVNULL)
-    return Graded(
-        done.returncode,
-        done.stdout.decode("utf-8", "replace"),
-        done.stderr.decode("utf-8", "replace"),
-        json.loads(json_file.read_bytes()) if json_file.is_file() else None,
-    )
-
-
-@pytest.fixture(scope="session")
-def gradings(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gradings]:
-    wanted: dict[tuple[str, str], tuple[Case, str]] = {}
-    for item in request.session.items:
-        case = getattr(item, "callspec", None) and item.callspec.params.get("case")  # type: ignore[attr-defined]
-        if isinstance(case, Case):
-            for mark in item.iter_markers("clocks"):
-                wanted.update({(case.name, clock): (case, clock) for clock in mark.args})
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        yield Gradings(list(wanted.values()), tmp_path_factory.mktemp("cases"), pool)
-        pool.shutdown(cancel_futures=True)
-
-
-def each(cases: list[Case]) -> pytest.MarkDecorator:
-    """The test once a case; those that do not belong to the sample run in `make test-all` only."""
-    return pytest.mark.parametrize(
-        "case",
-        [pytest.param(case, id=case.name, marks=() if case.sample else pytest.mark.exhaustive) for case in cases],
-    )
-
-
 @pytest.mark.clocks("auto")
-@each(list(CASES))
+@each(CASES)
 def test_a_case_gets_the_report_that_it_expects(case: Case, gradings: Gradings) -> None:
-    graded = gradings.of(case)
-    assert not [line for line in graded.stderr.splitlines() if line.startswith(("Traceback", '  File "'))], (
-        graded.stderr
-    )
-    everything = graded.stdout + graded.stderr + json.dumps(graded.report, ensure_ascii=False)
-    assert [text for text in case.never if text in everything] == []
-    if case.result == "usage":
-        assert graded.report is None
-        missing = [text for text in case.says["usage"] if text not in graded.stderr]
-        assert (missing, graded.exit_code) == ([], 2), graded.stderr
-    else:
-        compare(case, graded)
-
-
-def compare(case: Case, graded: Graded) -> None:
-    outcomes = graded.outcomes()
-    told = all_told(graded)
-    not_passed = {id_: outcome["status"] for id_, outcome in outcomes.items() if outcome["status"] != "passed"}
-    expected = {**dict.fromkeys((*case.failed, *case.advice), "failed"), **dict.fromkeys(case.skipped, "skipped")}
-    assert not_passed == expected, told
-    assert graded.exit_code == EXIT_CODES[case.result], told
-    assert {id_: outcomes[id_]["diagnosis"] for id_ in case.diagnosis} == dict(case.diagnosis), told
-    assert {id_: place_of(outcomes[id_]) for id_ in case.where} == dict(case.where), told
-    for id_, texts in case.says.items():
-        said = " ".join(str(outcomes[id_][key]) for key in ("seen", "expected", "cause"))
-        assert [text for text in texts if text not in said] == [], told
-    assert graded.report is not None
-    if case.points is not None:
-        assert graded.report["points"] == pytest.approx(case.points)
-    if case.clock:
-        assert graded.report["clock"]["used"] == case.clock, told
-
-
-def all_told(graded: Graded) -> str:
-    """What did not pass, a line each, for whoever reads the failed test."""
-    keys = ("id", "diagnosis", "seen", "expected", "cause")
-    lines = [
-        " | ".join(str(outcome[key]) for key in keys) + f" | {place_of(outcome)}"
-        for outcome in graded.outcomes().values()
-        if outcome["status"] in ("failed", "error")
-    ]
-    assert graded.report is not None
-    return "\n".join([*lines, str(graded.report["clock"])])
-
-
-def place_of(outcome: dict[str, Any]) -> str:
-    where = outcome["where"] or {}
-    return ":".join(str(where[key]) for key in ("file", "line") if where.get(key) is not None)
+    check_report(case, gradings.of(case))
 
 
 @pytest.mark.exhaustive
 @pytest.mark.clocks("auto", "wall")
-@pytest.mark.parametrize("case", [pytest.param(case, id=case.name) for case in CASES if case.result != "usage"])
+@each([case for case in CASES if case.result != "usage"], always=True)
 def test_both_clocks_agree(case: Case, gradings: Gradings) -> None:
-    keys = ("status", "points", "diagnosis", "cause")
-    auto, wall = (
-        {id_: tuple(outcome[key] for key in keys) for id_, outcome in gradings.of(case, clock).outcomes().items()}
-        for clock in ("auto", "wall")
-    )
-    assert auto == wall
+    check_clocks_agree(case, gradings)
