@@ -1,0 +1,30 @@
+"""Submissions that are right, and unlike ours: full marks, and nothing said against them but advice."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests.case import CASES, read_cases
+from grader.tests.grading import check_clocks_agree, check_report, each
+
+if TYPE_CHECKING:
+    from grader.tests.case import Case
+    from grader.tests.grading import Gradings
+
+UNUSUAL = read_cases(CASES.parent / "unusual")
+
+
+@pytest.mark.clocks("auto")
+@each(UNUSUAL, always=True)
+def test_what_is_right_gets_full_marks_however_it_is_written(case: Case, gradings: Gradings) -> None:
+    assert (case.result, case.points, case.failed, case.skipped) == ("passed", 100, (), ())
+    check_report(case, gradings.of(case))
+
+
+@pytest.mark.exhaustive
+@pytest.mark.clocks("auto", "wall")
+@each(UNUSUAL, always=True)
+def test_it_is_right_by_the_wall_clock_too(case: Case, gradings: Gradings) -> None:
+    check_clocks_agree(case, gradings)

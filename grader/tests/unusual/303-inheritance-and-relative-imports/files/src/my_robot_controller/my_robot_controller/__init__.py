@@ -1,0 +1,5 @@
+"""Turtle drivers."""
+
+from .circle import main
+
+__all__ = ["main"]
