@@ -1,6 +1,6 @@
 """The set-up's first half: look at the machine, make .venv; then grader.install fills it. Quick when all is done.
 
-    python3 -m grader.bootstrap (learner | tests) [--python PYTHON]
+    python3 -m grader.bootstrap (learner | cluster | tests) [--python PYTHON]
 
 Like machine.py, this runs under any Python 3 before anything is installed: syntax of Python 3.6.
 """
@@ -24,7 +24,11 @@ VENV = ROOT / ".venv"
 PYTHON = VENV / "bin/python3"
 STAMP = VENV / "course-setup.json"
 MACHINE_BROKEN = 3
-PARTS = {"learner": ["setup", "grader", "ros"], "tests": ["setup", "grader", "ros", "tests"]}
+PARTS = {
+    "learner": ["setup", "grader", "ros"],
+    "cluster": ["setup", "grader", "ros", "cluster"],
+    "tests": ["setup", "grader", "ros", "cluster", "tests"],
+}
 
 
 class Stamp(NamedTuple):

@@ -28,6 +28,7 @@ PARTS = {
     "setup": "what installs the rest",
     "grader": "what the grader runs on",
     "ros": "ROS 2 Jazzy as wheels; left out where a ROS 2 is sourced",
+    "cluster": "grading on many machines",
     "tests": "tests and notebooks",
 }
 """Name of each part and what it is for, in the file's order; an entry stands in the first part that needs it."""
@@ -108,8 +109,9 @@ def make(uv: str, *, upgrade: bool = False) -> str:
         needs = {}
         for part, requirements, arguments in [
             ("setup", "\n".join(_requirements("setup")), []),
-            ("grader", None, []),
+            ("grader", None, ["--extra", "view"]),
             ("ros", None, ["--extra", "ros"]),
+            ("cluster", None, ["--extra", "cluster"]),
         ]:
             # Compiling a part keeps to the versions that stand in its output file: the whole's.
             path = shutil.copyfile(whole, Path(folder, f"{part}.txt"))
