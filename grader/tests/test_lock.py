@@ -150,12 +150,13 @@ def test_select_leaves_out_and_picks() -> None:
 
 
 def test_split_puts_an_entry_below_the_first_part_that_needs_it() -> None:
-    entries = [lock.Entry(name, "1", f"{name}==1\n") for name in ("a", "b", "c", "d")]
-    text = lock.split(entries, {"setup": {"b"}, "grader": {"a", "b"}, "ros": {"a", "c"}})
+    entries = [lock.Entry(name, "1", f"{name}==1\n") for name in ("a", "b", "c", "d", "e")]
+    text = lock.split(entries, {"setup": {"b"}, "grader": {"a", "b"}, "ros": {"a", "c"}, "cluster": {"a", "e"}})
     assert {part: [entry.name for entry in found] for part, found in lock.parse(text).items()} == {
         "setup": ["b"],
         "grader": ["a"],
         "ros": ["c"],
+        "cluster": ["e"],
         "tests": ["d"],
     }
 
