@@ -116,6 +116,7 @@ def load(folder: Path, exercise: Exercise | None = None) -> Archived:
             rejected=tuple(about["rejected"]),
             digest=about["digest"],
             executable=opened.executable,
+            student=about.get("student"),
         )
         build = _build(_read(folder / "build.json")) if (folder / "build.json").exists() else None
         fault = Fault(**about["fault"]) if about["fault"] else None
@@ -144,6 +145,7 @@ def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
         "package": submission.package_dir.name,
         "digest": submission.digest,
         "rejected": list(submission.rejected),
+        "student": submission.student,
         "files": [os.fsencode(path).decode("utf-8", "backslashreplace") for path in submission.files],
         "ros": ros,
         "fault": asdict(evidence.fault) if evidence.fault else None,

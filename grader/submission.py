@@ -43,6 +43,8 @@ class Submission:
     """sha256 over the sorted paths and contents of `files`: the same on every machine, whatever the permissions."""
     executable: frozenset[str] = frozenset()
     """The paths of `files` with the executable bit."""
+    student: str | None = None
+    """Whose it is, where that is known: in a class."""
 
 
 def open_submission(path: str | os.PathLike[str]) -> Submission:

@@ -10,6 +10,7 @@ from grader.checks.path import CircleParams, circle
 from grader.checks.rate import Rate, rate
 from grader.outcome import Finding, Where, failed, passed
 from grader.own_numbers import FILE, OwnNumbers, draw_numbers, from_toml
+from grader.words import shorten
 
 if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
@@ -19,10 +20,16 @@ EARLY, LATE = 0.8, 1.3
 
 
 def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
-    """The numbers are there, and are those of the student whom they name."""
+    """The numbers are there, are those of the student whom they name, and it is that student who handed them in."""
     found = _read(evidence)
     if isinstance(found, Finding):
         return found
+    by = evidence.submission.student
+    if by is not None and found.student.strip().casefold() != by.strip().casefold():
+        seen = f'The numbers in {FILE} were drawn for "{shorten(found.student)}"; this was handed in by "{shorten(by)}".'
+        expected = "Everybody drives a circle of their own."
+        cause = f"`grader start 07 --student {shorten(by)} --fresh` draws yours; your work is kept aside."
+        return failed("numbers-of-another", seen, expected, cause, where=Where(FILE))
     wanted = draw_numbers(found.student)
     if found != wanted:
         seen = f"The numbers in {FILE} are not those that were drawn for its student."

@@ -1,0 +1,102 @@
+"""What a submission holds: its package read, from a folder or an archive, or the reason why there is none."""
+
+from __future__ import annotations
+
+import hashlib
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from grader.classroom import archives
+from grader.errors import UsageError
+from grader.submission import ANSWERS, Submission, open_answers, open_submission
+from grader.tree import shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from grader.classroom.found import Found
+    from grader.exercise import Exercise
+
+MOST_DEEP = 4
+"""Folders that may lie around answers.toml."""
+
+
+@dataclass(frozen=True)
+class Refused:
+    """Nothing can be graded, and why: for the student to read."""
+
+    reason: str
+
+
+def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused:
+    """The submission as it is graded; `student` is who handed it in.
+
+    Raises:
+        MachineError: the disk failed.
+    """
+    try:
+        with _folder(found) as folder:
+            try:
+                opened = _open(folder, exercise)
+            except UsageError as error:
+                # No path of this machine: a student reads it.
+                return Refused(str(error).replace(str(folder), shown(found.name)))
+    except archives.NotUnpackedError as error:
+        return Refused(f"{shown(found.path.name)} {error}.")
+    return replace(opened, name=found.name, student=student)
+
+
+def fingerprint(found: Found, exercise: Exercise) -> str:
+    """sha256 of all that is read of a submission; an archive is not unpacked for that.
+
+    Raises:
+        MachineError: the disk failed.
+    """
+    archive = _archive(found.path)
+    if archive is not None:
+        with archive.open("rb") as file:
+            whole = hashlib.sha256(archive.name.encode("utf-8", "surrogateescape") + b"\0")
+            while data := file.read(1024 * 1024):
+                whole.update(data)
+        return whole.hexdigest()
+    content = read(found, exercise, "")
+    if isinstance(content, Refused):
+        return hashlib.sha256(f"refused {content.reason}".encode("utf-8", "surrogateescape")).hexdigest()
+    parts = (content.digest, content.package_dir.name, *content.rejected, *sorted(content.executable))
+    return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogateescape")).hexdigest()
+
+
+@contextmanager
+def _folder(found: Found) -> Iterator[Path]:
+    archive = _archive(found.path)
+    if archive is None:
+        yield found.path
+    else:
+        with archives.unpacked(archive) as folder:
+            yield folder
+
+
+def _archive(path: Path) -> Path | None:
+    """The archive that holds the submission: itself, or all that lies in the folder (as Moodle makes them)."""
+    if not path.is_dir():
+        return path
+    try:
+        inside = [entry for entry in path.iterdir() if not entry.name.startswith(".")]
+    except OSError:
+        return None  # reading it as a folder will tell why
+    if len(inside) != 1 or inside[0].is_symlink() or not inside[0].is_file():
+        return None
+    return inside[0] if archives.stem(inside[0].name) else None
+
+
+def _open(folder: Path, exercise: Exercise) -> Submission:
+    if exercise.package:
+        return open_submission(folder)
+    for _ in range(MOST_DEEP):
+        below = [entry for entry in folder.iterdir() if not entry.name.startswith((".", "__"))]
+        if len(below) != 1 or below[0].is_symlink() or not below[0].is_dir() or (folder / ANSWERS).exists():
+            break
+        folder = below[0]
+    return open_answers(folder)
