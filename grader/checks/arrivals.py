@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class Measured:
     """Arrivals (s): intervals between them, their mean, the wait before the first and after the last.
 
-    `intervals` and `mean_s` leave out those that a stall of the machine made longer or shorter; `trusted` is the share
-    of those that were not left out.
+    `intervals` and `mean_s` leave out those that a stall of the machine made longer or shorter, and those from before
+    the clock started; `trusted` is the share that no stall spoilt.
     """
 
     arrivals: tuple[float, ...]
@@ -37,7 +37,9 @@ def measure_arrivals(recording: Recording, times_s: Iterable[float]) -> Measured
     until = seen.end_s(recording)
     if not arrivals:
         return Measured((), (), (), 1.0, 0.0, until, until)
-    pairs = list(pairwise(arrivals))
+    every = list(pairwise(arrivals))
+    # What was sent before the clock started came when the two sides had found each other, and not when it was sent.
+    pairs = [pair for pair in every if pair[0] > 0.0] or every
     trusted = [pair for pair in pairs if not any(recording.stalled(t_s) for t_s in pair)]
     intervals = tuple(later - earlier for earlier, later in trusted)
     mean = sum(intervals) / len(intervals) if intervals else 0.0

@@ -129,3 +129,14 @@ def test_a_machine_that_stalls_all_the_time_judges_no_rate() -> None:
 
 def test_a_command_after_ctrl_c_is_not_counted() -> None:
     assert rate("more after Ctrl-C").status is Status.PASSED
+
+
+def test_what_was_sent_before_the_clock_started_is_in_no_interval() -> None:
+    """It arrives when the two sides have found each other, which takes a while."""
+    late = [(0.0, 2.0, 1.0), *every(0.5, 2.0, 1.0, first_s=0.2)]
+    found = finding("rate", evidence(recording(late)))
+    assert (found.status, found.near_edge) == (Status.PASSED, False)
+
+
+def test_what_was_sent_all_at_once_before_the_clock_started_is_no_rate() -> None:
+    assert finding("rate", evidence(recording([(0.0, 2.0, 1.0)] * 3))).status is Status.FAILED
