@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from grader.checks.code import import_path
 from grader.checks.crash import read_tracebacks
 from grader.checks.kind import Kind, NoParams
 from grader.outcome import Finding, Where, failed, passed
@@ -84,11 +85,9 @@ def _broken(evidence: Evidence) -> Finding:
 def _modules(evidence: Evidence) -> Finding:
     """Exit code 0 is not enough: the modules must be there."""
     files = evidence.submission.files
-    folders = sorted(
-        {path.partition("/")[0] for path in files if path.count("/") == 1 and path.endswith(".py")}
-        - {"test", "tests", "launch"}
-    )
-    bare = [folder for folder in folders if f"{folder}/__init__.py" not in files]
+    modules = [import_path(path) for path in files if path.endswith(".py")]
+    folders = sorted({path.partition("/")[0] for path in modules if path.count("/") == 1} - {"test", "tests", "launch"})
+    bare = [folder for folder in folders if f"{folder}/__init__.py" not in modules]
     finds = evidence.setup_py is not None and evidence.setup_py.finds_packages
     missing = not any(INSTALLED_MODULE.fullmatch(path) for path in evidence.built.installed) and not is_linked(evidence)
     if (missing or (finds and is_linked(evidence))) and bare and len(bare) == len(folders):

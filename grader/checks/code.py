@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 MAX_BYTES = 400_000
 """A longer file is not parsed: nobody wrote it by hand."""
 
+SRC = "src/"
+"""Where Python people put their packages, with package_dir={"": "src"} in setup.py."""
+
 
 @dataclass(frozen=True)
 class Unreadable:
@@ -135,8 +138,15 @@ def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
         path = waiting.pop(0)
         if path not in modules:
             modules[path] = read_module(path, files[path])
-            waiting += imported_files(modules[path], paths)
+            waiting += [*imported_files(modules[path], paths), *_packages_around(path, paths)]
     return Code(tuple(modules.values()), first)
+
+
+def _packages_around(path: str, paths: Collection[str]) -> list[str]:
+    """The files __init__.py that Python runs before it runs the file at this path."""
+    folders = path.split("/")[:-1]
+    around = ["/".join([*folders[:depth], "__init__.py"]) for depth in range(len(folders), 0, -1)]
+    return [file for file in around if file in paths]
 
 
 def imported_files(module: Module, paths: Collection[str]) -> list[str]:
@@ -158,7 +168,13 @@ def imported_files(module: Module, paths: Collection[str]) -> list[str]:
 def module_file(module: str, paths: Collection[str]) -> str | None:
     """The file of a dotted module name among the submission's files, None when there is none."""
     path = module.replace(".", "/")
-    return next((each for each in (f"{path}.py", f"{path}/__init__.py") if each in paths), None)
+    candidates = (f"{root}{path}{end}" for root in ("", SRC) for end in (".py", "/__init__.py"))
+    return next((each for each in candidates if each in paths), None)
+
+
+def import_path(file: str) -> str:
+    """The path of a Python file as it is installed: what lies in src/ is imported without that."""
+    return file.removeprefix(SRC)
 
 
 def _left_out(path: str) -> bool:

@@ -7,7 +7,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.building import INSTALLED_MODULE, is_linked
-from grader.checks.code import module_file, read_code, read_module
+from grader.checks.code import import_path, module_file, read_code, read_module
 from grader.checks.kind import Kind, NoParams
 from grader.outcome import Finding, Where, failed, passed
 from grader.words import nearest, shorten
@@ -129,7 +129,9 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
     files = evidence.submission.files
     executable = evidence.exercise.executable
     seen = f"The entry point {executable} leads to the module {shorten(module_name)}, which is not there."
-    modules = [path[: -len(".py")].replace("/", ".") for path in files if path.endswith(".py") and "/" in path]
+    modules = [
+        import_path(path)[: -len(".py")].replace("/", ".") for path in files if path.endswith(".py") and "/" in path
+    ]
     if module_name.endswith(".py"):
         cause = "A module is named without the ending .py."
     else:
@@ -143,7 +145,7 @@ def _is_installed(evidence: Evidence, file: str) -> bool:
     if is_linked(evidence):
         return True
     matches = (INSTALLED_MODULE.fullmatch(path) for path in evidence.built.installed)
-    return any(match["path"] == file for match in matches if match is not None)
+    return any(match["path"] == import_path(file) for match in matches if match is not None)
 
 
 def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.code import import_path
 from grader.checks.kind import Kind, NoParams, texts
 from grader.checks.manifest import line_of
 from grader.outcome import Finding, Where, failed, passed
@@ -92,12 +93,9 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     if setup is not None and setup.name is not None and setup.name != wanted:
         seen = f"setup.py names the package {shorten(setup.name)}."
         return failed("package-name", seen, expected, _dash(setup.name), where=Where("setup.py", setup.name_line))
-    if not any(path.startswith(f"{wanted}/") and path.endswith(".py") for path in evidence.submission.files):
-        folders = {
-            path.partition("/")[0]
-            for path in evidence.submission.files
-            if path.count("/") == 1 and path.endswith(".py")
-        }
+    modules = [import_path(path) for path in evidence.submission.files if path.endswith(".py")]
+    if not any(path.startswith(f"{wanted}/") for path in modules):
+        folders = {path.partition("/")[0] for path in modules if path.count("/") == 1}
         guess = nearest(wanted, folders)
         cause = f"There is a folder {shorten(guess)}." if guess else ""
         return failed("package-folder", f"There is no folder {wanted} with Python files.", expected, cause)

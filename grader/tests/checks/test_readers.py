@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.checks.code import read_code, read_module
+from grader.checks.code import module_file, read_code, read_module
 from grader.checks.constants import evaluate, number, single_names
 from grader.checks.crash import read_traceback
 from grader.checks.manifest import read_manifest
@@ -185,3 +185,29 @@ def test_where_a_field_is_set(text: str, line: int | None) -> None:
 
 def test_a_file_with_a_byte_order_mark_and_windows_line_ends_is_read() -> None:
     assert read_module("a.py", b"\xef\xbb\xbfx = 1\r\ny = 2\r\n").tree is not None
+
+
+def test_a_module_is_found_in_src_too() -> None:
+    files = {
+        "src/pkg/node.py": b"from pkg import near\nfrom .deep import x\n",
+        "src/pkg/near.py": b"",
+        "src/pkg/deep/__init__.py": b"",
+    }
+    assert module_file("pkg.node", files) == "src/pkg/node.py"
+    read = read_code(files, "src/pkg/node.py").modules
+    assert {module.file for module in read} == set(files)
+
+
+def test_the_packages_around_a_module_are_read_with_it() -> None:
+    files = {
+        "a/__init__.py": b"from .b import c\n",
+        "a/b/__init__.py": b"",
+        "a/b/c.py": b"",
+        "a/d.py": b"",
+        "__init__.py": b"",
+    }
+    assert [module.file for module in read_code(files, "a/b/c.py").modules] == [
+        "a/b/c.py",
+        "a/b/__init__.py",
+        "a/__init__.py",
+    ]
