@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
+
+from grader.checks.code import module_file, read_code
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -25,7 +26,20 @@ _MODULES = {
     "sched",
     "signal",
 }
-_NAMES = {"spin_once", "sleep", "sleep_for", "sleep_until", "STEADY_TIME", "SYSTEM_TIME", "timeout_sec"}
+_NAMES = {
+    "spin_once",
+    "sleep",
+    "sleep_for",
+    "sleep_until",
+    "STEADY_TIME",
+    "SYSTEM_TIME",
+    "timeout_sec",
+    "throttle_duration_sec",
+    # Whoever leaves out what was typed behind the node's name leaves out use_sim_time.
+    "use_global_arguments",
+}
+_TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
+"""What nodes of several threads need, and nobody can wait in for a time."""
 
 
 @dataclass(frozen=True)
@@ -39,55 +53,39 @@ class Clue:
 
 def wall_clues(files: Mapping[str, bytes], module: str | None) -> list[Clue]:
     """Find the clues in what `module` ("package.module") reaches; without a module, in the whole package."""
-    trees: dict[str, tuple[str, ast.Module]] = {}
-    for path, source in files.items():
-        if path.endswith(".py") and path != "setup.py" and not path.startswith("test/"):
-            try:
-                trees[_module_name(path)] = (path, ast.parse(source))
-            except (SyntaxError, ValueError, RecursionError, MemoryError):
-                continue  # it cannot run either
-    reached = _reach(trees, module) if module in trees else set(trees)
-    return [clue for name in sorted(reached) for clue in _clues(*trees[name])]
-
-
-def _module_name(path: str) -> str:
-    parts = PurePosixPath(path).with_suffix("").parts
-    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
-
-
-def _reach(trees: Mapping[str, tuple[str, ast.Module]], start: str) -> set[str]:
-    reached: set[str] = set()
-    waiting = [start]
-    while waiting:
-        name = waiting.pop()
-        if name in trees and name not in reached:
-            reached.add(name)
-            waiting += _imports(name, trees[name][1])
-    return reached
-
-
-def _imports(importer: str, tree: ast.Module) -> Iterator[str]:
-    package = importer.rsplit(".", 1)[0]
-    yield package
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            base = package if node.level else ""
-            module = ".".join(part for part in (base, node.module or "") if part)
-            yield module
-            yield from (f"{module}.{alias.name}" for alias in node.names)
+    first = None if module is None else module_file(module, files)
+    read = read_code(files, first).modules
+    return [clue for each in read if each.tree is not None for clue in _clues(each.file, each.tree)]
 
 
 def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
-    modules = dict(_wall_time_names(tree))
+    modules = {name: stands for name, stands in _wall_time_names(tree) if stands not in _TIMELESS}
+    timeless = {
+        id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Attribute) and _is_timeless(node, modules)
+    }
     for node in ast.walk(tree):
+        if id(node) in timeless:
+            continue
         if isinstance(node, ast.Attribute) and node.attr in _NAMES:
             yield Clue(ast.unparse(node), path, node.lineno)
         elif isinstance(node, ast.keyword) and node.arg in _NAMES:
             yield Clue(node.arg, path, node.value.lineno)
         elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id in modules:
             yield Clue(modules[node.id], path, node.lineno)
+        elif isinstance(node, ast.Call) and _has_own_arguments(node):
+            yield Clue("a list of arguments for rclpy.init", path, node.lineno)
+
+
+def _is_timeless(node: ast.Attribute, modules: Mapping[str, str]) -> bool:
+    return isinstance(node.value, ast.Name) and f"{modules.get(node.value.id)}.{node.attr}" in _TIMELESS
+
+
+def _has_own_arguments(call: ast.Call) -> bool:
+    """Whether it is rclpy.init with a list: then the node never hears of use_sim_time."""
+    if ast.unparse(call.func) not in ("rclpy.init", "init"):
+        return False
+    given = [keyword.value for keyword in call.keywords if keyword.arg == "args"]
+    return any(isinstance(each, ast.List | ast.Tuple) for each in (*call.args[:1], *given))
 
 
 def _wall_time_names(tree: ast.Module) -> Iterator[tuple[str, str]]:

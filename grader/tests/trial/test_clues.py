@@ -36,6 +36,11 @@ def test_a_node_with_a_timer_gives_no_clue() -> None:
         ("node.get_clock().sleep_for(d)", "node.get_clock().sleep_for"),
         ("Clock(clock_type=ClockType.STEADY_TIME)", "ClockType.STEADY_TIME"),
         ("import asyncio\nasyncio.run(main())", "asyncio"),
+        ("import threading\nlock = threading.Lock()\nthreading.Thread(target=f)", "threading"),
+        ("node.get_logger().info('here', throttle_duration_sec=1.0)", "throttle_duration_sec"),
+        ("Node('draw_circle', use_global_arguments=False)", "use_global_arguments"),
+        ("rclpy.init(args=['--ros-args'])", "a list of arguments for rclpy.init"),
+        ("rclpy.init([])", "a list of arguments for rclpy.init"),
     ],
 )
 def test_what_follows_wall_time_is_found(line: str, name: str) -> None:
@@ -44,6 +49,20 @@ def test_what_follows_wall_time_is_found(line: str, name: str) -> None:
 
 def test_a_module_that_is_imported_and_not_used_is_no_clue() -> None:
     assert clues("import time\n" + NODE) == []
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "import threading\nlock = threading.Lock()",
+        "from threading import RLock as Guard\nguard = Guard()",
+        "rclpy.init(args=args)",
+        "rclpy.init(args=sys.argv)",
+        "self.init([1, 2])",
+    ],
+)
+def test_what_only_looks_like_it_is_no_clue(source: str) -> None:
+    assert clues(NODE + source) == []
 
 
 def test_only_what_the_node_reaches_counts() -> None:
@@ -58,6 +77,16 @@ def test_only_what_the_node_reaches_counts() -> None:
     }
     assert [(clue.file, clue.line) for clue in wall_clues(files, "pkg.node")] == [("pkg/deep.py", 2)] * 2
     assert {clue.file for clue in wall_clues(files, None)} == {"pkg/deep.py", "pkg/other.py"}
+
+
+def test_imports_are_followed_from_packages_in_packages() -> None:
+    files = {
+        "pkg/__init__.py": b"",
+        "pkg/nodes/__init__.py": b"from .circle import main\n",
+        "pkg/nodes/circle.py": b"from ..tools.clock import wait\n",
+        "pkg/tools/clock.py": b"import time\ntime.sleep(1)\n",
+    }
+    assert {clue.file for clue in wall_clues(files, "pkg.nodes")} == {"pkg/tools/clock.py"}
 
 
 def test_source_that_cannot_be_parsed_gives_no_clue() -> None:
