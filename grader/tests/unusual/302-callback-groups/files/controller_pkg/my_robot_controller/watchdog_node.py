@@ -13,7 +13,7 @@ class Watchdog(Node):
 
     def on_pose(self, pose: Pose):
         if not (1.0 < pose.x < 10.0 and 1.0 < pose.y < 10.0):
-            self.get_logger().warn('near the edge', throttle_duration_sec=5.0)
+            self.get_logger().warn('near the edge', once=True)
 
 
 def main(args=None):

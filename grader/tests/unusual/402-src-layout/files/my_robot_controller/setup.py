@@ -1,0 +1,21 @@
+from setuptools import find_packages, setup
+
+package_name = "my_robot_controller"
+
+setup(
+    name=package_name,
+    version="0.0.0",
+    package_dir={"": "src"},
+    packages=find_packages(where="src"),
+    data_files=[
+        ("share/ament_index/resource_index/packages", ["resource/" + package_name]),
+        ("share/" + package_name, ["package.xml"]),
+    ],
+    install_requires=["setuptools"],
+    entry_points={
+        "console_scripts": [
+            "test_node = my_robot_controller.first:main",
+            "draw_circle = my_robot_controller.circle:main",
+        ],
+    },
+)

@@ -1,0 +1,2 @@
+def test_two():
+    assert 1 + 1 == 2
