@@ -71,9 +71,9 @@ def _other_format(evidence: Evidence, params: LogFormat, said: list[str], expect
     seen = f'The log says "{shorten(line, 90)}".'
     cause = "Compare it letter by letter: capitals, blanks and points count."
     pattern = lines.Format(params.format).pattern()
-    if re.compile(pattern.pattern, re.IGNORECASE).fullmatch(line):
+    if re.fullmatch(pattern.pattern, line, re.IGNORECASE | re.ASCII):
         cause = "Capital and small letters differ."
-    elif pattern.search(line):
+    elif re.search(rf"{pattern.pattern}(?!\.?\d)", line, re.ASCII):  # (not a number of which a part fits)
         cause = "There is more on the line than what is asked for."
     elif _same_words(line, params.format):
         cause = "The words are right; the numbers have another form, or are missing."

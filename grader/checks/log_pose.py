@@ -104,17 +104,17 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     ):
         cause = "This is the straight line back to the start. The way is the sum of all the small steps between poses."
         return failed("distance-from-start", seen, expected, cause, where=where)
+    if holds(np.hypot(frames.x, frames.y), lambda line: line.numbers["distance"]) or _one_step_too_many(
+        said, way, recording
+    ):
+        cause = "The first pose has none before it: there is nothing to add yet. Not even the way from x=0 y=0."
+        return failed("distance-from-zero", seen, expected, cause, where=where)
     if _is_chords(said, numbers):
         cause = (
             "It adds one straight line a second, between the places that are logged; a turtle that turns in between "
             "goes further. Add a step with every pose that arrives."
         )
         return failed("distance-by-chords", seen, expected, cause, where=where)
-    if holds(np.hypot(frames.x, frames.y), lambda line: line.numbers["distance"]) or _one_step_too_many(
-        said, way, recording
-    ):
-        cause = "The first pose has none before it: there is nothing to add yet. Not even the way from x=0 y=0."
-        return failed("distance-from-zero", seen, expected, cause, where=where)
     cause = "Between two poses the turtle moves by the root of dx squared plus dy squared; their sum is the distance."
     return failed("wrong-distance", seen, expected, cause, where=where)
 

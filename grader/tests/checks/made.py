@@ -19,6 +19,7 @@ from grader.submission import Submission
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from grader.checks.kind import Kind, Value
     from grader.outcome import Finding
 
 TOPIC = "/turtle1/cmd_vel"
@@ -112,6 +113,9 @@ BUILD = Build(
 )
 
 STOPPED = ProcessEnd(by="SIGINT", exit_code=0, t_s=DURATION_S, stop_s=0.1)
+
+TICK_S = 6 * FRAME_S
+"""A timer's period that is a whole number of frames: every part of a way lasts exactly as long as it was meant to."""
 
 Timed = tuple[float, float, float]
 """A command: when it arrives (s), linear.x (m/s), angular.z (rad/s)."""
@@ -213,6 +217,13 @@ def recording(commands: Iterable[Command | Timed], start: Pose | None = None, **
     return replace(made, **changes)
 
 
+def legs(*parts: tuple[int, float, float], rest_s: float = DURATION_S) -> list[Timed]:
+    """Command after command, TICK_S apart: so many (ticks) of these speeds (m/s, rad/s), and zeros until `rest_s`."""
+    speeds = [(linear, angular) for ticks, linear, angular in parts for _ in range(ticks)]
+    speeds += [(0.0, 0.0)] * (int(rest_s / TICK_S) - 1 - len(speeds))
+    return [((index + 1) * TICK_S, linear, angular) for index, (linear, angular) in enumerate(speeds)]
+
+
 def good() -> Recording:
     """What the solution does."""
     return recording(every(0.5, 2.0, 1.0))
@@ -232,3 +243,8 @@ def finding(check: str, given: Evidence) -> Finding:
     spec = next(each for each in exercise().checks if each.id == check)
     alone = replace(given.exercise, checks=(replace(spec, needs=()),))
     return judge(replace(given, exercise=alone))[0].finding
+
+
+def found(kind: Kind[Any], given: Evidence, **values: Value) -> Finding:
+    """What a check of this kind finds with these parameters, the others at their defaults."""
+    return kind.judge(given, {**kind.defaults(), **values})
