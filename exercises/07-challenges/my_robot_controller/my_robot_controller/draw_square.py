@@ -24,6 +24,8 @@ class DrawSquareNode(Node):
         self.sides = 0
 
     def step(self):
+        if self.publisher.get_subscription_count() == 0:
+            return  # nobody listens yet: a command sent now would be lost
         msg = Twist()
         # TODO c: set the numbers that belong to the state, count the call, and change the state when it is over.
         self.publisher.publish(msg)

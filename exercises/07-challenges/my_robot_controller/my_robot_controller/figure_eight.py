@@ -22,6 +22,8 @@ class FigureEightNode(Node):
         self.ticks = 0
 
     def step(self):
+        if self.publisher.get_subscription_count() == 0:
+            return  # nobody listens yet: a command sent now would be lost
         msg = Twist()
         # TODO b: a lobe of radius RADIUS to the left takes TICKS calls, one to the right as many; then stand still.
         self.publisher.publish(msg)

@@ -24,6 +24,8 @@ class DrawSquareNode(Node):
         self.sides = 0
 
     def step(self):
+        if self.publisher.get_subscription_count() == 0:
+            return  # nobody listens yet: a command sent now would be lost
         msg = Twist()
         # BEGIN SOLUTION
         if self.state == "drive":

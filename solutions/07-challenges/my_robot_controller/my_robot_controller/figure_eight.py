@@ -22,6 +22,8 @@ class FigureEightNode(Node):
         self.ticks = 0
 
     def step(self):
+        if self.publisher.get_subscription_count() == 0:
+            return  # nobody listens yet: a command sent now would be lost
         msg = Twist()
         # BEGIN SOLUTION
         turn = 2 * math.pi / (TICKS * PERIOD)  # rad/s
