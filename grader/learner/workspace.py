@@ -74,7 +74,7 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
     folder = work_folder(exercise, workspace)
     try:
         kept = _put_aside(folder, workspace) if fresh and folder.exists() else None
-        added, present = _add(source, folder, {own_numbers.FILE: to_toml(draw_numbers(student)).encode()})
+        added, present = add_missing(source, folder, {own_numbers.FILE: to_toml(draw_numbers(student)).encode()})
     except (FileExistsError, NotADirectoryError) as error:
         message = f"{error.filename} is a file, where a folder is needed. Name another workspace with --workspace."
         raise UsageError(message) from error
@@ -84,11 +84,17 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
     return Started(folder, added, present, kept)
 
 
-def _add(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Copy what `folder` lacks of `source`, but notebooks; returns the paths that were added, and those left alone.
+
+    `instead`: what stands in these files instead. Raises OSError.
+    """
     with tree.open_folder(str(source)) as opened:
         found = tree.read_tree(opened)
     added, present = [], []
     for path in sorted(found.files, key=tree.sort_key):
+        if path.endswith(".ipynb"):
+            continue
         target = folder / path
         target.parent.mkdir(parents=True, exist_ok=True)
         try:

@@ -60,11 +60,11 @@ class Run:
     data: dict[str, object]
 
 
-def runs_of(evidences: Sequence[Evidence]) -> list[Run]:
-    """The trials that were run, in order; each is titled where there are several."""
+def runs_of(evidences: Sequence[Evidence], key: str = "run") -> list[Run]:
+    """The trials that were run, in order; each is titled where there are several. `key` begins every id in them."""
     several = len(evidences) > 1
     tried = [(number, evidence) for number, evidence in enumerate(evidences) if evidence.recording is not None]
-    return [_run(evidence, f"run-{number}" if number else "run", several, len(tried)) for number, evidence in tried]
+    return [_run(evidence, f"{key}-{number}" if number else key, several, len(tried)) for number, evidence in tried]
 
 
 def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:

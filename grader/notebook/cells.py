@@ -1,0 +1,158 @@
+"""The magics of a cell: `%step`, `%%node`, `%%package`, `%%answers`, `%ros2`."""
+
+from __future__ import annotations
+
+import itertools
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import UsageError
+from grader.exercise import find_exercise
+from grader.notebook import place
+from grader.notebook.mode import grading
+from grader.words import a_list
+
+if TYPE_CHECKING:
+    from grader.exercise import Exercise
+
+
+class Cells:
+    """What the magics do, for the notebook whose folder is the kernel's."""
+
+    def __init__(self) -> None:
+        self.exercise: Exercise | None = None
+        self._written: dict[Path, str] = {}
+
+    def step(self, line: str) -> None:
+        """`%step 03-circle-publisher`: the step this notebook is about; adds beside it what is missing."""
+        self.exercise = find_exercise(line.strip())
+        try:
+            written = place.begin(self.exercise, Path.cwd(), alone=grading())
+        except OSError as error:
+            message = f"{error.filename} could not be written: {error.strerror}."
+            raise UsageError(message) from error
+        if not grading():
+            print(f"{self.exercise.id}: {self.exercise.title}")
+            if written:
+                print(f"Added beside this notebook: {a_list(written)}.")
+
+    def node(self, line: str, cell: str) -> None:
+        """`%%node draw_circle.py`: writes the cell as a node of the package beside the notebook."""
+        self._write("node", line, cell)
+
+    def package(self, line: str, cell: str) -> None:
+        """`%%package package.xml`: writes the cell as a file of the package beside the notebook."""
+        self._write("package", line, cell)
+
+    def answers(self, line: str, cell: str) -> None:
+        """`%%answers`: writes the cell as the step's answers.toml."""
+        self._write("answers", line, cell)
+
+    def ros2(self, line: str) -> None:
+        """`%ros2 topic list`, or just `ros2 topic list`: the command of that name, its output below the cell.
+
+        Whoever grades has no use for it, so that nothing is run then.
+        """
+        if not grading():
+            run_below([str(Path(sys.prefix, "bin", "ros2")), *shlex.split(line)])
+
+    def current(self) -> Exercise:
+        """The step of this notebook. Raises UsageError before `%step`."""
+        if self.exercise is None:
+            message = "Which step is this notebook about? Run its first cell, with `%step 03-circle-publisher` or so."
+            raise UsageError(message)
+        return self.exercise
+
+    def _write(self, magic: str, line: str, cell: str) -> None:
+        exercise = self.current()
+        path = place.part_path(magic, line.strip(), exercise)
+        file, text, start = Path.cwd() / path, place.ended(cell), place.starting_text(exercise, path)
+        present = file.read_text("utf-8", "replace") if file.is_file() else None
+        if present is not None and place.ended(present) == text:
+            self._written[file] = text
+            self._say(f"{path} says just this.")
+            return
+        worked_on = place.counts(present, start) == "file"
+        if worked_on and (grading() or (start is not None and text == place.ended(start))):
+            self._say(f"{path} holds work of your own and is left as it is; this cell still holds the starting point.")
+            return
+        if worked_on and self._written.get(file) != present:
+            self._say(f"{path} was changed outside of this notebook; that text is kept in {_keep(file)}.")
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text, encoding="utf-8")
+        except OSError as error:
+            message = f"{path} could not be written: {error.strerror}."
+            raise UsageError(message) from error
+        self._written[file] = text
+        self._say(f"Written: {path}")
+
+    @staticmethod
+    def _say(text: str) -> None:
+        if not grading():
+            print(text)
+
+
+def run_below(argv: list[str], *, cwd: Path | None = None, seconds: float | None = None) -> int:
+    """Run a command and print what it prints, until it ends, `seconds` are over or the cell is interrupted."""
+    child = subprocess.Popen(
+        argv, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        encoding="utf-8", errors="replace", bufsize=1, start_new_session=True,
+    )  # fmt: skip
+    assert child.stdout is not None
+    alarm = _Alarm(child, seconds)
+    try:
+        for line in child.stdout:
+            print(line, end="", flush=True)
+        return child.wait()
+    except KeyboardInterrupt:
+        child.send_signal(signal.SIGINT)
+        with suppress(subprocess.TimeoutExpired):
+            child.wait(3.0)
+        raise
+    finally:
+        alarm.cancel()
+        if child.poll() is None:
+            child.kill()
+            child.wait()
+
+
+class _Alarm:
+    """Sends Ctrl-C to a child after some seconds."""
+
+    def __init__(self, child: subprocess.Popen[str], seconds: float | None) -> None:
+        from threading import Timer
+
+        self._timer = None if seconds is None else Timer(seconds, self._ring, [child])
+        if self._timer is not None:
+            self._timer.daemon = True
+            self._timer.start()
+
+    @staticmethod
+    def _ring(child: subprocess.Popen[str]) -> None:
+        child.send_signal(signal.SIGINT)
+        try:
+            child.wait(5.0)
+        except subprocess.TimeoutExpired:
+            child.kill()
+
+    def cancel(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+
+
+def _keep(file: Path) -> str:
+    folder = Path.cwd() / place.KEPT
+    folder.mkdir(exist_ok=True)
+    for number in itertools.count(1):
+        target = folder / f"{file.stem}-{number}{file.suffix}"
+        if not target.exists():
+            shutil.copy2(file, target)
+            return f"{place.KEPT}/{target.name}"
+    raise AssertionError

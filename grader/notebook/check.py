@@ -1,0 +1,153 @@
+"""`check("03-circle-publisher")` in a cell: grades what lies beside the notebook, and shows the verdict below the cell.
+
+Text where only text can be shown, a table with pictures elsewhere. Nothing is graded twice: what has not changed since
+has its verdict already, so that the cells which ask for one check's points each cost nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import MachineError, UsageError
+from grader.exercise import find_exercise
+from grader.notebook.mode import grading
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from typing_extensions import Self
+
+    from grader.exercise import Exercise
+    from grader.notebook.cells import Cells
+
+GRACE_S = 5.0
+"""How long a worker may take to leave after the cell was interrupted."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What came out: shown by Jupyter as a table with pictures, as text where there is nothing but text."""
+
+    exercise: str
+    text: str
+    html: str
+    passed: bool
+    all_points: Mapping[str, float]
+    reasons: Mapping[str, str]
+
+    def points(self, check: str) -> float:
+        """The points of one check; the reason is printed. Raises UsageError where there is no such check."""
+        if check not in self.all_points:
+            message = f"{self.exercise} has no check {check!r}. It has {', '.join(self.all_points)}."
+            raise UsageError(message)
+        print(self.reasons[check])
+        return float(self.all_points[check])
+
+    def __repr__(self) -> str:
+        return self.text.rstrip("\n")
+
+    def _repr_html_(self) -> str | None:
+        return self.html or None
+
+
+class Checking:
+    """Remembers what was graded already, in one kernel."""
+
+    def __init__(self, cells: Cells) -> None:
+        self._cells = cells
+        self._known: dict[tuple[str, str], Verdict] = {}
+
+    def check(self, step: str | None = None) -> Verdict:
+        """Grade the package (or the answers) beside this notebook; the notebook's own step when none is named.
+
+        Raises:
+            UsageError: there is no such step, or nothing to grade.
+            MachineError: the grader or the machine is broken.
+        """
+        from grader.notebook.worker import opened
+
+        exercise = find_exercise(step) if step else self._cells.current()
+        key = exercise.id, opened(exercise, Path.cwd()).digest
+        if key not in self._known:
+            self._known[key] = _graded(exercise, Path.cwd())
+        return self._known[key]
+
+
+def _graded(exercise: Exercise, folder: Path) -> Verdict:
+    with tempfile.TemporaryFile() as answer, _Progress() as progress:
+        worker = subprocess.Popen(
+            [sys.executable, "-m", "grader.notebook.worker", exercise.id, str(folder)],
+            # Not the notebook's folder: a student's random.py is not Python's.
+            cwd="/",
+            stdin=subprocess.DEVNULL,
+            stdout=answer,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+        )
+        said = []
+        try:
+            assert worker.stderr is not None
+            for line in worker.stderr:
+                said.append(line.decode("utf-8", "replace").strip())
+                progress.tell(said[-1])
+            worker.wait()
+        finally:
+            _end(worker)
+        answer.seek(0)
+        try:
+            data = json.loads(answer.read())
+        except ValueError as error:
+            message = f"The grader ended without a verdict: {(said or ['it said nothing'])[-1]}"
+            raise MachineError(message) from error
+    if "error" in data:
+        raise UsageError(data["error"])
+    return Verdict(exercise.id, data["text"], data["html"], data["passed"], data["points"], data["reasons"])
+
+
+def _end(worker: subprocess.Popen[bytes]) -> None:
+    """End a worker that is still at it: it leaves in order, or is killed."""
+    for number, wait_s in ((signal.SIGINT, GRACE_S), (signal.SIGKILL, None)):
+        if worker.poll() is not None:
+            return
+        with suppress(ProcessLookupError):
+            os.killpg(worker.pid, number)
+        with suppress(subprocess.TimeoutExpired):
+            worker.wait(wait_s)
+
+
+class _Progress:
+    """A line below the cell that says what is being done, and goes when it is done; nothing under nbgrader."""
+
+    def __enter__(self) -> Self:
+        from IPython.display import DisplayHandle
+
+        self._handle = None if grading() else DisplayHandle()  # type: ignore[no-untyped-call]
+        self._shown = False
+        return self
+
+    def tell(self, text: str) -> None:
+        """Show this line instead of the one before."""
+        if self._handle is not None and text:
+            self._show(f"{text} ...")
+
+    def __exit__(self, *_: object) -> None:
+        if self._handle is not None and self._shown:
+            self._show("")
+
+    def _show(self, text: str) -> None:
+        assert self._handle is not None
+        data = {"text/plain": text}
+        if self._shown:
+            self._handle.update(data, raw=True)  # type: ignore[no-untyped-call]
+        else:
+            self._handle.display(data, raw=True)  # type: ignore[no-untyped-call]
+        self._shown = True

@@ -1,0 +1,70 @@
+"""What `%load_ext grader.notebook` does: magics, the names `check` and `simulator`, a guardian for what is started."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import GraderError
+from grader.notebook import guardian
+from grader.notebook.cells import Cells
+from grader.notebook.check import Checking
+from grader.notebook.mode import confined
+from grader.notebook.simulator import Simulator
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from IPython.core.interactiveshell import InteractiveShell
+
+
+def load(shell: InteractiveShell) -> None:
+    """Put everything into the notebook of this shell."""
+    # In a cell everything goes with the cell.
+    if not confined():
+        _guard()
+    cells = Cells()
+    for name in ("step", "ros2"):
+        shell.register_magic_function(getattr(cells, name), "line", name)
+    for name in ("node", "package", "answers"):
+        shell.register_magic_function(getattr(cells, name), "cell", name)
+    shell.push({"check": Checking(cells).check, "simulator": Simulator}, interactive=False)  # type: ignore[no-untyped-call]
+    shell.set_custom_exc((GraderError,), _tell)  # type: ignore[no-untyped-call]
+
+
+def _tell(
+    shell: InteractiveShell,
+    kind: type[BaseException],  # noqa: ARG001
+    error: BaseException,
+    traceback: TracebackType,  # noqa: ARG001
+    tb_offset: int | None = None,  # noqa: ARG001
+) -> list[str]:
+    """Show an error of ours as the sentence that it is, without a traceback."""
+    shell._showtraceback(GraderError, error, [str(error)])  # type: ignore[no-untyped-call, unused-ignore]
+    return [str(error)]
+
+
+def _guard() -> None:
+    """Mark this kernel's future children, and start the guardian that looks for the mark when the kernel has gone."""
+    mark = f"{os.getpid()}-{secrets.token_hex(8)}"
+    # Only this process holds the pipe: Python's descriptors are closed in its children.
+    started = subprocess.Popen(
+        [sys.executable, "-I", str(Path(guardian.__file__)), mark],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+        # Nothing of the kernel's: neither its folder nor its marks.
+        cwd="/",
+        env={"PATH": os.environ.get("PATH", ""), "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"},
+    )
+    _guardians.append(started)
+    os.environ[guardian.VARIABLE] = mark
+
+
+_guardians: list[subprocess.Popen[bytes]] = []
+"""Kept for the kernel's life: with the object its pipe would go."""

@@ -1,0 +1,71 @@
+"""The kernel "ROS 2 Jazzy (course)": a Python kernel whose environment is right without sourcing anything.
+
+    python -m grader.notebook.kernel -f CONNECTION_FILE     what Jupyter runs
+
+The environment is made anew at each start, so that a ROS 2 that was installed or sourced meanwhile is found.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+from grader.errors import MachineError
+
+NAME = "ros2-jazzy-course"
+DISPLAY_NAME = "ROS 2 Jazzy (course)"
+
+
+def main() -> None:
+    """Become the kernel. Without a ROS 2 it is a plain Python kernel, in which `check` says what is missing."""
+    from grader.errors import GraderError
+    from grader.notebook.simulator import environment
+
+    try:
+        env = environment()
+    except GraderError as error:
+        print(error, file=sys.stderr)
+        env = dict(os.environ)
+    argv = [sys.executable, "-m", "ipykernel_launcher", *sys.argv[1:]]
+    os.execve(argv[0], argv, env)
+
+
+def kernelspec() -> dict[str, object]:
+    """What kernel.json says."""
+    return {
+        "argv": [sys.executable, "-m", "grader.notebook.kernel", "-f", "{connection_file}"],
+        "display_name": DISPLAY_NAME,
+        "language": "python",
+        "metadata": {"debugger": True},
+    }
+
+
+def install(prefix: Path | None = None) -> Path:
+    """Make the kernel known to this user's Jupyter, or to the one below `prefix`; returns its folder.
+
+    Raises:
+        MachineError: Jupyter is not here, or the folder cannot be written.
+    """
+    try:
+        from jupyter_client.kernelspec import KernelSpecManager
+    except ImportError as error:
+        message = "Jupyter is not installed here. `make notebooks` brings it."
+        raise MachineError(message) from error
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder).chmod(0o755)
+        (Path(folder) / "kernel.json").write_text(json.dumps(kernelspec(), indent=1) + "\n", encoding="utf-8")
+        try:
+            placed: str = KernelSpecManager().install_kernel_spec(
+                folder, NAME, user=prefix is None, prefix=str(prefix) if prefix else None
+            )
+        except OSError as error:
+            message = f"The kernel could not be installed in {error.filename}: {error.strerror}."
+            raise MachineError(message) from error
+    return Path(placed)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,132 @@
+"""The files beside a notebook: where a cell's text belongs, and which counts where cell and file differ.
+
+What a student hands in is the package (or the answers) beside the notebook. A cell writes one of its files:
+
+    %%node draw_circle.py    <package>/<package>/draw_circle.py
+    %%package package.xml    <package>/package.xml
+    %%answers                answers.toml
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from grader import own_numbers
+from grader.errors import UsageError
+from grader.learner import progress, workspace
+from grader.own_numbers import draw_numbers, to_toml
+from grader.submission import ANSWERS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from grader.exercise import Exercise
+
+MAGICS = ("node", "package", "answers")
+KEPT = ".kept"
+"""Where a file goes that a cell replaces though it was written elsewhere; hidden, so that nobody grades it."""
+_FIRST_LINE = re.compile(rf"\s*%%({'|'.join(MAGICS)})\b[ \t]*(.*?)\s*")
+
+
+@dataclass(frozen=True)
+class Part:
+    """The text that a cell gives to a file; `path` is relative to the notebook's folder."""
+
+    path: str
+    text: str
+
+
+def part_path(magic: str, name: str, exercise: Exercise) -> str:
+    """The file that a cell writes, relative to the notebook's folder.
+
+    Raises:
+        UsageError: the name is none for such a file.
+    """
+    package = exercise.package
+    if magic == "answers":
+        return f"{package}/{ANSWERS}" if package else ANSWERS
+    if not package:
+        message = f"{exercise.id} has no package: what is handed in is {ANSWERS}, which `%%answers` writes."
+        raise UsageError(message)
+    if magic == "node":
+        if not re.fullmatch(r"[A-Za-z_]\w*\.py", name):
+            message = f"%%node wants the name of a Python file, as in `%%node draw_circle.py`, and got {name!r}."
+            raise UsageError(message)
+        return f"{package}/{package}/{name}"
+    if not name or name.startswith("/") or posixpath.normpath(name) != name or name.split("/")[0] == "..":
+        message = f"%%package wants a file of the package, as in `%%package package.xml`, and got {name!r}."
+        raise UsageError(message)
+    return f"{package}/{name}"
+
+
+def parts_of(sources: list[str], exercise: Exercise) -> list[Part]:
+    """What the cells with these sources write; a cell whose name is amiss writes nothing. The last one counts."""
+    parts: dict[str, Part] = {}
+    for source in sources:
+        first, _, rest = source.partition("\n")
+        match = _FIRST_LINE.fullmatch(first)
+        if match is None:
+            continue
+        try:
+            path = part_path(match[1], match[2], exercise)
+        except UsageError:
+            continue
+        parts[path] = Part(path, ended(rest))
+    return list(parts.values())
+
+
+def ended(text: str) -> str:
+    """The text with one newline at its end."""
+    return text.rstrip("\n") + "\n"
+
+
+def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
+    """Which text is handed in: the file as the student left it, or the cell's where nobody has worked on the file.
+
+    `file` is the file's text, `start` that of the step's starting point; None where there is none.
+    """
+    if file is None or (start is not None and ended(file) == ended(start)):
+        return "cell"
+    return "file"
+
+
+def starting_text(exercise: Exercise, path: str) -> str | None:
+    """The text of a file in the step's starting point; None where it has none."""
+    file = workspace.starting_point(exercise) / path
+    try:
+        return file.read_text("utf-8")
+    except (OSError, UnicodeDecodeError):
+        return None
+
+
+def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str, ...]:
+    """Put what the step needs and `folder` lacks beside the notebook; returns the paths that were written.
+
+    Where there is no package yet, that of the learner's workspace is the beginning, else the step's starting point;
+    `alone`: only the latter. Nothing of the student's is overwritten.
+    """
+    source, target = workspace.starting_point(exercise), folder
+    if not exercise.package:
+        return workspace.add_missing(source, target, {})[0]
+    source, target = source / exercise.package, folder / exercise.package
+    own = workspace.work_folder(exercise, progress.workspace_of(None))
+    written: tuple[str, ...] = ()
+    if not alone and not target.exists() and own.is_dir():
+        written = workspace.add_missing(own, target, {})[0]
+    written += workspace.add_missing(source, target, {})[0]
+    if not alone and (source / own_numbers.FILE).is_file():
+        written += _own_numbers(source, target)
+    return tuple(f"{exercise.package}/{path}" for path in dict.fromkeys(written))
+
+
+def _own_numbers(source: Path, target: Path) -> tuple[str, ...]:
+    """Draw the student's own numbers where those of the starting point still stand."""
+    file = target / own_numbers.FILE
+    if file.read_bytes() != (source / own_numbers.FILE).read_bytes():
+        return ()
+    student = progress.update(progress.workspace_of(None), lambda before: before).student
+    file.write_text(to_toml(draw_numbers(student)), encoding="utf-8")
+    return (own_numbers.FILE,)

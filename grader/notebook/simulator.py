@@ -1,0 +1,155 @@
+"""`with simulator() as sim:` in a cell: a running turtlesim whose canvas moves below the cell.
+
+    with simulator() as sim:
+        %ros2 topic list
+        sim.run("draw_circle", seconds=7)
+
+It runs in a process of its own, which ends with the `with`, with an interrupt, and with the kernel.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import subprocess
+import sys
+import threading
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import MachineError, UsageError
+from grader.notebook.cells import run_below
+from grader.notebook.mode import grading
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from typing_extensions import Self
+
+START_S = 30.0
+"""A turtlesim that has shown nothing by then is broken, even on a machine that is busy."""
+
+
+class Simulator:
+    """turtlesim, running and shown. Under nbgrader nobody looks: nothing is run then."""
+
+    def __init__(self) -> None:
+        self._process: subprocess.Popen[bytes] | None = None
+        self._picture = b""
+        self._changed = threading.Event()
+        self._reader: threading.Thread | None = None
+
+    def __enter__(self) -> Self:
+        if grading():
+            return self
+        from IPython.display import Image, display
+
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "grader.simulator.live"],
+            cwd="/",
+            env=environment(),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        self._changed.wait(START_S)
+        if not self._picture:
+            said = self._end()
+            message = f"turtlesim did not start: {(said.strip().splitlines() or ['it said nothing'])[-1]}"
+            raise MachineError(message)
+        self._handle = display(Image(self._picture), display_id=True)  # type: ignore[no-untyped-call]
+        threading.Thread(target=self._show, daemon=True).start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        if self._process is not None:
+            self._end()
+
+    def run(self, executable: str, seconds: float = 7.0) -> None:
+        """Run a node of the package beside the notebook, by its file's name, for some seconds; its lines are printed.
+
+        Raises:
+            UsageError: there is no such file.
+        """
+        if grading():
+            return
+        name = executable.removesuffix(".py")
+        files = [file for file in Path.cwd().glob(f"*/*/{name}.py") if file.parent.name == file.parent.parent.name]
+        if not files:
+            message = f"There is no {name}.py in the package beside this notebook: write it with `%%node {name}.py`."
+            raise UsageError(message)
+        package = files[0].parent
+        start = (
+            f"import sys; sys.path.insert(0, {str(package.parent)!r}); from {package.name}.{name} import main; main()"
+        )
+        run_below([sys.executable, "-c", start], cwd=package.parent, seconds=seconds)
+
+    def wait(self, seconds: float) -> None:
+        """Let the turtle move for some seconds."""
+        if not grading():
+            time.sleep(seconds)
+
+    def picture(self) -> bytes:
+        """The canvas as it is now, a PNG; empty under nbgrader."""
+        return self._picture
+
+    def _end(self) -> str:
+        """End the process, show its last picture; returns what it said on standard error."""
+        process = self._process
+        assert process is not None
+        assert process.stdin is not None
+        assert process.stderr is not None
+        with suppress(OSError):
+            process.stdin.close()
+        try:
+            process.wait(5.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        if self._reader is not None:
+            self._reader.join(2.0)
+        if self._picture and hasattr(self, "_handle"):
+            self._update()
+        said = process.stderr.read().decode("utf-8", "replace")
+        process.stderr.close()
+        self._process = None
+        self._changed.set()
+        return said
+
+    def _read(self) -> None:
+        assert self._process is not None
+        stream = self._process.stdout
+        assert stream is not None
+        with stream:
+            while len(head := stream.read(4)) == 4:
+                self._picture = stream.read(*struct.unpack(">I", head))
+                self._changed.set()
+        self._changed.set()
+
+    def _show(self) -> None:
+        while self._process is not None:
+            self._changed.wait()
+            self._changed.clear()
+            if self._process is not None:
+                self._update()
+
+    def _update(self) -> None:
+        from IPython.display import Image
+
+        self._handle.update(Image(self._picture))  # type: ignore[no-untyped-call]
+
+
+def environment() -> dict[str, str]:
+    """The kernel's environment with ROS 2 in it: the course's kernel has it already, others get it here."""
+    from grader import underlay
+    from grader.ros import find_ros, users_environment
+
+    here = find_ros()
+    return users_environment(here, underlay.ensure(here), os.environ)

@@ -1,0 +1,94 @@
+"""Grade for a notebook, in a process of its own: what a cell has done to its kernel cannot reach it.
+
+    python -m grader.notebook.worker EXERCISE FOLDER
+
+Progress goes to standard error, a line each; the verdict to standard output, as JSON: {"points": {id: number},
+"reasons": {id: text}, "text": all of it as text, "html": the same to look at, "passed": bool}.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader import sandbox
+from grader.errors import GraderError
+from grader.exercise import find_exercise
+from grader.grade import Graded, Options, grade
+from grader.notebook.mode import confined
+from grader.outcome import Status
+from grader.report.plain import plain_line
+from grader.submission import open_answers, open_submission
+
+if TYPE_CHECKING:
+    from grader.exercise import Exercise
+    from grader.outcome import Outcome
+    from grader.submission import Submission
+
+
+def opened(exercise: Exercise, folder: Path) -> Submission:
+    """What lies beside the notebook in `folder`. Raises UsageError where nothing to grade does."""
+    if not exercise.package:
+        return open_answers(folder)
+    own = folder / exercise.package
+    return open_submission(own if own.is_dir() else folder)
+
+
+def reason(outcome: Outcome) -> str:
+    """A check in words: how it went and, where it did not pass, why. Plain text, several lines."""
+    sign = {Status.PASSED: "✓", Status.FAILED: "✗", Status.SKIPPED: "-", Status.ERROR: "!"}[outcome.status]
+    points = f"  {outcome.points:g}/{outcome.max:g}" if outcome.max else ""
+    if outcome.hidden:
+        return f"{sign} Hidden check{points}"
+    finding = outcome.finding
+    lines = [f"{sign} {outcome.title}{points}"]
+    if outcome.status is not Status.PASSED:
+        where = str(finding.where) if finding.where else ""
+        rows = (("seen", finding.seen), ("expected", finding.expected), ("why", finding.cause), ("where", where))
+        lines += [f"    {label}: {text}" for label, text in rows if text]
+    return "\n".join(map(plain_line, lines))
+
+
+def to_data(graded: Graded, *, html: bool) -> dict[str, object]:
+    """The verdict as it is handed over."""
+    from rich.console import Console
+
+    from grader.report import terminal
+
+    report = graded.report
+    page = io.StringIO()
+    terminal.render(report, Console(file=page, width=100, highlight=False, force_terminal=False, color_system=None))
+    shown = ""
+    if html:
+        from grader.report.html_notebook import html_fragment
+
+        shown = html_fragment(graded.evidence, report)
+    return {
+        "points": {outcome.id: outcome.points for outcome in report.outcomes},
+        "reasons": {outcome.id: reason(outcome) for outcome in report.outcomes},
+        "text": page.getvalue(),
+        "html": shown,
+        "passed": report.exit_code == 0,
+    }
+
+
+def main() -> int:
+    """Grade, and print the verdict."""
+    name, folder = sys.argv[1:]
+    try:
+        exercise = find_exercise(name)
+        submission = opened(exercise, Path(folder))
+        options = Options(in_cell=not confined() and sandbox.usable())
+        graded = grade(exercise, submission, options, lambda text: print(text, file=sys.stderr, flush=True))
+    except GraderError as error:
+        json.dump({"error": str(error)}, sys.stdout)
+        return error.exit_code
+    json.dump(to_data(graded, html=True), sys.stdout, allow_nan=False)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

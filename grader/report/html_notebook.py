@@ -1,0 +1,49 @@
+"""The verdict as a piece of HTML for a notebook's cell: the table with reasons, then what was seen of each run.
+
+No script, and a style sheet that touches nothing but this piece. Every id in it begins with a key of its own, since a
+notebook shows many pieces on one page.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from grader.outcome import Status
+from grader.report.html import ShownCheck
+from grader.report.html_run import runs_of
+from grader.report.page import ASSETS
+from grader.report.plain import plain_line
+from grader.report.verdict import tone, verdict
+
+if TYPE_CHECKING:
+    from grader.checks.evidence import Evidence
+    from grader.outcome import Report
+
+
+def html_fragment(evidence: Evidence, report: Report) -> str:
+    """The piece of HTML."""
+    environment = Environment(
+        loader=FileSystemLoader(ASSETS),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["plain"] = plain_line
+    worth = [o for o in report.outcomes if o.max or o.status is not Status.PASSED]
+    values = {
+        "report": report,
+        "verdict": verdict(report),
+        "tone": tone(report),
+        "checks": [ShownCheck(number, outcome) for number, outcome in enumerate(worth, 1)],
+        "silent": len(report.outcomes) - len(worth),
+        "runs": runs_of([evidence, *evidence.others.values()], _key(report)),
+    }
+    return environment.get_template("notebook.html").render(values)
+
+
+def _key(report: Report) -> str:
+    return "n" + hashlib.sha256(f"{report.exercise} {report.digest}".encode()).hexdigest()[:8]
