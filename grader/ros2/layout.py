@@ -17,13 +17,13 @@ from xml.sax.saxutils import escape
 
 from grader.errors import MachineError
 
-Format = Literal["svg", "png"]
+Format = Literal["svg", "png", "json0"]
 _PNG_DPI = 144
 _HANG_S = 60.0
 
 
 def render(dot: str, kind: Format) -> bytes:
-    """Lay out a graph in DOT and draw it; an SVG is UTF-8 text, a PNG has 144 pixels an inch.
+    """Lay out a graph in DOT and draw it: SVG is UTF-8 text, PNG has 144 pixels an inch, json0 says where all lies.
 
     Raises:
         MachineError: Graphviz is not here or cannot draw.

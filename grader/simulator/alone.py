@@ -7,6 +7,7 @@ import signal
 import sys
 import threading
 import time
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,11 +17,14 @@ from rclpy.executors import SingleThreadedExecutor, TimeoutException
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
+from grader.errors import GraderError
 from grader.simulator.node import TurtlesimNode
 from grader.simulator.turtle import FRAME_S
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
+
+    from grader.view.launch import View
 
 _MOST_AT_ONCE = 200
 """Callbacks handled before a frame: a flood of messages must not stop the turtle."""
@@ -34,14 +38,18 @@ def main(args: Sequence[str] | None = None) -> int:
         signal.signal(number, lambda *_: stop.set())
     try:
         options = _options(remove_ros_args(arguments)[1:])
-        # rclpy's own handler would shut the context down in the middle of a frame.
-        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
-        node = TurtlesimNode()
+        with ExitStack() as stack:
+            view = _view(options, stack)
+            # rclpy's own handler would shut the context down in the middle of a frame.
+            rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+            stack.callback(rclpy.try_shutdown)
+            node = _node(view)
+            spin(node, stop, view)
     except (InvalidParameterValueException, InvalidParameterTypeException, RuntimeError) as error:
-        rclpy.try_shutdown()
         return _wrong(_first_line(error))
-    spin(node, stop)
-    rclpy.try_shutdown()
+    except GraderError as error:
+        _wrong(str(error))
+        return error.exit_code
     if options.image is not None:
         try:
             node.save_image(options.image)
@@ -50,21 +58,41 @@ def main(args: Sequence[str] | None = None) -> int:
     return 0
 
 
-def spin(node: TurtlesimNode, stop: threading.Event) -> None:
-    """Make a frame every 16 ms of CLOCK_MONOTONIC until `stop`. A late frame is caught up, none is left out."""
+def _node(view: View | None) -> TurtlesimNode:
+    if view is None:
+        return TurtlesimNode()
+    feed = view.feed
+    node = TurtlesimNode(canvas=feed.canvas, on_command=feed.on_command, on_publish=feed.on_publish)
+    feed.namespace = node.get_namespace()
+    return node
+
+
+def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -> None:
+    """Make a frame every 16 ms of CLOCK_MONOTONIC until `stop`. A late frame is caught up, none is left out.
+
+    While the view has paused it, the turtles' time stands still.
+    """
     executor = SingleThreadedExecutor(context=node.context)
     executor.add_node(node)
     begun = time.monotonic()
-    frame = 0
+    ticks = frames = 0
     while not stop.is_set():
-        due_s = frame * FRAME_S
-        early_s = begun + due_s - time.monotonic()
+        early_s = begun + ticks * FRAME_S - time.monotonic()
         if early_s > 0:
             time.sleep(early_s)
         # As turtlesim does: what has arrived is handled at the start of a frame.
         _handle_what_arrived(executor)
-        node.frame(due_s)
-        frame += 1
+        if view is None or not view.paused:
+            node.frame(frames * FRAME_S)
+            frames += 1
+        ticks += 1
+        if view is not None:
+            view.after_frame(node)
+            if not view.open:
+                if view.kind == "terminal":
+                    return
+                node.get_logger().warning("The view has ended; turtlesim goes on without it.")
+                view = None
 
 
 def _handle_what_arrived(executor: SingleThreadedExecutor) -> None:
@@ -79,10 +107,32 @@ def _handle_what_arrived(executor: SingleThreadedExecutor) -> None:
 
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="turtlesim_node", description="A headless turtlesim at wall time, until Ctrl-C."
+        prog="turtlesim_node",
+        description="turtlesim at wall time, until Ctrl-C; without a window, so --view shows it.",
+        epilog="Example: ros2 run turtlesim turtlesim_node --view",
     )
     parser.add_argument("--image", type=Path, metavar="FILE.png", help="write the canvas with the trails on exit")
-    return parser.parse_args(arguments)
+    parser.add_argument(
+        "--view",
+        nargs="?",
+        const="page",
+        choices=("page", "terminal"),
+        help="see it move: on a page of this machine (the default), or drawn in this terminal",
+    )
+    parser.add_argument("--port", type=int, help="of the page; the same as the last time, or a free one")
+    options = parser.parse_args(arguments)
+    if options.port is not None and options.view != "page":
+        parser.error("--port is for --view, which serves a page there")
+    return options
+
+
+def _view(options: argparse.Namespace, stack: ExitStack) -> View | None:
+    """Start the view that was asked for; without one nothing of it is imported."""
+    if options.view is None:
+        return None
+    from grader.view.launch import view
+
+    return stack.enter_context(view(options.view, options.port))
 
 
 def _wrong(what: str) -> int:

@@ -62,6 +62,10 @@ class Canvas:
         red, green, blue, drawn = self._pixels[_pixel(x, y)]
         return (red, green, blue) if drawn else self.background
 
+    def trail(self) -> Image.Image:
+        """Return what was drawn, RGBA: transparent where nothing was."""
+        return self._image
+
     def image(self) -> Image.Image:
         """Return the picture, RGB."""
         picture = Image.new("RGB", self._image.size, self.background)

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from rclpy.parameter import Parameter
 
     from grader.recording import Pose
+    from grader.simulator.canvas import Canvas
     from grader.simulator.turtle import State
 
 MOST_TURTLES = 64
@@ -51,17 +52,18 @@ class TurtlesimNode(Node):
         on_publish: Callable[[str, str, bytes], object] = _nobody,
         on_intervention: Callable[[str], object] = _nobody,
         pose_every: int = 1,
+        canvas: Canvas | None = None,
         **node: Any,  # noqa: ANN401 - handed on to rclpy
     ) -> None:
         """`start`: where turtle1 begins (m, m, rad), after a reset too; the `on_...` are described in `Hooks`.
 
-        `pose_every`: a pose is published every so many frames; turtlesim does it in each.
+        `pose_every`: a pose is published every so many frames; turtlesim does it in each. `canvas`: what is drawn on.
         """
         self._pose_every = pose_every
         self._hooks = Hooks(on_command, on_publish, on_intervention)
         super().__init__("turtlesim", **node)
         parameters.declare(self)
-        self.world = World(Start(start.x, start.y, start.theta) if start is not None else Start())
+        self.world = World(Start(start.x, start.y, start.theta) if start is not None else Start(), canvas)
         self._take_parameters(self._parameters_of_ours())
         self.add_post_set_parameters_callback(self._parameters_set)
         # turtlesim listens to parameter events to repaint its window. There is none here, but who looks at the
@@ -153,12 +155,21 @@ class TurtlesimNode(Node):
 
     def _clear(self, _: Empty.Request, response: Empty.Response) -> Empty.Response:
         self._hooks.on_intervention("clear")
+        self.clear()
+        return response
+
+    def clear(self) -> None:
+        """Wipe off the trail."""
         self.get_logger().info("Clearing turtlesim.")
         self.world.canvas.clear()
-        return response
 
     def _reset(self, _: Empty.Request, response: Empty.Response) -> Empty.Response:
         self._hooks.on_intervention("reset")
+        self.reset()
+        return response
+
+    def reset(self) -> None:
+        """Begin anew: turtle1 alone, at its start, and no trail."""
         self.get_logger().info("Resetting turtlesim.")
         self.world.reset()
         for name in [name for name in self._interfaces if name != "turtle1"]:
@@ -166,7 +177,6 @@ class TurtlesimNode(Node):
         if "turtle1" not in self._interfaces:
             self._show("turtle1")
         self._tell_spawned("turtle1")
-        return response
 
     # --- parameters -------------------------------------------------------------------------------------------
 

@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import rclpy
@@ -39,14 +40,21 @@ _DISCOVERY_S = 2.0
 
 
 class Teleop(Node):
-    """The node teleop_turtle."""
+    """The node teleop_turtle; in a view's hands it has another name, drives another turtle, and says nothing."""
 
-    def __init__(self) -> None:
-        super().__init__("teleop_turtle")
+    def __init__(
+        self,
+        name: str = "teleop_turtle",
+        turtle: str = "turtle1",
+        tell: Callable[[str], object] | None = None,
+    ) -> None:
+        super().__init__(name)
+        self._tell = tell or partial(print, flush=True)
         self.declare_parameter("scale_linear", 2.0)
         self.declare_parameter("scale_angular", 2.0)
-        self._publisher = self.create_publisher(Twist, "turtle1/cmd_vel", 1)
-        self._rotate = ActionClient(self, RotateAbsolute, "turtle1/rotate_absolute")
+        self._publisher = self.create_publisher(Twist, f"{turtle}/cmd_vel", 1)
+        self._rotate = ActionClient(self, RotateAbsolute, f"{turtle}/rotate_absolute")
+        self._action = self.resolve_service_name(f"{turtle}/rotate_absolute")
         self._goal: Any = None
         self._begun = time.monotonic()
 
@@ -60,7 +68,7 @@ class Teleop(Node):
 
     async def turn(self, key: Turn) -> None:
         """Send a goal; turtlesim gives up the one before."""
-        if not self._see_that(self._rotate.server_is_ready, self.resolve_service_name("turtle1/rotate_absolute")):
+        if not self._see_that(self._rotate.server_is_ready, self._action):
             return
         goal = await self._rotate.send_goal_async(RotateAbsolute.Goal(theta=key.theta))
         if goal.accepted:
@@ -78,7 +86,7 @@ class Teleop(Node):
         there = somebody()
         if not there:
             domain = os.environ.get("ROS_DOMAIN_ID", "0")
-            print(f"Nobody listens on {name} here (ROS_DOMAIN_ID is {domain}). Is turtlesim running?", flush=True)
+            self._tell(f"Nobody listens on {name} here (ROS_DOMAIN_ID is {domain}). Is turtlesim running?")
         return there
 
 

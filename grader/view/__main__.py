@@ -1,0 +1,51 @@
+"""`python -m grader.view (page | terminal) --feed FD ...`: the view's own process, started by its simulator."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import socket
+import sys
+
+from grader.errors import GraderError
+
+
+def main() -> int:
+    """Run it until the simulator ends; returns the exit code."""
+    # Ctrl-C ends quietly from the first moment: while ROS 2 is being imported, too.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    parser = argparse.ArgumentParser(prog="python -m grader.view", description="Started by turtlesim_node --view.")
+    parser.add_argument("kind", choices=("page", "terminal"))
+    parser.add_argument("--feed", type=int, required=True, help="the socket to the simulator")
+    parser.add_argument("--listen", type=int, help="the socket to serve the page on")
+    parser.add_argument("--before", action="store_true", help="a tab of the last time may still be open")
+    parser.add_argument("--said", type=int, help="a pipe from which comes what the simulator prints")
+    options = parser.parse_args()
+    feed = socket.socket(fileno=options.feed)
+    try:
+        if options.kind == "terminal":
+            from grader.view.terminal import watch
+
+            return watch(feed, options.said)
+        import asyncio
+
+        from grader.view.address import Address, Place
+        from grader.view.page import Page
+
+        listening = socket.socket(fileno=options.listen)
+        address = Address(listening.getsockname()[1], os.environ.pop("GRADER_VIEW_TOKEN"))
+        place = Place(address, listening, options.before)
+
+        async def serve() -> None:
+            await Page(feed).serve(place)
+
+        asyncio.run(serve())
+    except GraderError as error:
+        print(f"The view has ended: {error}", file=sys.stderr)
+        return error.exit_code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

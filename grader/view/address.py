@@ -1,0 +1,121 @@
+"""Where a view is served: always on this machine only, and if possible where it was the last time.
+
+Port and token are remembered for each user and kind of view, so that a tab that is still open finds a simulator that
+was started again.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import secrets
+import socket
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from grader.errors import UsageError
+
+HOST = "127.0.0.1"
+_TOKEN_BYTES = 16
+_TOKEN_CHARS = 22
+"""Of 16 bytes in base 64."""
+
+
+@dataclass(frozen=True)
+class Address:
+    """A port of 127.0.0.1, and the token that a page must show to read and drive."""
+
+    port: int
+    token: str
+
+    @property
+    def url(self) -> str:
+        """What to open. A browser sends nothing behind the #, so the token stands in no request but the page's own."""
+        return f"http://{HOST}:{self.port}/#{self.token}"
+
+
+@dataclass(frozen=True)
+class Place:
+    """An address with the socket that listens there; `before`: there was a view at it, so a tab may still be open."""
+
+    address: Address
+    listening: socket.socket
+    before: bool
+
+
+def listen(kind: str, port: int | None = None) -> Place:
+    """Take `port`, else the one that this kind of view had the last time, else any that is free.
+
+    Raises:
+        UsageError: the port cannot be had.
+    """
+    kept = _remembered(kind)
+    token = kept.token if kept else secrets.token_urlsafe(_TOKEN_BYTES)
+    listening = _bound(port) if port is not None else _free(kept.port if kept else 0)
+    address = Address(listening.getsockname()[1], token)
+    # A second view beside one that runs takes another port; the next one is to find that of the first.
+    if kept is None or port is not None:
+        _remember(kind, address)
+    return Place(address, listening, before=kept == address)
+
+
+def _bound(port: int) -> socket.socket:
+    try:
+        return _socket(port)
+    except (OSError, OverflowError) as error:
+        reason = getattr(error, "strerror", None) or "ports are numbers from 0 to 65535"
+        message = f"--port {port} cannot be had: {reason}. Without --port a free one is taken."
+        raise UsageError(message) from error
+
+
+def _free(preferred: int) -> socket.socket:
+    try:
+        return _socket(preferred)
+    except (OSError, OverflowError):
+        return _socket(0)
+
+
+def _socket(port: int) -> socket.socket:
+    with contextlib.ExitStack() as stack:
+        made = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
+        # Connections of the view before may be fading away; a port on which somebody listens is refused all the same.
+        made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        made.bind((HOST, port))
+        made.listen(128)
+        stack.pop_all()
+        return made
+
+
+def _file(kind: str) -> Path:
+    # The XDG rule: a value that is not an absolute path counts as none.
+    home = os.environ.get("XDG_STATE_HOME", "")
+    folder = Path(home) if home.startswith("/") else Path.home() / ".local/state"
+    return folder / "grader" / f"view-{kind}.json"
+
+
+def _remembered(kind: str) -> Address | None:
+    file = _file(kind)
+    try:
+        stat = file.stat()
+        kept = Address(**json.loads(file.read_text("utf-8")))
+    except (OSError, ValueError, TypeError):
+        return None
+    # A file that others could write or read holds no secret.
+    ours = stat.st_uid == os.getuid() and not stat.st_mode & 0o077
+    whole = isinstance(kept.port, int) and isinstance(kept.token, str) and len(kept.token) >= _TOKEN_CHARS
+    return kept if ours and whole else None
+
+
+def _remember(kind: str, address: Address) -> None:
+    """Keep it for the next time; a home that cannot be written to costs only that."""
+    file = _file(kind)
+    new = file.with_suffix(f".{os.getpid()}")
+    with contextlib.suppress(OSError):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with contextlib.suppress(FileNotFoundError):
+            new.unlink()
+        descriptor = os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with os.fdopen(descriptor, "w", encoding="utf-8") as written:
+            json.dump(asdict(address), written)
+        new.replace(file)

@@ -1,0 +1,59 @@
+// The graph, where Graphviz put it.
+
+import { element } from "./svg.js";
+
+const PAD = 8;
+const ZOOM = 1.25;
+
+function drawn(node) {
+  const { kind, label, x, y, width, height } = node;
+  const shape = kind === "topic"
+    ? element("rect", { x: x - width / 2, y: y - height / 2, width, height, rx: 2 })
+    : element("ellipse", { cx: x, cy: y, rx: width / 2, ry: height / 2 });
+  const lines = label.split("\n");
+  const texts = lines.map((line, index) =>
+    element("text", { x, y: y + 4 + (index - (lines.length - 1) / 2) * 14, "text-anchor": "middle" }, line));
+  return element("g", { class: kind, "data-name": lines[0] }, element("title", {}, `${kind} ${label}`), shape, ...texts);
+}
+
+function arrow({ from, to, tip, points }) {
+  const [first, ...rest] = points;
+  const line = element("path", { d: `M${first.join(" ")}C${rest.map((point) => point.join(" ")).join(" ")}` });
+  const last = points[points.length - 1];
+  const degrees = Math.atan2(tip[1] - last[1], tip[0] - last[0]) * 180 / Math.PI;
+  const head = element("path", { d: "M0 0l-9-4v8z", class: "head",
+    transform: `translate(${tip.join(" ")}) rotate(${degrees})` });
+  return element("g", { class: "arrow", "data-from": from, "data-to": to }, line, head);
+}
+
+export class Graph {
+  constructor(place) {
+    this.place = place;
+  }
+
+  show({ width, height, nodes, arrows, problem }) {
+    if (problem || nodes.length === 0) {
+      const none = document.createElement("p");
+      none.className = "note";
+      none.textContent = problem ?? "No node is running here.";
+      this.place.replaceChildren(none);
+      return;
+    }
+    const about = arrows.map(({ from, to }) => `${from} to ${to}`).join(", ");
+    const box = [-PAD, -PAD, width + 2 * PAD, height + 2 * PAD];
+    const svg = element("svg", { viewBox: box.join(" "), width: box[2] * ZOOM, height: box[3] * ZOOM, role: "img",
+      "aria-label": `Nodes and topics. Messages go from ${about || "nobody"}.` },
+      ...arrows.map(arrow), ...nodes.map(drawn));
+    this.place.replaceChildren(svg);
+    this.flow(this.busy ?? new Set());
+  }
+
+  // Which topics carry messages now.
+  flow(busy) {
+    this.busy = busy;
+    for (const each of this.place.querySelectorAll(".arrow")) {
+      const flows = busy.has(each.dataset.from) || busy.has(each.dataset.to);
+      each.classList.toggle("flows", flows);
+    }
+  }
+}

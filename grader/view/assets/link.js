@@ -1,0 +1,57 @@
+// The connection to the server: opened again and again until it is there, told when the page sleeps and wakes.
+
+const AGAIN_MS = 700;
+
+export class Link {
+  constructor({ news, up, down }) {
+    this.news = news;
+    this.up = up;
+    this.down = down;
+    this.socket = null;
+    document.addEventListener("visibilitychange", () => this.wake());
+    window.addEventListener("pageshow", () => this.wake());
+    window.addEventListener("focus", () => this.wake());
+    window.addEventListener("hashchange", () => this.socket?.close());
+    this.awake = null;
+    this.open();
+  }
+
+  open() {
+    const token = encodeURIComponent(location.hash.slice(1));
+    const socket = new WebSocket(`ws://${location.host}/live?token=${token}`);
+    this.socket = socket;
+    let opened = false;
+    socket.addEventListener("open", () => {
+      opened = true;
+      this.awake = true;
+      this.up();
+      this.wake();
+    });
+    socket.addEventListener("message", (event) => this.news(JSON.parse(event.data)));
+    socket.addEventListener("close", async () => {
+      this.down(!opened && await refused());
+      setTimeout(() => this.open(), AGAIN_MS);
+    });
+  }
+
+  // A page that nobody sees is told nothing, and everything at once when it is seen again.
+  wake() {
+    const awake = document.visibilityState === "visible";
+    if (awake === this.awake) return;
+    this.awake = awake;
+    this.send({ awake });
+  }
+
+  send(said) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(said));
+  }
+}
+
+// Whether the server is there and it is the address that is wrong.
+async function refused() {
+  try {
+    return (await fetch("/turtle.svg", { cache: "no-store" })).ok;
+  } catch {
+    return false;
+  }
+}

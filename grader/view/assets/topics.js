@@ -1,0 +1,33 @@
+// The table of topics: who speaks, who hears, how often.
+
+function cell(name, ...parts) {
+  const made = document.createElement(name);
+  made.append(...parts);
+  return made;
+}
+
+function names(all) {
+  return cell("td", ...(all.length ? all.flatMap((name) => [cell("span", name), " "]) : [cell("span", "nobody")]));
+}
+
+export class Topics {
+  constructor(table) {
+    this.body = table.tBodies[0];
+    this.told = null;
+  }
+
+  show(topics) {
+    const text = JSON.stringify(topics);
+    if (text === this.told) return;
+    this.told = text;
+    this.body.replaceChildren(...topics.map(({ name, types, publishers, subscribers, hertz }) => {
+      const title = cell("th", cell("span", name), " ", cell("small", types.join(", ")));
+      title.scope = "row";
+      const rate = cell("td", hertz === null ? "–" : `${hertz} Hz`);
+      rate.className = "rate";
+      const row = cell("tr", title, rate, names(publishers), names(subscribers));
+      row.dataset.topic = name;
+      return row;
+    }));
+  }
+}

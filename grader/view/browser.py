@@ -1,0 +1,49 @@
+"""Opening a page in the user's browser, where there is one."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import webbrowser
+
+_OPENED_S = 3.0
+"""A program that has not failed by then has opened the page."""
+
+
+def there_is_one() -> bool:
+    """Whether a page can be shown: there is a screen, or a program of the user's choice (as in a remote editor)."""
+    return bool(os.environ.get("BROWSER")) or _screen()
+
+
+def _screen() -> bool:
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def open_page(url: str) -> bool:
+    """Open a page; returns whether that worked. Never a browser that would draw into this terminal."""
+    if not there_is_one():
+        return False
+    opener = shutil.which("xdg-open")
+    if _screen() and opener is not None and not os.environ.get("BROWSER"):
+        return _started([opener, url])
+    try:
+        return webbrowser.get().open(url)
+    except webbrowser.Error:
+        return False
+
+
+def _started(command: list[str]) -> bool:
+    try:
+        started = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        return started.wait(_OPENED_S) == 0
+    except subprocess.TimeoutExpired:
+        return True
+    except OSError:
+        return False

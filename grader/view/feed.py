@@ -1,0 +1,165 @@
+"""What a simulator tells its view, and what the view asks of the simulator: small JSON messages over a socket.
+
+The simulator never waits for the view: what cannot be sent now is sent with the next frame, and of a trail that has
+become too long meanwhile a picture.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import math
+import select
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from grader.simulator.canvas import Canvas
+
+if TYPE_CHECKING:
+    import socket
+    from collections.abc import Mapping
+
+    from grader.simulator.turtle import Pen, Turtle
+
+EVERY_FRAMES = 2
+"""A view is told of every second frame (32 ms) while anything changes: 31 pictures a second."""
+TOLD_EVERY_S = 0.25
+"""While nothing changes: so that rates go on, and a view knows that the simulator is there."""
+MOST_LINES = 1500
+"""Waiting to be sent; 60 bytes each, so that a message fits into what a socket takes at once."""
+LARGEST = 1 << 20
+"""Bytes of a message, more than any has."""
+
+Line = tuple[float, float, float, float, int, int, int, int]
+"""From x, y to x, y (m), in red, green, blue, so many pixels wide."""
+
+
+class WatchedCanvas(Canvas):
+    """A canvas that remembers what was drawn on it since it was last asked."""
+
+    def clear(self) -> None:
+        """Wipe off the trail."""
+        super().clear()
+        self.lines: list[Line] = []
+        self.cleared = True
+
+    def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
+        """Draw, and remember it."""
+        super().line(x0, y0, x1, y1, pen)
+        if all(map(math.isfinite, (x0, y0, x1, y1))):
+            self.lines.append((x0, y0, x1, y1, *pen.color, pen.width))
+
+
+@dataclass
+class Heard:
+    """Messages on a topic since the last message to the view: how many, when the last one came (s), the last one."""
+
+    count: int = 0
+    last_s: float = 0.0
+    twist: tuple[float, ...] = ()
+
+
+@dataclass
+class Feed:
+    """The simulator's end of the socket. Its hooks are for `TurtlesimNode`."""
+
+    channel: socket.socket
+    namespace: str = "/"
+    """Of the node: turtle1's commands come on /turtle1/cmd_vel."""
+    canvas: WatchedCanvas = field(default_factory=WatchedCanvas)
+    heard: dict[str, Heard] = field(default_factory=dict)
+    sent: dict[str, int] = field(default_factory=dict)
+    _frames: int = 0
+    _shown: object = None
+    _told_s: float = -math.inf
+    _too_long: bool = False
+
+    def __post_init__(self) -> None:
+        self.channel.settimeout(0.0)
+
+    def on_command(self, topic: str, _: bytes, twist: Any) -> None:  # noqa: ANN401 - a message of rclpy's
+        """Note a command as it arrives."""
+        heard = self.heard.setdefault(topic, Heard())
+        heard.count += 1
+        heard.last_s = time.monotonic()
+        linear, angular = twist.linear, twist.angular
+        heard.twist = (linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
+
+    def on_publish(self, topic: str, _: str, __: bytes) -> None:
+        """Count what is sent."""
+        self.sent[topic] = self.sent.get(topic, 0) + 1
+
+    def show(self, turtles: Mapping[str, Turtle], *, paused: bool) -> None:
+        """Tell the view how things stand after a frame, if it is time to."""
+        self._frames += 1
+        if self._frames % EVERY_FRAMES:
+            return
+        now = time.monotonic()
+        state = {
+            "paused": paused,
+            "namespace": self.namespace,
+            "background": self.canvas.background,
+            "turtles": {name: _told(turtle) for name, turtle in turtles.items()},
+        }
+        changed = bool(self.canvas.lines) or self.canvas.cleared or bool(self.heard) or state != self._shown
+        if (changed or now - self._told_s >= TOLD_EVERY_S) and self._view_listens():
+            self._tell(state, now)
+
+    def _view_listens(self) -> bool:
+        return bool(select.select([], [self.channel], [], 0)[1])
+
+    def _tell(self, state: dict[str, object], now: float) -> None:
+        canvas = self.canvas
+        if len(canvas.lines) > MOST_LINES:
+            # The view does not keep up: it gets a picture of the whole instead.
+            canvas.lines.clear()
+            self._too_long = True
+        message = {
+            **state,
+            "t": now,
+            "cleared": canvas.cleared,
+            "lines": canvas.lines,
+            "picture": _picture(canvas) if self._too_long else None,
+            "heard": {topic: (heard.count, heard.last_s, heard.twist) for topic, heard in self.heard.items()},
+            "sent": self.sent,
+        }
+        try:
+            self.channel.send(json.dumps(message, separators=(",", ":")).encode())
+        except (BlockingIOError, BrokenPipeError):
+            # A view that is gone is noticed by what it asks.
+            return
+        self._shown, self._told_s = state, now
+        canvas.lines, canvas.cleared, self._too_long = [], False, False
+        self.heard, self.sent = {}, {}
+
+    def asked(self) -> list[str]:
+        """What the view asks for: "pause", "resume", "clear", "reset".
+
+        Raises:
+            ConnectionError: the view is gone.
+        """
+        wanted: list[str] = []
+        while True:
+            try:
+                data = self.channel.recv(LARGEST)
+            except BlockingIOError:
+                return wanted
+            if not data:
+                message = "the view has closed the socket"
+                raise ConnectionResetError(message)
+            wanted.append(str(json.loads(data)))
+
+
+def _told(turtle: Turtle) -> tuple[object, ...]:
+    """x, y (m), theta (rad), linear (m/s), angular (rad/s), the pen: red, green, blue, width, down."""
+    state, pen = turtle.state(), turtle.pen
+    return (state.x, state.y, state.theta, state.linear, state.angular, *pen.color, pen.width, pen.down)
+
+
+def _picture(canvas: Canvas) -> str:
+    """The trail as PNG, transparent where nothing was drawn."""
+    file = io.BytesIO()
+    canvas.trail().save(file, format="PNG")
+    return base64.b64encode(file.getvalue()).decode()

@@ -1,0 +1,65 @@
+"""The graph for a page: where Graphviz puts each node, topic and arrow, so that it lies as rqt_graph draws it."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+from grader.ros2.graph import to_dot
+from grader.ros2.layout import render
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from grader.ros2.graph import Picture
+
+_INCH = 72.0
+"""Graphviz gives sizes in inches and places in points, y upwards."""
+
+
+def laid_out(drawn: Picture) -> dict[str, Any]:
+    """Width and height (points), the nodes and topics with centre and size, the arrows as points of Bezier curves.
+
+    An arrow's line is "M" x, y, then three points a piece; `tip` is where its head points to.
+
+    Raises:
+        MachineError: Graphviz cannot draw.
+    """
+    if not drawn.nodes and not drawn.topics:
+        return {"width": 0.0, "height": 0.0, "nodes": [], "arrows": []}
+    made = json.loads(render(to_dot(drawn), "json0"))
+    _, _, width, height = map(float, made["bb"].split(","))
+    objects = made.get("objects", [])
+    return {
+        "width": width,
+        "height": height,
+        "nodes": [_node(each, height) for each in objects],
+        "arrows": [_arrow(each, objects, height) for each in made.get("edges", [])],
+    }
+
+
+def _node(each: dict[str, Any], height: float) -> dict[str, Any]:
+    x, y = map(float, each["pos"].split(","))
+    return {
+        "kind": "topic" if each["shape"] == "box" else "node",
+        "label": each["name"] if each["label"] == "\\N" else each["label"].replace("\\n", "\n"),
+        "x": x,
+        "y": round(height - y, 2),
+        "width": float(each["width"]) * _INCH,
+        "height": float(each["height"]) * _INCH,
+    }
+
+
+def _arrow(each: dict[str, Any], objects: list[dict[str, Any]], height: float) -> dict[str, Any]:
+    tip, *points = (part.removeprefix("e,") for part in each["pos"].split())
+    return {
+        "from": objects[each["tail"]]["name"],
+        "to": objects[each["head"]]["name"],
+        "tip": _point(tip, height),
+        "points": [_point(point, height) for point in points],
+    }
+
+
+def _point(text: str, height: float) -> list[float]:
+    x, y = map(float, text.split(","))
+    return [x, round(height - y, 2)]

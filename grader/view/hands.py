@@ -1,0 +1,88 @@
+"""What a view presses: keys that drive while they are held, keys that turn, buttons for the simulator."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from grader.turtles.keys import Cancel, Drive, Turn, keys
+
+if TYPE_CHECKING:
+    import socket
+
+    from grader.view.state import State
+    from grader.view.system import Ears
+
+BUTTONS = ("pause", "resume", "clear", "reset")
+ARROWS = {
+    "up": Drive(1.0, 0.0),
+    "down": Drive(-1.0, 0.0),
+    "left": Drive(0.0, 1.0),
+    "right": Drive(0.0, -1.0),
+}
+
+
+def together(held: list[str]) -> Drive:
+    """What the arrows that are held ask for together."""
+    drives = [ARROWS[key] for key in dict.fromkeys(held) if key in ARROWS]
+    return Drive(sum(drive.linear for drive in drives), sum(drive.angular for drive in drives))
+
+
+class Hands:
+    """Passes on what is pressed: keys to ROS, buttons to the simulator. Which turtles there are, `state` says."""
+
+    def __init__(self, ears: Ears, state: State, simulator: socket.socket | None) -> None:
+        self._ears = ears
+        self._state = state
+        self._simulator = simulator
+        self._driving: dict[object, str] = {}
+        """Who drives which turtle."""
+        self._drivers: set[object] = set()
+
+    def held(self, page: object, turtle: str, keys: list[str]) -> None:
+        """Drive while keys are held; stop when they are let go."""
+        topic = self._full(turtle)
+        if topic is None:
+            return
+        arrows = [key for key in keys if key in ARROWS]
+        if arrows:
+            self._driving[page] = topic
+            self._drivers.add(page)
+            self._ears.drive(topic, together(arrows))
+        elif self._driving.pop(page, None) is not None:
+            self._ears.drive(topic, Drive(0.0, 0.0))
+
+    def let_go(self, page: object) -> None:
+        """Stop what this page drives."""
+        topic = self._driving.pop(page, None)
+        if topic is not None:
+            self._ears.drive(topic, Drive(0.0, 0.0))
+
+    def gone(self, page: object) -> None:
+        """The page is closed. When the last one that drove is, the node that drives for it leaves the graph."""
+        self.let_go(page)
+        if page in self._drivers:
+            self._drivers.discard(page)
+            if not self._drivers:
+                self._ears.leave()
+
+    def pressed(self, turtle: str, key: str) -> None:
+        """Turn to where the key lies, seen from F, or stop turning."""
+        topic = self._full(turtle)
+        typed, _ = keys(key[:1])
+        if topic is not None and typed and isinstance(typed[0], Turn | Cancel):
+            self._ears.drive(topic, typed[0])
+
+    def asked(self, what: str) -> None:
+        """Pause, resume, clear or reset."""
+        if what in BUTTONS and self._simulator is not None:
+            # A simulator that is ending hears nothing any more.
+            with suppress(OSError):
+                self._simulator.send(json.dumps(what).encode())
+
+    def _full(self, turtle: str) -> str | None:
+        """The turtle's full name; None when there is none of that name: no page may make up topics."""
+        if turtle not in self._state.turtles:
+            return None
+        return f"{self._state.namespace.rstrip('/')}/{turtle}"

@@ -1,0 +1,41 @@
+"""How often something arrives, from counts of arrivals. Pure: the time (s) is always passed in."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+
+WINDOW_S = 5.0
+"""A rate tells of the last seconds, or of the last two arrivals where they lie further apart."""
+_LONGEST_S = 30.0
+_GAPS = 2.5
+"""So many times the usual gap without an arrival, and what came regularly comes no more."""
+_AT_LEAST_S = 1.0
+
+
+@dataclass
+class Arrivals:
+    """Arrivals on one topic."""
+
+    _seen: deque[tuple[float, int]] = field(default_factory=deque)
+    """When the last of some arrived, and how many those were."""
+
+    def add(self, when_s: float, count: int = 1) -> None:
+        """Note that `count` have arrived since the last call, the last of them at `when_s`."""
+        self._seen.append((when_s, count))
+        while len(self._seen) > 2 and self._seen[1][0] < when_s - WINDOW_S:
+            self._seen.popleft()
+
+    def hertz(self, now_s: float) -> float | None:
+        """The mean rate; None where nothing arrives (any more), or only once so far."""
+        if len(self._seen) < 2:
+            return None
+        (first_s, _), (last_s, _) = self._seen[0], self._seen[-1]
+        count = sum(count for _, count in self._seen) - self._seen[0][1]
+        if last_s <= first_s:
+            return None
+        gap_s = (last_s - first_s) / count
+        silent_s = now_s - last_s
+        if silent_s > max(_GAPS * gap_s, _AT_LEAST_S) or gap_s > _LONGEST_S:
+            return None
+        return 1 / gap_s

@@ -1,0 +1,152 @@
+"""The page's server: a few files, and one connection a page on which it hears the news and says what is pressed."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from starlette.applications import Starlette
+from starlette.datastructures import Headers
+from starlette.responses import FileResponse, PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from grader.view.guard import admitted, answer_headers, refusal
+
+if TYPE_CHECKING:
+    from starlette.requests import Request
+    from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+    from grader.view.hub import Hub
+
+ASSETS = Path(__file__).parent / "assets"
+STYLE = Path(__file__).parents[1] / "report/assets/page.css"
+"""The reports' style, which this page shares."""
+HOLD_S = 0.5
+"""A page says again and again which keys are held; one that says nothing for this long holds none."""
+_LARGEST = 10_000
+
+
+class Pressed(Protocol):
+    """Who is told what a page asks for."""
+
+    def held(self, page: object, turtle: str, keys: list[str]) -> None:
+        """The keys that are held on this page now."""
+
+    def pressed(self, turtle: str, key: str) -> None:
+        """A key was pressed that does its work at once."""
+
+    def asked(self, what: str) -> None:
+        """A button was pressed."""
+
+    def let_go(self, page: object) -> None:
+        """The page holds no key any more."""
+
+    def gone(self, page: object) -> None:
+        """The page is closed."""
+
+
+def application(hub: Hub, hands: Pressed, token: str) -> ASGIApp:
+    """The server, behind its guard."""
+
+    def file(request: Request) -> Response:
+        name = request.path_params.get("name", "index.html")
+        path = STYLE if name == STYLE.name else ASSETS / name
+        # Names of files that are there: nothing is opened by what a request says.
+        if path != STYLE and path not in set(ASSETS.iterdir()):
+            return PlainTextResponse("There is no such file.", 404)
+        return FileResponse(path)
+
+    async def live(socket: WebSocket) -> None:
+        if not admitted(token, socket.query_params.get("token", "")):
+            await socket.close(4403)
+            return
+        await socket.accept()
+        await _Page(socket, hub, hands).run()
+
+    routes = [Route("/", file), Route("/{name}", file), WebSocketRoute("/live", live)]
+    return _Guard(Starlette(routes=routes))
+
+
+class _Guard:
+    """Turns away who may not come in, and puts the policy on every answer."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        why = refusal(headers, live=scope["type"] == "websocket")
+        if why is not None:
+            if scope["type"] == "websocket":
+                await send({"type": "websocket.close", "code": 4403})
+            else:
+                await PlainTextResponse(why, 403)(scope, receive, send)
+            return
+        policy = [(name.encode(), text.encode()) for name, text in answer_headers(headers.get("host", "")).items()]
+
+        async def with_policy(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                message["headers"] = [*message["headers"], *policy]
+            await send(message)
+
+        await self._app(scope, receive, with_policy)
+
+
+class _Page:
+    """One page that is open."""
+
+    def __init__(self, socket: WebSocket, hub: Hub, hands: Pressed) -> None:
+        self._socket = socket
+        self._hub = hub
+        self._hands = hands
+        self._following: asyncio.Task[None] | None = None
+        self._holding = False
+
+    async def run(self) -> None:
+        """Serve it until it is closed."""
+        await self._wake()
+        try:
+            while True:
+                try:
+                    text = await asyncio.wait_for(self._socket.receive_text(), HOLD_S if self._holding else None)
+                except asyncio.TimeoutError:
+                    self._holding = False
+                    self._hands.let_go(self)
+                    continue
+                with suppress(ValueError, TypeError, KeyError, AttributeError):
+                    await self._hear(json.loads(text) if len(text) <= _LARGEST else {})
+        except (WebSocketDisconnect, KeyError):
+            pass
+        finally:
+            self._hands.gone(self)
+            await self._sleep()
+
+    async def _hear(self, said: dict[str, Any]) -> None:
+        if "held" in said:
+            keys = [str(key) for key in said["held"]]
+            self._holding = bool(keys)
+            self._hands.held(self, str(said["turtle"]), keys)
+        elif "press" in said:
+            self._hands.pressed(str(said["turtle"]), str(said["press"]))
+        elif "do" in said:
+            self._hands.asked(str(said["do"]))
+        elif "awake" in said:
+            await (self._wake() if said["awake"] else self._sleep())
+
+    async def _wake(self) -> None:
+        await self._sleep()
+        self._following = asyncio.create_task(self._hub.follow(self._socket.send_text))
+
+    async def _sleep(self) -> None:
+        if self._following is not None:
+            self._following.cancel()
+            with suppress(asyncio.CancelledError, Exception):
+                await self._following
+            self._following = None

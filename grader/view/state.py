@@ -1,0 +1,100 @@
+"""What a view knows of its simulator: made of the messages of feed.py, and told to pages and terminals."""
+
+from __future__ import annotations
+
+import base64
+import math
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from grader.view.rates import Arrivals
+from grader.view.trail import Trail, told
+
+Rgb = tuple[int, int, int]
+
+
+class Seen(NamedTuple):
+    """A turtle: m, m, rad, m/s, rad/s, and its pen."""
+
+    x: float
+    y: float
+    theta: float
+    linear: float
+    angular: float
+    red: int
+    green: int
+    blue: int
+    width: int
+    down: bool
+
+
+class Command(NamedTuple):
+    """The last command on a topic: when (s, monotonic), linear x, y, z (m/s), angular x, y, z (rad/s)."""
+
+    when_s: float
+    twist: tuple[float, ...]
+
+
+@dataclass
+class State:
+    """All of it; `now_s` is the time of the last message."""
+
+    now_s: float = 0.0
+    paused: bool = False
+    namespace: str = "/"
+    background: Rgb = (69, 86, 255)
+    turtles: dict[str, Seen] = field(default_factory=dict)
+    trail: Trail = field(default_factory=Trail)
+    commands: dict[str, Command] = field(default_factory=dict)
+    rates: dict[str, Arrivals] = field(default_factory=dict)
+    """Of the topics that the simulator itself speaks and hears on, so that nobody has to subscribe to count."""
+
+    def take(self, message: dict[str, Any]) -> dict[str, object]:
+        """Take a message of the simulator; returns what a page that knew all before it has to be told."""
+        self.now_s = float(message["t"])
+        self.paused = bool(message["paused"])
+        self.namespace = str(message["namespace"])
+        red, green, blue = message["background"]
+        self.background = (red, green, blue)
+        self.turtles = {name: Seen(*values) for name, values in message["turtles"].items()}
+        if message["cleared"]:
+            self.trail.clear()
+        if message["picture"] is not None:
+            self.trail.take_picture(base64.b64decode(message["picture"]))
+        pieces = self.trail.draw(message["lines"])
+        for topic, (count, last_s, twist) in message["heard"].items():
+            self.commands[topic] = Command(last_s, tuple(twist))
+            self.rates.setdefault(topic, Arrivals()).add(last_s, count)
+        for topic, count in message["sent"].items():
+            self.rates.setdefault(topic, Arrivals()).add(self.now_s, count)
+        for topic in [topic for topic in self.commands if topic.split("/")[-2] not in self.turtles]:
+            del self.commands[topic]
+        news: dict[str, object] = {**self._now(), "lines": told(pieces)}
+        if message["cleared"] or message["picture"] is not None:
+            news["trail"] = self.trail.told()
+            del news["lines"]
+        return news
+
+    def whole(self) -> dict[str, object]:
+        """What a page that knows nothing has to be told."""
+        return {**self._now(), "trail": self.trail.told()}
+
+    def _now(self) -> dict[str, object]:
+        return {
+            "paused": self.paused,
+            "background": self.background,
+            "turtles": {name: _numbers(turtle) for name, turtle in self.turtles.items()},
+            "commands": {
+                topic: [round(self.now_s - command.when_s, 3), *_numbers(command.twist)]
+                for topic, command in self.commands.items()
+            },
+        }
+
+
+def _numbers(values: tuple[Any, ...]) -> list[object]:
+    """Four decimals are enough to see; JSON has no infinity."""
+    return [_number(value) if isinstance(value, float) else value for value in values]
+
+
+def _number(value: float) -> float | None:
+    return round(value, 4) if math.isfinite(value) else None

@@ -1,0 +1,184 @@
+"""What runs in the whole ROS system: the graph, how often topics speak; and the node that drives for who watches.
+
+The listening node is hidden and offers nothing, so that who is watched sees nobody more than before. A topic is
+subscribed to only while somebody looks, and only if its rate is not known from the simulator.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+
+from grader.ros2 import values
+from grader.ros2.failure import Ros2Error
+from grader.ros2.graph import DEBUG_TOPICS
+from grader.ros2.heard import Heard, heard
+from grader.ros2.names import hidden
+from grader.turtles.keys import Cancel, Drive, Turn
+from grader.turtles.turtle_teleop_key import Teleop
+from grader.view.rates import Arrivals
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection
+
+    from rclpy.node import Node
+    from typing_extensions import Self
+
+LOOKED_EVERY_S = 0.4
+MOST_HZ = 500.0
+"""A topic that speaks more often is not listened to: counting it would cost more than it tells."""
+_SPARED_S = 10.0
+DRIVER = "view_keys"
+"""The node that the graph shows once somebody drives."""
+
+_COUNTING = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.BEST_EFFORT)
+
+
+@dataclass(frozen=True)
+class System:
+    """The graph, and the rates (Hz) of the topics that were listened to; None: nothing comes."""
+
+    heard: Heard
+    rates: dict[str, float | None]
+
+
+class Ears:
+    """A thread that spins `node`. `tell` is called from that thread, with every look at the graph.
+
+    `known`: topics that are counted elsewhere. `looking`: whether anybody wants to know of rates.
+    """
+
+    def __init__(
+        self, node: Node, tell: Callable[[System], object], known: Callable[[], Collection[str]] = tuple
+    ) -> None:
+        self.looking = False
+        self._node = node
+        self._tell = tell
+        self._known = known
+        self._counters: dict[str, _Counter] = {}
+        self._driver: tuple[str, Teleop] | None = None
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(node)
+        node.create_timer(LOOKED_EVERY_S, self._look)
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="ros")
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stop.set()
+        self._executor.wake()
+        self._thread.join()
+        self._leave()
+        self._executor.shutdown()
+
+    def _run(self) -> None:
+        with suppress(ExternalShutdownException):
+            while not self._stop.is_set():
+                self._executor.spin_once(timeout_sec=1.0)
+
+    # --- the graph and the rates --------------------------------------------------------------------------------
+
+    def _look(self) -> None:
+        seen = heard(self._node)
+        now = time.monotonic()
+        wanted = self._wanted(seen) if self.looking else {}
+        for topic in [topic for topic in self._counters if topic not in wanted]:
+            self._counters.pop(topic).close(self._node)
+        for topic, type_name in wanted.items():
+            if topic not in self._counters:
+                self._counters[topic] = _Counter(topic, type_name)
+            self._counters[topic].look(self._node, now)
+        self._tell(System(seen, {topic: counter.hertz(now) for topic, counter in self._counters.items()}))
+
+    def _wanted(self, seen: Heard) -> dict[str, str]:
+        known = self._known()
+        return {
+            end.topic: end.type
+            for end in seen.ends
+            if end.kind == "publisher"
+            and not hidden(end.topic)
+            and end.topic not in DEBUG_TOPICS
+            and end.topic not in known
+            and end.node.rpartition("/")[2] != DRIVER
+        }
+
+    # --- driving ------------------------------------------------------------------------------------------------
+
+    def drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
+        """Do what a key of turtle_teleop_key does, for the turtle of this full name, as "/turtle1"."""
+        self._executor.create_task(self._drive, turtle, key)
+
+    def leave(self) -> None:
+        """Nobody drives any more: the node leaves the graph."""
+        self._executor.create_task(self._leave)
+
+    async def _drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
+        if self._driver is None or self._driver[0] != turtle:
+            self._leave()
+            made = Teleop(DRIVER, turtle, tell=lambda _: None)
+            self._executor.add_node(made)
+            self._driver = (turtle, made)
+        driver = self._driver[1]
+        if isinstance(key, Drive):
+            driver.drive(key)
+        elif isinstance(key, Turn):
+            await driver.turn(key)
+        else:
+            await driver.cancel()
+
+    def _leave(self) -> None:
+        if self._driver is not None:
+            self._executor.remove_node(self._driver[1])
+            self._driver[1].destroy_node()
+            self._driver = None
+
+
+class _Counter:
+    """Listens to one topic and counts."""
+
+    def __init__(self, topic: str, type_name: str) -> None:
+        self._topic, self._type = topic, type_name
+        self._arrivals = Arrivals()
+        self._subscription: Any = None
+        self._count = 0
+        self._looked_s = time.monotonic()
+        self._spared_until_s = 0.0
+        try:
+            self._class = values.load_type(type_name, "msg", "message type")
+        except Ros2Error:
+            # A type of somebody's own, which this shell does not know.
+            self._class = None
+
+    def _arrived(self, _: bytes) -> None:
+        self._count += 1
+        self._arrivals.add(time.monotonic())
+
+    def look(self, node: Node, now: float) -> None:
+        """Subscribe if it is time to, and rest from a flood."""
+        flood = self._count > MOST_HZ * (now - self._looked_s)
+        self._count, self._looked_s = 0, now
+        if flood:
+            self.close(node)
+            self._spared_until_s = now + _SPARED_S
+        elif self._subscription is None and self._class is not None and now >= self._spared_until_s:
+            self._arrivals = Arrivals()
+            self._subscription = node.create_subscription(self._class, self._topic, self._arrived, _COUNTING, raw=True)
+
+    def hertz(self, now: float) -> float | None:
+        """What was counted; the most that is counted where it was more."""
+        return MOST_HZ if now < self._spared_until_s else self._arrivals.hertz(now)
+
+    def close(self, node: Node) -> None:
+        """Listen no more."""
+        if self._subscription is not None:
+            node.destroy_subscription(self._subscription)
+            self._subscription = None

@@ -1,0 +1,152 @@
+"""The trail as a view keeps it: strokes that stay sharp at any size, and below them a picture of what is older.
+
+Coordinates are tenths of the canvas's pixels, y downwards, as whole numbers: short in JSON and fine enough.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from PIL import Image, ImageDraw
+
+from grader.simulator.turtle import PIXELS_PER_M, SIDE_M, SIDE_PX
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from grader.view.feed import Line
+
+UNIT = 10
+"""Of a pixel: tenths."""
+FAR = 20 * SIDE_PX * UNIT
+"""Nothing is drawn further outside."""
+MOST_POINTS = 20_000
+"""Of all strokes; then they become part of the picture."""
+_SCALE = 3
+"""The picture's pixels for one of the canvas."""
+_SLACK = 1.0
+"""How far (in units) a point may lie beside the line that is drawn without it."""
+_MOST_SKIPPED = 40
+
+Point = tuple[int, int]
+
+
+@dataclass
+class Stroke:
+    """A line drawn with one pen (red, green, blue, width in px). `skipped`: points passed since the last but one."""
+
+    pen: tuple[int, int, int, int]
+    points: list[Point]
+    skipped: list[Point] = field(default_factory=list)
+
+    def add(self, point: Point) -> None:
+        """Go on to a point; one on the way of the line so far is left out."""
+        if point == self.points[-1]:
+            return
+        if len(self.points) >= 2:
+            begin, middle = self.points[-2], self.points[-1]
+            passed = [*self.skipped, middle]
+            if len(passed) <= _MOST_SKIPPED and all(_beside(each, begin, point) <= _SLACK for each in passed):
+                self.points[-1], self.skipped = point, passed
+                return
+        self.points.append(point)
+        self.skipped = []
+
+
+def _beside(point: Point, begin: Point, end: Point) -> float:
+    """How far a point lies from the piece between two others."""
+    along = (end[0] - begin[0], end[1] - begin[1])
+    length = math.hypot(*along)
+    if length == 0:
+        return math.dist(point, begin)
+    share = ((point[0] - begin[0]) * along[0] + (point[1] - begin[1]) * along[1]) / length**2
+    share = min(max(share, 0.0), 1.0)
+    return math.dist(point, (begin[0] + share * along[0], begin[1] + share * along[1]))
+
+
+class Trail:
+    """All that was drawn."""
+
+    def __init__(self) -> None:
+        self.clear()
+
+    def clear(self) -> None:
+        """Wipe it off."""
+        self.strokes: list[Stroke] = []
+        self.picture = b""
+        self._open: dict[tuple[object, ...], Stroke] = {}
+        self._points = 0
+
+    def draw(self, lines: Iterable[Line]) -> list[Stroke]:
+        """Add lines, and return them as strokes: what has begun where another line ended goes on with it."""
+        new: dict[int, Stroke] = {}
+        for x0, y0, x1, y1, red, green, blue, width in lines:
+            pen = (red, green, blue, width)
+            stroke = self._open.pop((x0, y0, pen), None)
+            if stroke is None:
+                stroke = Stroke(pen, [place(x0, y0)])
+                self.strokes.append(stroke)
+                self._points += 1
+            piece = new.setdefault(id(stroke), Stroke(pen, [stroke.points[-1]]))
+            before, to = len(stroke.points), place(x1, y1)
+            stroke.add(to)
+            piece.points.append(to)
+            self._points += len(stroke.points) - before
+            self._open[x1, y1, pen] = stroke
+        if len(self._open) > 4 * len(new) + 256:
+            # Ends that nobody came back to.
+            self._open = dict(list(self._open.items())[-256:])
+        if self._points > MOST_POINTS:
+            self._flatten()
+        return list(new.values())
+
+    def take_picture(self, png: bytes) -> None:
+        """Begin anew with a picture of all that was drawn."""
+        self.clear()
+        self.picture = png
+
+    def _flatten(self) -> None:
+        picture = Image.new("RGBA", (SIDE_PX * _SCALE, SIDE_PX * _SCALE), (0, 0, 0, 0))
+        if self.picture:
+            below = Image.open(io.BytesIO(self.picture)).convert("RGBA")
+            picture.paste(below.resize(picture.size, Image.Resampling.NEAREST))
+        paint(picture, self.strokes, _SCALE)
+        file = io.BytesIO()
+        picture.save(file, format="PNG")
+        self.take_picture(file.getvalue())
+
+    def told(self) -> dict[str, object]:
+        """For a page that has seen nothing yet."""
+        return {
+            "picture": base64.b64encode(self.picture).decode() if self.picture else None,
+            "strokes": told(self.strokes),
+        }
+
+
+def told(strokes: Iterable[Stroke]) -> list[list[int]]:
+    """Strokes for a page: red, green, blue, width, then x, y of each point."""
+    return [[*stroke.pen, *(value for point in stroke.points for value in point)] for stroke in strokes]
+
+
+def place(x: float, y: float) -> Point:
+    """Where a point (m) lies in the picture."""
+    column, row = x * PIXELS_PER_M * UNIT, (SIDE_M - y) * PIXELS_PER_M * UNIT
+    return round(min(max(column, -FAR), FAR)), round(min(max(row, -FAR), FAR))
+
+
+def paint(picture: Image.Image, strokes: Sequence[Stroke], scale: float) -> None:
+    """Paint strokes into a picture that has `scale` pixels for one of the canvas."""
+    draw = ImageDraw.Draw(picture)
+    for stroke in strokes:
+        ink = (*stroke.pen[:3], 255)
+        width = max(1, round(stroke.pen[3] * scale))
+        points = [(x * scale / UNIT, y * scale / UNIT) for x, y in stroke.points]
+        if len(points) > 1:
+            draw.line(points, ink, width, joint="curve")
+        for x, y in (points[0], points[-1]):
+            if width > 1:
+                draw.ellipse((x - width / 2, y - width / 2, x + width / 2, y + width / 2), ink)
