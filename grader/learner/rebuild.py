@@ -30,24 +30,24 @@ class Rebuild:
 
     def __call__(self, submission: Submission, here: Ros, underlay: Path | None, *, in_cell: bool) -> workspace.Built:
         """Build the submission, with colcon or without."""
-        built = self._renewed(submission) if self._last else None
+        built = renewed(submission, *self._last) if self._last else None
         if built is None:
             self.runs += 1
             built = workspace.build(submission, here, underlay, in_cell=in_cell)
         self._last = (submission, built)
         return built
 
-    def _renewed(self, submission: Submission) -> workspace.Built | None:
-        assert self._last is not None
-        before, built = self._last
-        if submission.files.keys() != before.files.keys() or submission.executable != before.executable:
-            return None
-        changed = {path: data for path, data in submission.files.items() if data != before.files[path]}
-        installed = {path: _installed(path, built) for path in changed}
-        if built.build.exit_code != 0 or not all(installed.values()):
-            return None
-        texts = {f"{built.build.package}/{place}": changed[path] for path, place in installed.items() if place}
-        return workspace.Built(replace(built.build, seconds=0.0), _with_texts(built.tree, texts))
+
+def renewed(submission: Submission, before: Submission, built: workspace.Built) -> workspace.Built | None:
+    """What was `built` of a submission `before`, with the modules of this one; None where more than those differ."""
+    if submission.files.keys() != before.files.keys() or submission.executable != before.executable:
+        return None
+    changed = {path: data for path, data in submission.files.items() if data != before.files[path]}
+    installed = {path: _installed(path, built) for path in changed}
+    if built.build.exit_code != 0 or not all(installed.values()):
+        return None
+    texts = {f"{built.build.package}/{place}": changed[path] for path, place in installed.items() if place}
+    return workspace.Built(replace(built.build, seconds=0.0), _with_texts(built.tree, texts))
 
 
 def _installed(path: str, built: workspace.Built) -> str | None:
