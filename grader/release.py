@@ -2,24 +2,27 @@
 
     python -m grader.release [--check]
 
-Marked regions (grader/markers.py) are replaced by their starting point, notebooks lose their output, every other
-file is copied as it is. A file of which nothing is left is one that the student makes: it is not written.
+Marked regions (grader/markers.py) are replaced by their starting point, notebooks are made as nbgrader makes them
+(grader/notebook/released.py), every other file is copied as it is. A file of which nothing is left is one that the
+student makes: it is not written. Before that, what a source notebook repeats of the solution is brought up to date.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
-import json
 import sys
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from grader import tree
 from grader.errors import GraderError, UsageError
-from grader.markers import ANGLE, HASH, MEANT, stripped, syntax_of
+from grader.exercise import FILE_NAME, load_exercise
+from grader.markers import MEANT, stripped, syntax_of
+from grader.notebook.released import released_notebook
+from grader.notebook.source import refreshed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -65,6 +68,28 @@ def release(solution: Path, to: Path) -> None:
         (to / path).chmod(0o755 if file.executable else 0o644)
 
 
+def refresh_notebook(solution: Path) -> None:
+    """Bring the step's source notebook up to date with its files and checks, if there is one.
+
+    Raises:
+        UsageError: it is amiss, or the exercise is.
+    """
+    for path, data in _fresh_notebooks(solution).items():
+        (solution / path).write_bytes(data)
+
+
+def _fresh_notebooks(solution: Path) -> dict[str, bytes]:
+    """The source notebooks that are not as they should be, as they should be."""
+    exercise_file = solution.parent.parent / "course" / solution.name / FILE_NAME
+    if not solution.is_dir() or not exercise_file.is_file():
+        return {}
+    files = _read(solution).files
+    notebooks = [path for path in files if path.endswith(".ipynb") and "/" not in path]
+    exercise = load_exercise(exercise_file) if notebooks else None
+    fresh = {path: refreshed(files[path], exercise, files, f"{solution}/{path}") for path in notebooks if exercise}
+    return {path: data for path, data in fresh.items() if data != files[path]}
+
+
 def stale(solutions: Path, exercises: Path) -> tuple[str, ...]:
     """How exercises/ differs from what `release` would make of solutions/; a sentence a file."""
     steps = sorted({folder.name for root in (solutions, exercises) for folder in root.iterdir() if folder.is_dir()})
@@ -74,7 +99,9 @@ def stale(solutions: Path, exercises: Path) -> tuple[str, ...]:
 def _stale_step(solution: Path, exercise: Path) -> list[str]:
     wanted = released(solution) if solution.is_dir() else {}
     present = _read(exercise) if exercise.is_dir() else tree.Tree()
-    lines = []
+    lines = [
+        f"{solution}/{path} is not what the solution's files and checks make." for path in _fresh_notebooks(solution)
+    ]
     for path in sorted(wanted.keys() | present.files.keys()):
         if path not in present.files:
             lines.append(f"{exercise}/{path} is missing.")
@@ -90,7 +117,7 @@ def _stale_step(solution: Path, exercise: Path) -> list[str]:
 def release_file(data: bytes, path: str, name: str) -> bytes | None:
     """One file as it is released, None for a file that the student makes. `name` stands in messages."""
     if path.endswith(".ipynb"):
-        return _release_notebook(data, name)
+        return released_notebook(data, name)
     syntax = syntax_of(path)
     if syntax is None:
         if MEANT.search(data.decode("utf-8", "replace")):
@@ -125,25 +152,6 @@ def _must_parse(text: str, path: str, name: str) -> None:
         raise UsageError(message) from error
 
 
-def _release_notebook(data: bytes, name: str) -> bytes:
-    try:
-        notebook: dict[str, Any] = json.loads(data)
-        for number, cell in enumerate(notebook["cells"], 1):
-            is_code = cell["cell_type"] == "code"
-            source = "".join(cell["source"])
-            cell["source"] = stripped(source, HASH if is_code else ANGLE, f"{name}, cell {number}").splitlines(
-                keepends=True
-            )
-            if is_code:
-                cell["outputs"] = []
-                cell["execution_count"] = None
-    except (ValueError, KeyError, TypeError) as error:
-        message = f"{name}: is no notebook ({error!r})."
-        raise UsageError(message) from error
-    # As nbformat writes it, so that opening and saving changes nothing.
-    return (json.dumps(notebook, indent=1, sort_keys=True, ensure_ascii=False) + "\n").encode()
-
-
 def _read(folder: Path) -> tree.Tree:
     with tree.open_folder(str(folder)) as descriptor:
         found = tree.read_tree(descriptor)
@@ -166,6 +174,7 @@ def main(arguments: list[str] | None = None) -> int:
             print(*lines, "Run: python -m grader.release" if lines else "exercises/ is up to date.", sep="\n")
             return 1 if lines else 0
         for step in sorted(folder for folder in solutions.iterdir() if folder.is_dir()):
+            refresh_notebook(step)
             release(step, exercises / step.name)
     except GraderError as error:
         print(error, file=sys.stderr)

@@ -19,6 +19,8 @@ from grader.notebook.mode import grading
 from grader.words import a_list
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from grader.exercise import Exercise
 
 
@@ -99,10 +101,12 @@ class Cells:
             print(text)
 
 
-def run_below(argv: list[str], *, cwd: Path | None = None, seconds: float | None = None) -> int:
+def run_below(
+    argv: list[str], *, cwd: Path | None = None, env: Mapping[str, str] | None = None, seconds: float | None = None
+) -> int:
     """Run a command and print what it prints, until it ends, `seconds` are over or the cell is interrupted."""
     child = subprocess.Popen(
-        argv, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        argv, cwd=cwd, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         encoding="utf-8", errors="replace", bufsize=1, start_new_session=True,
     )  # fmt: skip
     assert child.stdout is not None

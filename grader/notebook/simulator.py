@@ -10,6 +10,7 @@ It runs in a process of its own, which ends with the `with`, with an interrupt, 
 from __future__ import annotations
 
 import os
+import signal
 import struct
 import subprocess
 import sys
@@ -40,16 +41,19 @@ class Simulator:
         self._picture = b""
         self._changed = threading.Event()
         self._reader: threading.Thread | None = None
+        self._nodes: list[subprocess.Popen[bytes]] = []
+        self._env: dict[str, str] = {}
 
     def __enter__(self) -> Self:
         if grading():
             return self
         from IPython.display import Image, display
 
+        self._env = environment()
         self._process = subprocess.Popen(
             [sys.executable, "-m", "grader.simulator.live"],
             cwd="/",
-            env=environment(),
+            env=self._env,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -69,6 +73,11 @@ class Simulator:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
+        for node in self._nodes:
+            node.send_signal(signal.SIGINT)
+        for node in self._nodes:
+            _wait_or_kill(node)
+        self._nodes.clear()
         if self._process is not None:
             self._end()
 
@@ -78,18 +87,29 @@ class Simulator:
         Raises:
             UsageError: there is no such file.
         """
-        if grading():
-            return
-        name = executable.removesuffix(".py")
-        files = [file for file in Path.cwd().glob(f"*/*/{name}.py") if file.parent.name == file.parent.parent.name]
-        if not files:
-            message = f"There is no {name}.py in the package beside this notebook: write it with `%%node {name}.py`."
-            raise UsageError(message)
-        package = files[0].parent
-        start = (
-            f"import sys; sys.path.insert(0, {str(package.parent)!r}); from {package.name}.{name} import main; main()"
-        )
-        run_below([sys.executable, "-c", start], cwd=package.parent, seconds=seconds)
+        if not grading():
+            argv, folder = _command(executable)
+            run_below(argv, cwd=folder, env=self._env, seconds=seconds)
+
+    def start(self, executable: str) -> None:
+        """Start such a node, and go on with the cell; it is stopped when the `with` ends.
+
+        Raises:
+            UsageError: there is no such file.
+        """
+        if not grading():
+            argv, folder = _command(executable)
+            self._nodes.append(
+                subprocess.Popen(
+                    argv,
+                    cwd=folder,
+                    env=self._env,
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,
+                    stderr=subprocess.DEVNULL,
+                    start_new_session=True,
+                )
+            )
 
     def wait(self, seconds: float) -> None:
         """Let the turtle move for some seconds."""
@@ -108,11 +128,7 @@ class Simulator:
         assert process.stderr is not None
         with suppress(OSError):
             process.stdin.close()
-        try:
-            process.wait(5.0)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        _wait_or_kill(process)
         if self._reader is not None:
             self._reader.join(2.0)
         if self._picture and hasattr(self, "_handle"):
@@ -144,6 +160,26 @@ class Simulator:
         from IPython.display import Image
 
         self._handle.update(Image(self._picture))  # type: ignore[no-untyped-call]
+
+
+def _wait_or_kill(process: subprocess.Popen[bytes]) -> None:
+    try:
+        process.wait(5.0)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+def _command(executable: str) -> tuple[list[str], Path]:
+    """How a node of the package beside the notebook is started, and in which folder."""
+    name = executable.removesuffix(".py")
+    files = [file for file in Path.cwd().glob(f"*/*/{name}.py") if file.parent.name == file.parent.parent.name]
+    if not files:
+        message = f"There is no {name}.py in the package beside this notebook: write it with `%%node {name}.py`."
+        raise UsageError(message)
+    package = files[0].parent
+    start = f"import sys; sys.path[0] = {str(package.parent)!r}; from {package.name}.{name} import main; main()"
+    return [sys.executable, "-c", start], package.parent
 
 
 def environment() -> dict[str, str]:

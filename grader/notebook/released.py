@@ -1,0 +1,112 @@
+"""A step's notebook as the student gets it: the same, byte for byte, as nbgrader's generate_assignment makes.
+
+nbgrader's steps are repeated here (LockCells, ClearSolutions, ClearOutput, ClearHiddenTests, ComputeChecksums of
+nbgrader 0.9), so that a course can be released where no Jupyter is; a test compares the two.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from typing import Any
+
+from grader.errors import UsageError
+from grader.markers import ANGLE, HASH, MEANT, Syntax, stripped, syntax_of
+
+Cell = dict[str, Any]
+
+_FILE_CELL = re.compile(r"\s*%%\w+[ \t]+(\S+)\s*")
+_HIDDEN = {"BEGIN HIDDEN TESTS": True, "END HIDDEN TESTS": False}
+"""nbgrader's marks around what only the instructor's copy tests, and whether a test is hidden from there on."""
+
+
+def released_notebook(data: bytes, name: str) -> bytes:
+    """The released version of a source notebook. Raises UsageError, with `name` and cell, for what is amiss in it."""
+    try:
+        notebook = json.loads(data)
+        for number, cell in enumerate(notebook["cells"], 1):
+            _release(cell, f"{name}, cell {number}")
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        message = f"{name}: is no notebook ({error!r})."
+        raise UsageError(message) from error
+    return to_bytes(notebook)
+
+
+def to_bytes(notebook: dict[str, Any]) -> bytes:
+    """A notebook as nbformat writes it, so that opening and saving changes nothing."""
+    return (json.dumps(notebook, indent=1, sort_keys=True, ensure_ascii=False) + "\n").encode()
+
+
+def solved_away(source: str, cell_type: str, *, solution: bool, name: str) -> str:
+    """A cell's source without its solutions, the starting point in their place.
+
+    Raises:
+        UsageError: markers are amiss, or a solution cell has none, so that all of it would be handed out.
+    """
+    text = stripped(source, _syntax(source, cell_type), name)
+    if solution and text == source:
+        message = f"{name}: a solution cell without a BEGIN SOLUTION; all of it would be handed out."
+        raise UsageError(message)
+    return text
+
+
+def without_hidden_tests(source: str, name: str) -> str:
+    """A cell's source without its hidden tests. Raises UsageError where one has no end, or an end has no beginning."""
+    kept, hidden = [], False
+    for line in source.splitlines(keepends=True):
+        mark = next((begins for words, begins in _HIDDEN.items() if words in line), None)
+        if mark is None:
+            kept += [] if hidden else [line]
+        elif mark == hidden:
+            message = f"{name}: {line.strip()!r} where hidden tests {'are open already' if hidden else 'are not open'}."
+            raise UsageError(message)
+        else:
+            hidden = mark
+    if hidden:
+        message = f"{name}: BEGIN HIDDEN TESTS has no END HIDDEN TESTS."
+        raise UsageError(message)
+    # As nbgrader, which joins the lines that it keeps.
+    return "".join(kept).removesuffix("\n") if len(kept) < len(source.splitlines()) else source
+
+
+def _syntax(source: str, cell_type: str) -> Syntax:
+    """How the cell writes comments: as the file that it writes, if it writes one."""
+    match = _FILE_CELL.fullmatch(source.partition("\n")[0])
+    if cell_type != "code":
+        return ANGLE
+    return (syntax_of(match[1]) or HASH) if match else HASH
+
+
+def _release(cell: Cell, name: str) -> None:
+    kind = cell["cell_type"]
+    about = cell.get("metadata", {}).get("nbgrader")
+    source = solved_away("".join(cell["source"]), kind, solution=bool(about and about["solution"]), name=name)
+    hidden = without_hidden_tests(source, name)
+    if hidden != source and not (about and about["grade"]):
+        message = f"{name}: hidden tests in a cell that is not graded."
+        raise UsageError(message)
+    if MEANT.search(hidden):
+        message = f"{name}: a marker is left in it."
+        raise UsageError(message)
+    cell["source"] = hidden.splitlines(keepends=True)
+    if kind == "code":
+        cell["outputs"] = []
+        cell["execution_count"] = None
+        for key in ("collapsed", "scrolled"):
+            cell.get("metadata", {}).pop(key, None)
+    if about and (about["grade"] or about["solution"] or about["locked"]):
+        cell["metadata"]["deletable"] = False
+        if not about["solution"]:
+            cell["metadata"]["editable"] = False
+        about["cell_type"] = kind
+        about["checksum"] = _checksum(hidden, kind, about)
+
+
+def _checksum(source: str, kind: str, about: dict[str, Any]) -> str:
+    """The checksum that nbgrader makes: it tells whether a cell was changed, and keeps no secret."""
+    locked = not about["solution"] and (about["grade"] or about["locked"])
+    parts = [source, kind, str(about["grade"]), str(about["solution"]), str(locked), about["grade_id"]]
+    if about["grade"]:
+        parts.append(str(float(about["points"])))
+    return hashlib.md5("".join(parts).encode(), usedforsecurity=False).hexdigest()
