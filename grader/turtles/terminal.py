@@ -9,6 +9,7 @@ import sys
 import termios
 import tty
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any, NoReturn
 
 if TYPE_CHECKING:
@@ -26,10 +27,11 @@ def is_terminal() -> bool:
 
 
 @contextmanager
-def keyboard() -> Iterator[Callable[[], bytes]]:
+def keyboard() -> Iterator[Callable[..., bytes | None]]:
     """Standard input without echo and without waiting for Enter; Ctrl-C and Ctrl-Z work as ever.
 
-    Gives a function that waits for keys and returns what they send: nothing when the terminal is gone.
+    Gives a function that waits for keys, at most so many seconds (for ever when none are named), and returns what they
+    send: nothing when the terminal is gone, None when the time is up.
     """
     number = sys.stdin.fileno()
     before = termios.tcgetattr(number)
@@ -42,7 +44,7 @@ def keyboard() -> Iterator[Callable[[], bytes]]:
     old_wake = signal.set_wakeup_fd(wake, warn_on_full_buffer=False)
     try:
         tty.setcbreak(number)
-        yield lambda: _read(number, woken)
+        yield partial(_read, number, woken)
     finally:
         # What was typed ahead is not for the shell: an arrow would call up its last command. The terminal may be gone.
         with suppress(termios.error):
@@ -54,9 +56,11 @@ def keyboard() -> Iterator[Callable[[], bytes]]:
         os.close(wake)
 
 
-def _read(number: int, woken: int) -> bytes:
+def _read(number: int, woken: int, timeout_s: float | None = None) -> bytes | None:
     while True:
-        ready, _, _ = select.select([number, woken], [], [])
+        ready, _, _ = select.select([number, woken], [], [], timeout_s)
+        if not ready:
+            return None
         if woken in ready:
             os.read(woken, 64)
         if number in ready:

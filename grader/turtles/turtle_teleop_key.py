@@ -122,7 +122,7 @@ def _spin(executor: SingleThreadedExecutor) -> None:
         executor.spin()
 
 
-def _follow(read: Callable[[], bytes], node: Teleop, executor: SingleThreadedExecutor) -> None:
+def _follow(read: Callable[[], bytes | None], node: Teleop, executor: SingleThreadedExecutor) -> None:
     """Do what the keys say until Q, or until the terminal is gone."""
     rest = ""
     while data := read():

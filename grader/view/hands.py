@@ -6,7 +6,7 @@ import json
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from grader.turtles.keys import Cancel, Drive, Turn, keys
+from grader.turtles.keys import Cancel, Drive, Key, Turn, keys
 
 if TYPE_CHECKING:
     import socket
@@ -69,10 +69,15 @@ class Hands:
 
     def pressed(self, turtle: str, key: str) -> None:
         """Turn to where the key lies, seen from F, or stop turning."""
-        topic = self._full(turtle)
         typed, _ = keys(key[:1])
-        if topic is not None and typed and isinstance(typed[0], Turn | Cancel):
-            self._ears.drive(topic, typed[0])
+        if typed:
+            self.turn(turtle, typed[0])
+
+    def turn(self, turtle: str, key: Key) -> None:
+        """Do what a key asks for that is not held."""
+        topic = self._full(turtle)
+        if topic is not None and isinstance(key, Turn | Cancel):
+            self._ears.drive(topic, key)
 
     def asked(self, what: str) -> None:
         """Pause, resume, clear or reset."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from grader.view.rates import Arrivals
-from grader.view.trail import Trail, told
+from grader.view.trail import Stroke, Trail, told
 
 Rgb = tuple[int, int, int]
 
@@ -45,6 +45,8 @@ class State:
     background: Rgb = (69, 86, 255)
     turtles: dict[str, Seen] = field(default_factory=dict)
     trail: Trail = field(default_factory=Trail)
+    pieces: list[Stroke] = field(default_factory=list)
+    """What the last message added to it."""
     commands: dict[str, Command] = field(default_factory=dict)
     rates: dict[str, Arrivals] = field(default_factory=dict)
     """Of the topics that the simulator itself speaks and hears on, so that nobody has to subscribe to count."""
@@ -61,7 +63,7 @@ class State:
             self.trail.clear()
         if message["picture"] is not None:
             self.trail.take_picture(base64.b64decode(message["picture"]))
-        pieces = self.trail.draw(message["lines"])
+        self.pieces = self.trail.draw(message["lines"])
         for topic, (count, last_s, twist) in message["heard"].items():
             self.commands[topic] = Command(last_s, tuple(twist))
             self.rates.setdefault(topic, Arrivals()).add(last_s, count)
@@ -69,7 +71,7 @@ class State:
             self.rates.setdefault(topic, Arrivals()).add(self.now_s, count)
         for topic in [topic for topic in self.commands if topic.split("/")[-2] not in self.turtles]:
             del self.commands[topic]
-        news: dict[str, object] = {**self._now(), "lines": told(pieces)}
+        news: dict[str, object] = {**self._now(), "lines": told(self.pieces)}
         if message["cleared"] or message["picture"] is not None:
             news["trail"] = self.trail.told()
             del news["lines"]

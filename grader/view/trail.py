@@ -110,14 +110,18 @@ class Trail:
         self.picture = png
 
     def _flatten(self) -> None:
-        picture = Image.new("RGBA", (SIDE_PX * _SCALE, SIDE_PX * _SCALE), (0, 0, 0, 0))
+        file = io.BytesIO()
+        self.painted(SIDE_PX * _SCALE).save(file, format="PNG")
+        self.take_picture(file.getvalue())
+
+    def painted(self, side: int, least: int = 1) -> Image.Image:
+        """All of it as a picture with so many pixels a side, RGBA; strokes are at least so many wide."""
+        picture = Image.new("RGBA", (side, side), (0, 0, 0, 0))
         if self.picture:
             below = Image.open(io.BytesIO(self.picture)).convert("RGBA")
-            picture.paste(below.resize(picture.size, Image.Resampling.NEAREST))
-        paint(picture, self.strokes, _SCALE)
-        file = io.BytesIO()
-        picture.save(file, format="PNG")
-        self.take_picture(file.getvalue())
+            picture.paste(below.resize(picture.size, Image.Resampling.BOX))
+        paint(picture, self.strokes, side / SIDE_PX, least)
+        return picture
 
     def told(self) -> dict[str, object]:
         """For a page that has seen nothing yet."""
@@ -138,12 +142,12 @@ def place(x: float, y: float) -> Point:
     return round(min(max(column, -FAR), FAR)), round(min(max(row, -FAR), FAR))
 
 
-def paint(picture: Image.Image, strokes: Sequence[Stroke], scale: float) -> None:
-    """Paint strokes into a picture that has `scale` pixels for one of the canvas."""
+def paint(picture: Image.Image, strokes: Sequence[Stroke], scale: float, least: int = 1) -> None:
+    """Paint strokes into a picture that has `scale` pixels for one of the canvas, each at least so many wide."""
     draw = ImageDraw.Draw(picture)
     for stroke in strokes:
         ink = (*stroke.pen[:3], 255)
-        width = max(1, round(stroke.pen[3] * scale))
+        width = max(least, round(stroke.pen[3] * scale))
         points = [(x * scale / UNIT, y * scale / UNIT) for x, y in stroke.points]
         if len(points) > 1:
             draw.line(points, ink, width, joint="curve")

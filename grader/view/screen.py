@@ -1,0 +1,150 @@
+"""What stands in the terminal: the canvas, beside it turtle, command and topics, below it what the simulator says."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import TYPE_CHECKING, Protocol
+
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from grader.ros2.graph import Show
+from grader.view.blocks import Blocks, Picture
+from grader.view.topics import rows
+from grader.words import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rich.console import Console, ConsoleOptions, RenderResult
+
+    from grader.view.state import State
+    from grader.view.system import System
+
+BESIDE = 38
+"""Columns beside the canvas."""
+_BELOW = 6
+"""Rows for the title, what the simulator says, the keys."""
+_LEAST = 8
+_LASTS_S = 1.0
+"""turtlesim forgets a command after that."""
+_KEYS = "↑ ↓ ← → drive · E R T D G C V B turn, F stops · Space pause · X clear · Z reset · Tab turtle · Q quit"
+
+
+class Shown(Protocol):
+    """What there is to show."""
+
+    @property
+    def state(self) -> State:
+        """Of the simulator."""
+
+    @property
+    def system(self) -> System | None:
+        """All that runs."""
+
+    @property
+    def lines(self) -> Iterable[str]:
+        """What the simulator said last."""
+
+    @property
+    def chosen(self) -> str:
+        """The turtle that the keys drive."""
+
+    @property
+    def picture(self) -> Picture:
+        """The canvas."""
+
+
+def side_for(console: Console) -> int:
+    """The canvas's side in columns, an even number: as large as the terminal lets it be."""
+    width, height = console.size
+    beside = BESIDE if width >= 2 * BESIDE else 0
+    return max(min(width - beside, 2 * (height - _BELOW)), _LEAST) // 2 * 2
+
+
+class Screen:
+    """All of it, for rich."""
+
+    def __init__(self, shown: Shown) -> None:
+        self._shown = shown
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """The parts, one below the other."""
+        shown = self._shown
+        canvas = Blocks(shown.picture.of(shown.state))
+        yield self._title()
+        if console.width >= 2 * BESIDE:
+            grid = Table.grid(padding=(0, 2))
+            grid.add_column(width=shown.picture.side)
+            grid.add_column(width=min(console.width - shown.picture.side - 3, 60))
+            grid.add_row(canvas, self._beside(shown.picture.side // 2))
+            yield grid
+        else:
+            yield canvas
+        for line in [*shown.lines, "", "", ""][:3]:
+            yield Text(printable(line), style="dim", no_wrap=True, overflow="ellipsis")
+        yield Text(_KEYS, style="bold", no_wrap=True, overflow="ellipsis")
+
+    def _title(self) -> Text:
+        state = self._shown.state
+        told = ("● paused ", "bold yellow") if state.paused else ("● live ", "bold green")
+        return Text.assemble(("turtlesim ", "bold"), told, no_wrap=True)
+
+    def _beside(self, height: int) -> Group:
+        shown = self._shown
+        parts = [*self._turtle(), Text(), *_topics(shown.system, shown.state)]
+        return Group(*parts[:height])
+
+    def _turtle(self) -> list[Text]:
+        state, name = self._shown.state, self._shown.chosen
+        turtle = state.turtles.get(name)
+        if turtle is None:
+            return [Text(f"There is no {name}; Tab chooses another turtle.")]
+        others = f"  (1 of {len(state.turtles)})" if len(state.turtles) > 1 else ""
+        lines = [
+            Text.assemble((printable(name), "bold"), others),
+            Text(f"x {turtle.x:6.2f} m   y {turtle.y:6.2f} m"),
+            Text(f"heading {turtle.theta:6.2f} rad"),
+            Text(),
+        ]
+        topic = next((topic for topic in state.commands if topic.endswith(f"/{name}/cmd_vel")), None)
+        if topic is None:
+            return [*lines, Text("No command has come yet.", style="dim")]
+        command = state.commands[topic]
+        old = "dim" if time.monotonic() - command.when_s > _LASTS_S else ""
+        linear, angular = command.twist[0], command.twist[5]
+        return [
+            *lines,
+            Text("Last command", style="bold"),
+            Text.assemble((f"{_straight(linear)} linear.x  {linear:6.2f} m/s", old or "orange3")),
+            Text.assemble((f"{_bent(angular)} angular.z {angular:6.2f} rad/s", old or "medium_purple1")),
+        ]
+
+
+def _straight(value: float) -> str:
+    return "·" if value == 0 or math.isnan(value) else "↑" if value > 0 else "↓"
+
+
+def _bent(value: float) -> str:
+    return "·" if value == 0 or math.isnan(value) else "↺" if value > 0 else "↻"
+
+
+def _topics(system: System | None, state: State) -> list[Text]:
+    if system is None:
+        return []
+    lines = [Text("Topics", style="bold")]
+    for row in rows(system, state, Show()):
+        hertz = row["hertz"]
+        rate = f"{hertz:g} Hz" if isinstance(hertz, float) else "silent"
+        busy = "green" if isinstance(hertz, float) else "dim"
+        lines.append(Text.assemble((printable(str(row["name"])), "bold"), "  ", (rate, busy), no_wrap=True))
+        ends = f"  {_names(row['publishers'])} → {_names(row['subscribers'])}"
+        lines.append(Text(ends, style="dim", no_wrap=True, overflow="ellipsis"))
+    return lines
+
+
+def _names(names: object) -> str:
+    assert isinstance(names, tuple)
+    return ", ".join(map(printable, names)) or "nobody"

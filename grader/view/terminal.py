@@ -1,0 +1,180 @@
+"""The view in a terminal: the turtle in half blocks, beside it what is said, and keys that drive.
+
+A terminal does not tell when a key is let go. A key that is held repeats, so a key that comes no more was let go.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import time
+from collections import deque
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.live import Live
+
+from grader.errors import UsageError
+from grader.ros2.discovery import cli_node
+from grader.turtles.keys import Drive, Quit, keys
+from grader.turtles.terminal import keyboard
+from grader.view.blocks import Picture
+from grader.view.feed import LARGEST
+from grader.view.hands import ARROWS, Hands
+from grader.view.screen import Screen, side_for
+from grader.view.state import State
+from grader.view.system import Ears, System
+
+if TYPE_CHECKING:
+    import socket
+    from collections.abc import Callable
+
+FRAME_S = 0.066
+FIRST_HOLD_S = 0.6
+"""Until a key that is held begins to repeat; half a second on most machines."""
+HOLD_S = 0.25
+"""Between two repeats, the slowest settings included."""
+_LINES = 3
+
+
+@dataclass
+class Held:
+    """The arrow that is held, until when (s) it is believed to be."""
+
+    key: str = ""
+    until_s: float = 0.0
+
+    def press(self, key: str, now: float) -> None:
+        """It came, once more or for the first time."""
+        again = key == self.key and now < self.until_s
+        self.key, self.until_s = key, now + (HOLD_S if again else FIRST_HOLD_S)
+
+    def over(self, now: float) -> bool:
+        """Whether it has just been let go."""
+        return bool(self.key) and now >= self.until_s
+
+
+@dataclass(eq=False)
+class Terminal:
+    """What the loop below keeps."""
+
+    feed: socket.socket
+    said: int
+    state: State = field(default_factory=State)
+    system: System | None = None
+    lines: deque[str] = field(default_factory=lambda: deque(maxlen=_LINES))
+    chosen: str = "turtle1"
+    changed: bool = True
+    picture: Picture = field(default_factory=lambda: Picture(2))
+    held: Held = field(default_factory=Held)
+    typed: str = ""
+    _rest: str = ""
+
+    def hear(self) -> bool:
+        """Take what the simulator tells; returns False when it has ended."""
+        while True:
+            try:
+                data = self.feed.recv(LARGEST)
+            except BlockingIOError:
+                return True
+            except OSError:
+                return False
+            if not data:
+                return False
+            news = self.state.take(json.loads(data))
+            if "trail" in news:
+                self.picture.begin(self.state)
+            else:
+                self.picture.add(self.state.pieces)
+            self.changed = True
+
+    def read_lines(self) -> None:
+        """What the simulator prints."""
+        try:
+            data = os.read(self.said, 65536)
+        except BlockingIOError:
+            return
+        *lines, self._rest = (self._rest + data.decode("utf-8", "replace")).split("\n")
+        self.lines.extend(lines)
+        self.changed |= bool(lines)
+
+    def next_turtle(self) -> None:
+        """The keys drive another one."""
+        names = list(self.state.turtles)
+        if names:
+            at = names.index(self.chosen) + 1 if self.chosen in names else 0
+            self.chosen = names[at % len(names)]
+
+
+def watch(feed: socket.socket, said: int) -> int:
+    """Draw until the simulator ends, Q or Ctrl-C; returns the exit code."""
+    console = Console(highlight=False, no_color=False)
+    if console.color_system is None:
+        message = f"--view terminal draws in colours, and this terminal (TERM={os.environ.get('TERM', '')}) has none."
+        raise UsageError(message)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    feed.settimeout(0.0)
+    os.set_blocking(said, False)
+    shown = Terminal(feed, said)
+
+    def look(system: System) -> None:
+        shown.system = system
+
+    try:
+        with (
+            cli_node(f"_view_{os.getpid()}") as node,
+            Ears(node, look, lambda: list(shown.state.rates)) as ears,
+            keyboard() as read,
+            Live(
+                console=console, screen=True, auto_refresh=False, redirect_stderr=False, redirect_stdout=False
+            ) as live,
+        ):
+            ears.looking = True
+            _loop(shown, read, live, Hands(ears, shown.state, feed))
+    except KeyboardInterrupt:
+        pass
+    return 0
+
+
+def _loop(shown: Terminal, read: Callable[..., bytes | None], live: Live, hands: Hands) -> None:
+    drawn_s = 0.0
+    while shown.hear():
+        shown.read_lines()
+        now = time.monotonic()
+        if shown.held.over(now):
+            shown.held.key = ""
+            hands.let_go(shown)
+        side = side_for(live.console)
+        if side != shown.picture.side:
+            shown.picture = Picture(side)
+            shown.picture.begin(shown.state)
+            shown.changed = True
+        if shown.changed or now - drawn_s >= 0.5:
+            drawn_s, shown.changed = now, False
+            live.update(Screen(shown), refresh=True)
+        data = read(max(drawn_s + FRAME_S - time.monotonic(), 0.005))
+        if data == b"" or (data and not _do(shown, data, hands)):
+            return
+
+
+def _do(shown: Terminal, data: bytes, hands: Hands) -> bool:
+    """Do what the keys say; returns False when that is to end."""
+    text = data.decode("latin-1")
+    for char, what in ((" ", "resume" if shown.state.paused else "pause"), ("x", "clear"), ("z", "reset")):
+        if char in text.lower():
+            hands.asked(what)
+    if "\t" in text:
+        shown.next_turtle()
+    typed, shown.typed = keys(shown.typed + text)
+    for key in typed:
+        if isinstance(key, Quit):
+            return False
+        if isinstance(key, Drive):
+            name = next(name for name, drive in ARROWS.items() if drive == key)
+            shown.held.press(name, time.monotonic())
+            hands.held(shown, shown.chosen, [name])
+        else:
+            hands.turn(shown.chosen, key)
+    return True
