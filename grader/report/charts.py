@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from grader.checks import seen
 from grader.checks.rate import Rate, measure
 from grader.checks.values import FIELDS, Values
-from grader.report.scene import params_of
+from grader.report.asked import params_of
 from grader.report.svg import coordinate, picture, points, tag, words
 from grader.words import number
 

@@ -11,7 +11,8 @@ from markupsafe import Markup
 from grader.checks import seen
 from grader.report import charts
 from grader.report.graph_drawing import GraphDrawing, draw_graph
-from grader.report.scene import SIDE_M, scene_of
+from grader.report.scene import scene_of
+from grader.report.shapes import SIDE_M
 from grader.report.svg import LEFT, SIDE, TOP, scene_svg, sign
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ MOST_ROWS = 100
 """Of the table of commands."""
 MOST_STEPS = 1000
 """Of the commands that a player tells."""
-DRIVING = ("circle", "eight", "goal", "rate", "square", "values")
+DRIVING = ("circle", "figure_eight", "goal", "own_circle", "own_rate", "rate", "square", "values")
 """Kinds of check for which a node has to command the turtle."""
 
 

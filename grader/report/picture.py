@@ -1,11 +1,7 @@
-"""A scene as a PNG: the turtle's canvas with axes, verdict, legend and numbers.
-
-Drawn with Pillow: 0.1 s, where matplotlib needs 0.7 s, most of it for its import.
-"""
+"""A run as a PNG: the turtle's canvas with axes, verdict, legend and numbers; several trials side by side."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,18 +9,23 @@ from PIL import Image, ImageDraw, ImageFont
 
 from grader.errors import UsageError
 from grader.outcome import Report, Status
-from grader.report.scene import DEEP, LOOKS, SEA, SIDE_M, Arrow, Line, Look, Point, Rgb, Ring, Role, Scene, scene_of
+from grader.report.canvas import paint
+from grader.report.scene import Scene, scene_of
+from grader.report.shapes import DEEP, LOOKS, SEA, SIDE_M, Rgb, Role
 from grader.words import printable
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from grader.checks.evidence import Evidence
 
 SIDE_PX = 640
-FINE = 3
-"""The canvas is drawn this much larger and made smaller, for smooth edges."""
 LEFT, TOP, RIGHT, BOTTOM = 64, 72, 300, 60
+SMALL_PX = 420
+"""The side of the canvas where there are several."""
+ACROSS = 2
+HEADING = 40
 
 PAPER: Rgb = (255, 255, 255)
 INK: Rgb = (33, 37, 41)
@@ -34,45 +35,12 @@ BAD: Rgb = (176, 28, 28)
 
 
 @dataclass(frozen=True)
-class Canvas:
-    """The turtle's canvas while it is drawn, FINE times too large; takes metres."""
+class Panel:
+    """Where a canvas with its axes and its legend stands on the page; px. `left`, `top` are the canvas's own."""
 
-    image: Image.Image
-    draw: ImageDraw.ImageDraw
-
-    @classmethod
-    def empty(cls) -> Canvas:
-        """A canvas of water."""
-        image = Image.new("RGB", (SIDE_PX * FINE, SIDE_PX * FINE), SEA)
-        return cls(image, ImageDraw.Draw(image))
-
-    def pixel(self, point: Point) -> Point:
-        """Where a point (m) lies in the image."""
-        scale = SIDE_PX * FINE / SIDE_M
-        return point[0] * scale, SIDE_PX * FINE - point[1] * scale
-
-    def paint(self, shape: Line | Ring | Arrow) -> None:
-        """Paint one shape of a scene."""
-        look = LOOKS[shape.role]
-        if isinstance(shape, Line):
-            self._line(list(shape.points), look)
-        elif isinstance(shape, Ring):
-            self._ring(shape, look)
-        else:
-            corners = [self.pixel(corner) for corner in shape.corners]
-            self.draw.polygon(corners, fill=look.color, outline=DEEP, width=FINE)
-
-    def _line(self, points: list[Point], look: Look) -> None:
-        width = max(1, round(look.width_m * SIDE_PX * FINE / SIDE_M))
-        self.draw.line([self.pixel(point) for point in points], fill=look.color, width=width, joint="curve")
-
-    def _ring(self, ring: Ring, look: Look) -> None:
-        """A circle in dashes of about the look's length."""
-        pieces = min(max(8, round(math.pi * ring.radius / look.dash_m)), 400)
-        for piece in range(pieces):
-            angles = [2.0 * math.pi * (piece + part / 6 * 0.55) / pieces for part in range(7)]
-            (x, y), radius = ring.centre, ring.radius
-            self._line([(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles], look)
+    left: int
+    top: int
+    side: int
 
 
 def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
@@ -86,42 +54,60 @@ def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
 
 
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
-    """The picture as an image; where there is no way to draw, it says so."""
-    page = Image.new("RGB", (LEFT + SIDE_PX + RIGHT, TOP + SIDE_PX + BOTTOM), PAPER)
-    canvas = Canvas.empty()
-    scene = scene_of(evidence)
-    for shape in scene.shapes:
-        canvas.paint(shape)
-    page.paste(canvas.image.resize((SIDE_PX, SIDE_PX), Image.Resampling.BOX), (LEFT, TOP))
+    """The picture as an image: of every trial; where there is no way to draw, it says so."""
+    trials = (evidence, *evidence.others.values())
+    panels = _panels(len(trials))
+    page = _page(panels)
     pen = ImageDraw.Draw(page)
-    _axes(pen)
-    _title(pen, report)
-    _legend(pen, scene)
-    if scene.notice:
-        _middle(pen, scene.notice)
+    _title(pen, report, page.width)
+    for panel, each in zip(panels, trials, strict=True):
+        scene = scene_of(each)
+        page.paste(paint(scene, panel.side), (panel.left, panel.top))
+        _axes(pen, panel)
+        _legend(pen, scene, panel)
+        if len(trials) > 1:
+            name = printable(each.exercise.executable)
+            pen.text((panel.left, panel.top - HEADING / 2), name, fill=INK, font=_font(18), anchor="lm")
+        if scene.notice:
+            _middle(pen, scene.notice, panel)
     return page
+
+
+def _panels(count: int) -> list[Panel]:
+    """One large canvas, or a grid of smaller ones."""
+    if count == 1:
+        return [Panel(LEFT, TOP, SIDE_PX)]
+    wide, high = LEFT + SMALL_PX + RIGHT, HEADING + SMALL_PX + BOTTOM
+    places = [divmod(index, ACROSS) for index in range(count)]
+    return [Panel(LEFT + column * wide, TOP + HEADING + row * high, SMALL_PX) for row, column in places]
+
+
+def _page(panels: Sequence[Panel]) -> Image.Image:
+    right = max(panel.left + panel.side for panel in panels)
+    bottom = max(panel.top + panel.side for panel in panels)
+    return Image.new("RGB", (right + RIGHT, bottom + BOTTOM), PAPER)
 
 
 def _font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
     return ImageFont.load_default(size)
 
 
-def _axes(draw: ImageDraw.ImageDraw) -> None:
+def _axes(draw: ImageDraw.ImageDraw, panel: Panel) -> None:
     """Metres along the left and the lower edge."""
-    bottom = TOP + SIDE_PX
+    bottom = panel.top + panel.side
     font = _font(14)
     for metre in range(12):
-        offset = metre * SIDE_PX / SIDE_M
-        x, y = LEFT + offset, bottom - offset
+        offset = metre * panel.side / SIDE_M
+        x, y = panel.left + offset, bottom - offset
         draw.line([(x, bottom), (x, bottom + 5)], fill=GREY, width=1)
-        draw.line([(LEFT - 6, y), (LEFT - 1, y)], fill=GREY, width=1)
+        draw.line([(panel.left - 6, y), (panel.left - 1, y)], fill=GREY, width=1)
         draw.text((x, bottom + 8), str(metre), fill=GREY, font=font, anchor="ma")
-        draw.text((LEFT - 10, y), str(metre), fill=GREY, font=font, anchor="rm")
-    draw.text((LEFT + SIDE_PX / 2, bottom + 30), "x (m)", fill=GREY, font=font, anchor="ma")
-    draw.text((14, TOP + SIDE_PX / 2), "y (m)", fill=GREY, font=font, anchor="lm")
+        draw.text((panel.left - 10, y), str(metre), fill=GREY, font=font, anchor="rm")
+    draw.text((panel.left + panel.side / 2, bottom + 30), "x (m)", fill=GREY, font=font, anchor="ma")
+    draw.text((panel.left - 50, panel.top + panel.side / 2), "y (m)", fill=GREY, font=font, anchor="lm")
 
 
-def _title(draw: ImageDraw.ImageDraw, report: Report) -> None:
+def _title(draw: ImageDraw.ImageDraw, report: Report, width: int) -> None:
     draw.text((LEFT, 14), printable(report.exercise_title), fill=INK, font=_font(22))
     points = f"{report.points:g} of {report.max:g} points"
     errors, failed = report.with_status(Status.ERROR), report.with_status(Status.FAILED)
@@ -129,7 +115,7 @@ def _title(draw: ImageDraw.ImageDraw, report: Report) -> None:
         draw.text((LEFT, 44), f"Not finished, {points}: the machine failed.", fill=BAD, font=_font(16))
     elif failed or report.with_status(Status.SKIPPED):
         first = f": {printable(failed[0].finding.seen)}" if failed and not failed[0].hidden else ""
-        text = _cut(draw, f"Not passed yet, {points}{first}", SIDE_PX + RIGHT - 20)
+        text = _cut(draw, f"Not passed yet, {points}{first}", width - LEFT - 20)
         draw.text((LEFT, 44), text, fill=BAD, font=_font(16))
     else:
         draw.text((LEFT, 44), f"Passed, {points}", fill=GOOD, font=_font(16))
@@ -144,9 +130,9 @@ def _cut(draw: ImageDraw.ImageDraw, text: str, width: float) -> str:
     return f"{text.rstrip()}..."
 
 
-def _legend(draw: ImageDraw.ImageDraw, scene: Scene) -> None:
+def _legend(draw: ImageDraw.ImageDraw, scene: Scene, panel: Panel) -> None:
     """Signs on a strip of water, as they look on the canvas, each with its meaning; the numbers below."""
-    x, y = LEFT + SIDE_PX + 20, TOP
+    x, y = panel.left + panel.side + 20, panel.top
     font = _font(15)
     for role, text in scene.legend:
         draw.rectangle([(x, y), (x + 46, y + 26)], fill=SEA)
@@ -177,9 +163,9 @@ def _sign(draw: ImageDraw.ImageDraw, role: Role, at: tuple[int, int]) -> None:
         draw.line([(x + 16, y + 7), (x + 30, y - 7)], fill=color, width=4)
 
 
-def _middle(draw: ImageDraw.ImageDraw, text: str) -> None:
+def _middle(draw: ImageDraw.ImageDraw, text: str, panel: Panel) -> None:
     """A sentence across the canvas, below the start."""
-    at = (LEFT + SIDE_PX / 2, TOP + SIDE_PX * 0.72)
+    at = (panel.left + panel.side / 2, panel.top + panel.side * 0.72)
     font = _font(20)
     left, top, right, bottom = draw.textbbox(at, text, font=font, anchor="mm")
     draw.rectangle([(left - 14, top - 10), (right + 14, bottom + 10)], fill=DEEP)

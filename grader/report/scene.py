@@ -7,86 +7,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING
 
 from grader.checks import seen
-from grader.checks.own import OwnCircle, own_circle_params
-from grader.checks.path import CircleParams, expected_centre
+from grader.report.asked import asked_circle, asked_shapes
+from grader.report.shapes import SIDE_M, Arrow, Line, Point, Ring, Role
 
 if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
     from grader.checks.track import Track
 
-Point = tuple[float, float]
-Rgb = tuple[int, int, int]
-Role = Literal["way", "expected", "fitted", "tick", "wall", "start"]
-
-SIDE_M = 499 / 45
-"""turtlesim's canvas: 500 pixels, 45 a metre."""
 MOST_TICKS = 150
 TICK_M = 0.11
 """Half the length of a tick."""
-
-SEA: Rgb = (69, 86, 255)
-DEEP: Rgb = (16, 20, 84)
-
-
-@dataclass(frozen=True)
-class Look:
-    """How a role looks: its colour, the width of its lines and the length of its dashes (m); 0 for no dashes."""
-
-    color: Rgb
-    width_m: float
-    dash_m: float = 0.0
-
-
-LOOKS: dict[Role, Look] = {
-    "way": Look((179, 184, 255), 3 / 45),
-    "expected": Look((255, 214, 92), 0.045, 0.28),
-    "fitted": Look((255, 255, 255), 0.028, 0.14),
-    "tick": Look(DEEP, 0.035),
-    "wall": Look((255, 92, 80), 0.07),
-    "start": Look((255, 255, 255), 0.035),
-}
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line through the points (m)."""
-
-    role: Role
-    points: tuple[Point, ...]
-
-
-@dataclass(frozen=True)
-class Ring:
-    """A circle; m."""
-
-    role: Role
-    centre: Point
-    radius: float
-
-
-@dataclass(frozen=True)
-class Arrow:
-    """A slim triangle at a point (m), looking along theta (rad)."""
-
-    role: Role
-    at: Point
-    theta: float
-    size_m: float = 0.28
-
-    @property
-    def corners(self) -> tuple[Point, ...]:
-        """Its four corners (m)."""
-        corners = [(0.0, 1.0), (2.5, 0.6), (math.pi, 0.35), (-2.5, 0.6)]
-        return tuple(
-            (
-                self.at[0] + self.size_m * r * math.cos(self.theta + a),
-                self.at[1] + self.size_m * r * math.sin(self.theta + a),
-            )
-            for a, r in corners
-        )
 
 
 @dataclass(frozen=True)
@@ -100,25 +33,6 @@ class Scene:
     legend: tuple[tuple[Role, str], ...] = ()
     facts: tuple[str, ...] = ()
     notice: str = ""
-
-
-P = TypeVar("P")
-
-
-def params_of(evidence: Evidence, kind: str, params: type[P]) -> P | None:
-    """The parameters of the first check of this kind of the trial that is not hidden; None without one."""
-    for spec in evidence.exercise.checks:
-        if spec.kind == kind and spec.trial == evidence.exercise.trial and not spec.hidden:
-            given: dict[str, Any] = dict(spec.params)
-            return params(**given)
-    return None
-
-
-def asked_circle(evidence: Evidence) -> CircleParams | None:
-    """The circle that the exercise asks for in this trial, the student's own where it does so; None without one."""
-    own = params_of(evidence, "own_circle", OwnCircle)
-    found = own_circle_params(evidence, own) if own is not None else None
-    return found if isinstance(found, CircleParams) else params_of(evidence, "circle", CircleParams)
 
 
 def scene_of(evidence: Evidence) -> Scene:
@@ -135,11 +49,11 @@ def scene_of(evidence: Evidence) -> Scene:
     if len(points) > 1:
         shapes.append(Line("way", tuple(points)))
         legend.append(("way", "the turtle's way"))
-    params = asked_circle(evidence)
-    if params is not None:
-        shapes.append(Ring("expected", expected_centre(recording.start, params), params.radius_m))
-        legend.append(("expected", f"asked for: radius {params.radius_m:.2f} m"))
-    fitted = track.circle if moved and params is not None else None
+    asked, told = asked_shapes(evidence)
+    if asked:
+        shapes += asked
+        legend.append(("expected", told))
+    fitted = track.circle if moved and asked_circle(evidence) is not None else None
     if fitted is not None and fitted.radius <= SIDE_M:
         shapes.append(Ring("fitted", (fitted.x, fitted.y), fitted.radius))
         legend.append(("fitted", f"best fit: radius {fitted.radius:.2f} m"))

@@ -10,13 +10,14 @@ import math
 from html import escape
 from typing import TYPE_CHECKING
 
-from grader.report.scene import DEEP, LOOKS, SEA, SIDE_M, Line, Point, Rgb, Ring, Role, Scene
+from grader.report.shapes import DEEP, LOOKS, SEA, SIDE_M, Line, Point, Rgb, Ring, Role
 from grader.words import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from grader.report.scene import Arrow
+    from grader.report.scene import Scene
+    from grader.report.shapes import Arrow
 
 Attribute = str | float | None
 
@@ -117,6 +118,8 @@ def scene_svg(scene: Scene, *, turtle: bool = False, name: str = "canvas") -> st
 def _shape(shape: Line | Ring | Arrow, scale: float) -> str:
     look = LOOKS[shape.role]
     width, color = max(look.width_m * scale, 1.0), rgb(look.color)
+    dash = look.dash_m * scale
+    dashes = f"{coordinate(dash)} {coordinate(dash * 0.8)}" if dash else None
     if isinstance(shape, Line):
         return tag(
             "polyline",
@@ -124,13 +127,13 @@ def _shape(shape: Line | Ring | Arrow, scale: float) -> str:
             fill="none",
             stroke=color,
             stroke_width=width,
-            stroke_linecap="round",
+            stroke_dasharray=dashes,
+            stroke_linecap="round" if dashes is None else None,
             stroke_linejoin="round",
             class_=shape.role,
         )
     if isinstance(shape, Ring):
         x, y = pixel(shape.centre)
-        dash = look.dash_m * scale
         return tag(
             "circle",
             cx=x,
@@ -139,7 +142,7 @@ def _shape(shape: Line | Ring | Arrow, scale: float) -> str:
             fill="none",
             stroke=color,
             stroke_width=width,
-            stroke_dasharray=f"{coordinate(dash)} {coordinate(dash * 0.8)}",
+            stroke_dasharray=dashes,
             class_=shape.role,
         )
     corners = points(map(pixel, shape.corners))

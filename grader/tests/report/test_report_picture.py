@@ -12,8 +12,8 @@ from PIL import Image
 
 from grader.errors import UsageError
 from grader.recording import Pose
-from grader.report.picture import LEFT, SIDE_PX, TOP, draw_picture, save_picture
-from grader.report.scene import LOOKS, SEA, SIDE_M
+from grader.report.picture import BOTTOM, HEADING, LEFT, RIGHT, SIDE_PX, SMALL_PX, TOP, draw_picture, save_picture
+from grader.report.shapes import LOOKS, SEA, SIDE_M
 from grader.tests.checks.made import every, evidence, good, recording
 from grader.tests.checks.shapes import SHAPES
 from grader.tests.report.reports import EVIDENCE, report_of
@@ -105,6 +105,16 @@ def test_an_exercise_without_a_circle_has_a_picture() -> None:
     pixels = canvas(replace(given, exercise=plain))
     assert has(pixels, PEN)
     assert not has(pixels, EXPECTED)
+
+
+def test_every_trial_has_a_canvas_of_its_own() -> None:
+    given = evidence(good(), others={"again": evidence(SHAPES["radius 2.2"]()), "late": evidence(None)})
+    page = np.asarray(draw_picture(given, report_of(given)), dtype=np.int16)
+    wide, high = LEFT + SMALL_PX + RIGHT, HEADING + SMALL_PX + BOTTOM
+    places = [(TOP + HEADING + row * high, LEFT + column * wide) for row in (0, 1) for column in (0, 1)]
+    canvases = [page[top : top + SMALL_PX, left : left + SMALL_PX] for top, left in places]
+    assert [has(pixels, SEA) for pixels in canvases] == [True, True, True, False]
+    assert [has(pixels, PEN) for pixels in canvases] == [True, True, False, False]
 
 
 def test_a_file_that_cannot_be_written_is_told(tmp_path: Path) -> None:

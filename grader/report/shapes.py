@@ -1,0 +1,74 @@
+"""Shapes on the turtle's canvas, in metres, and how each role looks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+Point = tuple[float, float]
+Rgb = tuple[int, int, int]
+Role = Literal["way", "expected", "fitted", "tick", "wall", "start"]
+
+SIDE_M = 499 / 45
+"""turtlesim's canvas: 500 pixels, 45 a metre."""
+SEA: Rgb = (69, 86, 255)
+DEEP: Rgb = (16, 20, 84)
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a role looks: its colour, the width of its lines and the length of its dashes (m); 0 for no dashes."""
+
+    color: Rgb
+    width_m: float
+    dash_m: float = 0.0
+
+
+LOOKS: dict[Role, Look] = {
+    "way": Look((179, 184, 255), 3 / 45),
+    "expected": Look((255, 214, 92), 0.045, 0.28),
+    "fitted": Look((255, 255, 255), 0.028, 0.14),
+    "tick": Look(DEEP, 0.035),
+    "wall": Look((255, 92, 80), 0.07),
+    "start": Look((255, 255, 255), 0.035),
+}
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line through the points (m)."""
+
+    role: Role
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A circle; m."""
+
+    role: Role
+    centre: Point
+    radius: float
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """A slim triangle at a point (m), looking along theta (rad)."""
+
+    role: Role
+    at: Point
+    theta: float
+    size_m: float = 0.28
+
+    @property
+    def corners(self) -> tuple[Point, ...]:
+        """Its four corners (m)."""
+        corners = [(0.0, 1.0), (2.5, 0.6), (math.pi, 0.35), (-2.5, 0.6)]
+        return tuple(
+            (
+                self.at[0] + self.size_m * r * math.cos(self.theta + a),
+                self.at[1] + self.size_m * r * math.sin(self.theta + a),
+            )
+            for a, r in corners
+        )
