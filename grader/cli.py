@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Optional
 
 import typer
 
+from grader.classroom import cli as classroom
 from grader.errors import GraderError, UsageError
 from grader.learner import cli as learner
 
@@ -158,10 +159,17 @@ def doctor() -> None:
 
 @app.command(
     context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
-    epilog="Example: grader sim --image path.png",
+    epilog="Examples: grader sim --view; in a terminal without a browser: grader sim --view terminal",
 )
-def sim(context: typer.Context, image: Image = None) -> None:
-    """Run the headless turtlesim as a node, at wall time, until Ctrl-C."""
+def sim(
+    context: typer.Context,
+    image: Image = None,
+    view: Annotated[
+        bool, typer.Option("--view", help="See it move, on a page of this machine; `--view terminal`: in this terminal.")
+    ] = False,
+    port: Annotated[Optional[int], typer.Option(help="Of the page; the one of the last time when left out.")] = None,  # noqa: UP045
+) -> None:
+    """Run turtlesim as a node, at wall time, until Ctrl-C; it has no window, so --view shows it."""
     from grader import underlay
     from grader.ros import find_ros, users_environment
 
@@ -169,8 +177,11 @@ def sim(context: typer.Context, image: Image = None) -> None:
     here = find_ros()
     with _progress() as tell:
         extra = underlay.ensure(here, tell)
-    drawing = ["--image", str(image)] if image else []
-    argv = [str(here.python), "-m", "grader.simulator", *drawing, *context.args]
+    # typer has no option that may stand with and without a value.
+    where = context.args.pop(0) if view and context.args[:1] in (["page"], ["terminal"]) else "page"
+    given = [("--image", image), ("--view", where if view else None), ("--port", port)]
+    options = [text for name, value in given if value is not None for text in (name, str(value))]
+    argv = [str(here.python), "-m", "grader.simulator", *options, *context.args]
     os.execve(argv[0], argv, users_environment(here, extra))
 
 
@@ -243,6 +254,7 @@ def validate(
 
 
 learner.add_to(app)
+classroom.add_to(app)
 
 
 def main() -> None:

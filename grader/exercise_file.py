@@ -43,13 +43,22 @@ def parse_exercise(data: bytes, name: str, folder: Path) -> Exercise:
 
     Raises UsageError naming every problem.
     """
+    return parse_tables(read_toml(data, name), name, folder, hashlib.sha256(data).hexdigest())
+
+
+def read_toml(data: bytes, name: str) -> dict[str, Any]:
+    """The tables of a TOML file. Raises UsageError where it is none."""
     try:
-        top = tomllib.loads(data.decode("utf-8"))
+        return tomllib.loads(data.decode("utf-8"))
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         message = f"{name}: not TOML: {error}."
         raise UsageError(message) from error
+
+
+def parse_tables(top: dict[str, Any], name: str, folder: Path, digest: str) -> Exercise:
+    """The exercise in the tables of an exercise.toml. Raises UsageError naming every problem."""
     problems: list[str] = []
-    exercise = _exercise(_Table(top, "", problems), folder, hashlib.sha256(data).hexdigest())
+    exercise = _exercise(_Table(top, "", problems), folder, digest)
     if problems:
         message = "\n".join(f"{name}: {problem}" for problem in problems)
         raise UsageError(message)

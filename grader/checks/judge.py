@@ -105,7 +105,8 @@ def _overwhelmed(how: str) -> Finding:
 def _because(cause: CheckSpec, finding: Finding) -> Finding:
     if finding.status is Status.ERROR:
         return finding
-    return Finding(Status.SKIPPED, f'Not judged, since "{cause.title}" did not pass.')
+    named = "a hidden check" if cause.hidden else f'"{cause.title}"'
+    return Finding(Status.SKIPPED, f"Not judged, since {named} did not pass.")
 
 
 def _outcome(spec: CheckSpec, finding: Finding) -> Outcome:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import stat
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.classroom import archives
@@ -20,6 +19,7 @@ from grader.words import a_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
 
 OWN = "exercises"
 """The folder of a clone that holds what the student works on."""

@@ -2,7 +2,8 @@
 
 Runs in a process of its own under limits (archives.py), with the standard library alone. Only plain files and folders
 are made, only inside the folder, never more than the limits below. Prints JSON: {"why": null} when all went well, else
-why it cannot be unpacked, as a part of a sentence that begins with the archive's name. Ends with 3 where the disk fails.
+why it cannot be unpacked, as a part of a sentence that begins with the archive's name. Ends with 3 where
+the disk fails.
 """
 
 from __future__ import annotations
@@ -99,7 +100,7 @@ def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
     stream: IO[bytes] = gzip.GzipFile(fileobj=file) if gzipped else file  # type: ignore[assignment]
     # A header takes 512 bytes, and its names and dates may take as much again.
     capped = Capped(stream, MOST_BYTES + 2048 * MOST_ENTRIES)
-    with tarfile.open(fileobj=capped, mode="r|") as packed:  # type: ignore[call-overload]
+    with tarfile.open(fileobj=capped, mode="r|") as packed:
         for info in packed:
             if info.isdir():
                 yield info.name, info.mode, None

@@ -1,0 +1,167 @@
+"""Engine: Dask's workers, on as many machines as there are.
+
+They need this project and nothing else: submissions travel to them as bytes.
+
+What runs inside a Dask worker is one of our worker processes (worker.py) for each of its threads: what kills that
+process leaves the Dask worker alive. Which of them gets what is decided here, one submission a thread and no queues
+behind them, so that where a machine goes away it is known which submissions went with it, and none is blamed for
+another's.
+"""
+
+from __future__ import annotations
+
+import queue
+import time
+import uuid
+from dataclasses import dataclass
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+
+from grader.classroom.engine import Died, Event, Finished
+from grader.classroom.worker import Worker
+from grader.errors import MachineError, UsageError
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from grader.classroom.task import Done, Task
+
+CONNECT_S = 20.0
+WORKERS_S = 60.0
+"""How long to wait for the first worker, or for another one when all have gone."""
+LOOK_S = 1.0
+"""How often it is looked at which workers are there."""
+
+# Of the Dask worker's process: they outlive a task, so that the next one finds them warm.
+_idle: list[Worker] = []
+_lock = Lock()
+
+
+def perform_here(task: Task) -> tuple[str, object]:
+    """Grade a task in a process of its own; runs in a thread of a Dask worker.
+
+    Returns ("done", Done), ("fails", text): this machine cannot grade, or ("died", text): the process is gone.
+    """
+    with _lock:
+        worker = _idle.pop() if _idle else Worker()
+    worker.send(task)
+    while True:
+        said = worker.receive()
+        if said is None:
+            why = worker.last_words()
+            worker.close()
+            return "died", why
+        if said[0] in ("done", "fails"):
+            with _lock:
+                _idle.append(worker)
+            return said
+
+
+@dataclass
+class _Running:
+    future: Any
+    task: Task
+    where: str
+
+
+class DaskEngine:
+    """Gives each thread of each worker one submission at a time."""
+
+    def __init__(self, address: str, jobs: int | None) -> None:
+        try:
+            from distributed import Client
+        except ImportError as error:
+            message = "Dask is not installed here: `make cluster` in the course's folder installs it."
+            raise UsageError(message) from error
+        try:
+            # Dask tells no types.
+            self._client: Any = Client(f"tcp://{address}", timeout=CONNECT_S, set_as_default=False)  # type: ignore[no-untyped-call]
+        except (OSError, ValueError) as error:
+            message = f"No Dask scheduler answers at {address}: start it with `dask scheduler`, or mend HOST:PORT."
+            raise UsageError(message) from error
+        self._most = jobs
+        self._running: dict[str, _Running] = {}
+        self._ended: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._threads: dict[str, int] = {}
+        self._looked = 0.0
+        self._last_seen = time.monotonic()
+
+    def __enter__(self) -> DaskEngine:  # noqa: PYI034 - typing.Self is Python 3.11's
+        self._look()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None, /
+    ) -> None:
+        try:
+            self._client.cancel([each.future for each in self._running.values()], force=True)
+        finally:
+            self._client.close(timeout=5)
+
+    def has_room(self) -> bool:
+        """Whether a worker's thread is free."""
+        return (self._most is None or len(self._running) < self._most) and self._free() is not None
+
+    def start(self, task: Task) -> None:
+        """Begin a task."""
+        where = self._free()
+        assert where is not None
+        key = f"grade-{uuid.uuid4().hex}"
+        future = self._client.submit(
+            perform_here, task, key=key, workers=[where], allow_other_workers=False, pure=False, retries=0
+        )
+        self._running[key] = _Running(future, task, where)
+        future.add_done_callback(lambda ended: self._ended.put(ended.key))
+
+    def events(self, timeout_s: float) -> list[Event]:
+        """What has happened; see Engine."""
+        happened: list[Event] = []
+        try:
+            first = self._ended.get(timeout=timeout_s)
+        except queue.Empty:
+            first = None
+        while first is not None:
+            if first in self._running:
+                happened.append(self._event(self._running.pop(first)))
+            first = None if self._ended.empty() else self._ended.get()
+        if time.monotonic() - self._looked > LOOK_S:
+            happened += self._look()
+        return happened
+
+    def _event(self, ended: _Running) -> Event:
+        try:
+            kind, what = ended.future.result(timeout=CONNECT_S)
+        except Exception as error:  # a worker that died, whatever Dask calls it; anything else it could not send
+            return Died(ended.task, f"{type(error).__name__}: {error}")
+        if kind == "done":
+            done: Done = what
+            return Finished(ended.task, done)
+        if kind == "fails":
+            raise MachineError(str(what))
+        return Died(ended.task, str(what))
+
+    def _free(self) -> str | None:
+        """The worker with the most free threads."""
+        busy = [each.where for each in self._running.values()]
+        free = {where: threads - busy.count(where) for where, threads in self._threads.items()}
+        best = max(free, key=lambda where: free[where], default=None)
+        return best if best is not None and free[best] > 0 else None
+
+    def _look(self) -> list[Event]:
+        """See which workers are there; what the others had is lost."""
+        self._looked = time.monotonic()
+        try:
+            self._threads = dict(self._client.nthreads())
+        except Exception as error:
+            message = f"Dask's scheduler was lost ({error}). What was graded is kept; the same command goes on."
+            raise MachineError(message) from error
+        if self._threads:
+            self._last_seen = time.monotonic()
+        elif time.monotonic() - self._last_seen > WORKERS_S:
+            message = f"Dask has had no worker for {WORKERS_S:.0f} s: start one with `dask worker HOST:PORT`."
+            raise MachineError(message)
+        lost = [key for key, each in self._running.items() if each.where not in self._threads]
+        gone = [self._running.pop(key) for key in lost]
+        for each in gone:
+            each.future.cancel(force=True)
+        return [Died(each.task, f"the worker {each.where} went away") for each in gone]

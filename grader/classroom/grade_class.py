@@ -1,0 +1,131 @@
+"""Grade a class: what `grader grade` does, from the folder of submissions to the folder of results."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader import sandbox, underlay
+from grader.classroom import outputs, results
+from grader.classroom.found import find_submissions
+from grader.classroom.order import Order, read_roster, sort_out, sources_for
+from grader.classroom.run import run
+from grader.classroom.show import screen, summary
+from grader.errors import MachineError, UsageError
+from grader.outcome import Status
+from grader.ros import find_ros
+from grader.words import count
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from grader.classroom.engine import Engine
+    from grader.classroom.order import Todo
+    from grader.classroom.results import Result
+    from grader.grade import ClockChoice
+
+DASK = "dask://"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What stands on the command line."""
+
+    submissions: Sequence[Path]
+    out: Path
+    exercise: str | None = None
+    jobs: int | None = None
+    engine: str = "local"
+    checks: Path | None = None
+    roster: Path | None = None
+    clock: ClockChoice = "auto"
+    seed: int | None = None
+    trusted: bool = False
+    repository_folder: str = ""
+
+
+def grade_class(asked: Asked, say: Callable[[str], None], tell: Callable[[str], None]) -> list[Result]:
+    """Grade what was not graded yet, write all files, and return every result, by student.
+
+    Raises:
+        UsageError: the command is wrong.
+        MachineError: nothing more can be graded or written; what was written stays, and the next run goes on.
+    """
+    local = asked.engine == "local"
+    if not local and not asked.engine.startswith(DASK):
+        message = f'--engine is "{asked.engine}"; it must be local or {DASK}HOST:PORT.'
+        raise UsageError(message)
+    roster = read_roster(asked.roster)
+    found = find_submissions(asked.submissions, asked.exercise, asked.out)
+    sources = sources_for(found, asked.checks)
+    order = Order(
+        found=found,
+        roster=roster,
+        sources=sources,
+        ros=_ros(local=local, tell=tell),
+        clock=asked.clock,
+        seed=asked.seed,
+        # Dask's workers see to it themselves, each where it is.
+        in_cell=sandbox.require(trusted=asked.trusted) if local else not asked.trusted,
+        trusted=asked.trusted,
+    )
+    assert order.exercises  # a mistake in private checks is told before anything is graded
+    with results.opened(asked.out) as folder:
+        tell(f"Reading {count(len(found), 'submission')}")
+        kept, todo = sort_out(order, folder)
+        say(_told(kept, todo))
+        graded: list[Result] = []
+        if todo:
+            engine = _engine(asked, local=local)
+            with screen(len(todo), several=len(sources) > 1) as shown:
+                graded = run(order, todo, engine, folder, shown)
+        every = {(result.student, result.report.exercise): result for result in (*kept, *graded)}
+        ordered = [every[each.student, each.exercise] for each in found]
+        outputs.write_all(folder, ordered, asked.repository_folder)
+        left = folder.others({result.page for result in ordered})
+    say(summary(ordered))
+    if left:
+        say(f"{count(left, 'result')} in {asked.out}/{results.REPORTS} of submissions not named now: left as they are.")
+    return ordered
+
+
+def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
+    """3 where the machine failed, 1 where a submission got less than `fail_under` percent, else 0."""
+    if any(result.report.with_status(Status.ERROR) for result in graded):
+        return 3
+    shares = [result.report.points / result.report.max if result.report.max else 0.0 for result in graded]
+    # As much less as a float's rounding must not fail a class.
+    return 1 if fail_under is not None and any(100.0 * share < fail_under - 1e-9 for share in shares) else 0
+
+
+def _ros(*, local: bool, tell: Callable[[str], None]) -> str:
+    """The ROS 2 that a result follows from; with Dask it is the workers' business, and theirs must be one."""
+    try:
+        here = find_ros()
+        if local:
+            underlay.ensure(here, tell)  # once, and not by all workers at the same time
+    except MachineError:
+        if local:
+            raise
+        return "of the workers"
+    return here.name
+
+
+def _engine(asked: Asked, *, local: bool) -> Engine:
+    if local:
+        from grader.classroom.local import LocalEngine, default_jobs
+
+        return LocalEngine(asked.jobs or default_jobs())
+    from grader.classroom.dask_engine import DaskEngine
+
+    return DaskEngine(asked.engine.removeprefix(DASK), asked.jobs)
+
+
+def _told(kept: Sequence[Result], todo: Sequence[Todo]) -> str:
+    reasons = Counter(one.why for one in todo)
+    why = ", ".join(f"{amount} {reason}" for reason, amount in reasons.most_common())
+    before = f"{len(kept)} graded before, " if kept else ""
+    to_grade = f"{len(todo)} to grade" + (f" ({why})" if reasons.keys() - {"new"} else "")
+    return f"{count(len(kept) + len(todo), 'submission')}: {before}{to_grade if todo else 'nothing to grade'}."

@@ -1,0 +1,77 @@
+"""The archive that Gradescope takes as an autograder: setup.sh, run_autograder, and the course with its grader."""
+
+from __future__ import annotations
+
+import stat
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.classroom.private_checks import sources_of
+from grader.errors import MachineError, UsageError
+from grader.exercise import FILE_NAME, course_folder, find_exercise
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+TEMPLATES = Path(__file__).parent / "templates"
+SCRIPTS = {"setup.sh": "gradescope-setup.sh", "run_autograder": "gradescope-run_autograder"}
+_FILES = ("LICENSE", "Makefile", "README.md", "pyproject.toml", "requirements.lock")
+_FOLDERS = ("course", "grader")
+_LEFT_OUT = frozenset({"__pycache__", "tests", "benchmarks"})
+_WHEN = (1980, 1, 1, 0, 0, 0)
+"""The same archive from the same files."""
+
+
+def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bool = False) -> None:
+    """Write the archive; `checks` is a folder of private checks, which goes along.
+
+    `trusted`: submissions are run even where Gradescope's container allows no sandbox.
+
+    Raises:
+        UsageError: there is no such exercise, the private checks are wrong, or this is no checkout of the course.
+        MachineError: it cannot be written.
+    """
+    known = find_exercise(exercise)
+    sources = sources_of({known.id}, checks)[known.id]
+    sources.exercise(known.folder)  # mistakes are told here, not by Gradescope
+    root = course_folder().parent
+    if not (root / "Makefile").is_file():
+        message = f"The archive is made from a checkout of the course; {root} is none."
+        raise UsageError(message)
+    try:
+        with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, template in SCRIPTS.items():
+                _add(archive, name, (TEMPLATES / template).read_bytes(), executable=True)
+            _add(archive, "exercise-id", f"{known.id}\n".encode())
+            if trusted:
+                _add(archive, "trust-submissions", b"")
+            if sources.private is not None:
+                _add(archive, f"checks/{known.id}/{FILE_NAME}", sources.private)
+            for path in _course(root):
+                _add(archive, f"course/{path.relative_to(root).as_posix()}", path.read_bytes(), executable=_runs(path))
+    except OSError as error:
+        message = f"{file} could not be written: {error.strerror}."
+        raise MachineError(message) from error
+
+
+def _course(root: Path) -> Iterator[Path]:
+    """The files of the course that grading needs: no solutions, no tests."""
+    yield from (root / name for name in _FILES if (root / name).is_file())
+    for folder in _FOLDERS:
+        for path in sorted((root / folder).rglob("*")):
+            parts = path.relative_to(root).parts
+            hidden = any(part.startswith(".") for part in parts)
+            if path.is_file() and not hidden and _LEFT_OUT.isdisjoint(parts) and path.suffix != ".pyc":
+                yield path
+
+
+def _runs(path: Path) -> bool:
+    return bool(path.stat().st_mode & stat.S_IXUSR)
+
+
+def _add(archive: zipfile.ZipFile, name: str, content: bytes, *, executable: bool = False) -> None:
+    info = zipfile.ZipInfo(name, _WHEN)
+    info.external_attr = (stat.S_IFREG | (0o755 if executable else 0o644)) << 16
+    info.compress_type = zipfile.ZIP_DEFLATED
+    archive.writestr(info, content)

@@ -1,0 +1,127 @@
+"""Engine: worker processes of this machine, as many as its processors and its memory allow."""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass
+from multiprocessing.connection import wait
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.classroom.engine import Died, Event, Finished, Tells
+from grader.classroom.worker import Worker
+from grader.errors import MachineError
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from grader.classroom.task import Task
+
+MEMORY_A_TASK = 1536 * 1024 * 1024
+"""Bytes. What a cell may hold (sandbox.Limits) is more, but few submissions ask for it, and never all at once."""
+WAITING_A_JOB = 2
+"""Tasks beyond --jobs, for each of them, while as many wait for the wall's clock and hardly work."""
+TASK_S = 1800.0
+"""Longer than all limits of a grading together: a worker that is still busy then hangs."""
+
+
+def default_jobs() -> int:
+    """How many submissions are worked on at once: one a processor, if there is the memory for it."""
+    return max(1, min(_processors(), _memory() // MEMORY_A_TASK))
+
+
+def _processors() -> int:
+    here = len(os.sched_getaffinity(0))
+    try:
+        quota, period = Path("/sys/fs/cgroup/cpu.max").read_text().split()
+        return max(1, min(here, round(int(quota) / int(period))))
+    except (OSError, ValueError):
+        return here  # no control group, or no limit in it
+
+
+def _memory() -> int:
+    free = 0
+    for line in Path("/proc/meminfo").read_text().splitlines():
+        if line.startswith("MemAvailable:"):
+            free = int(line.split()[1]) * 1024
+    try:
+        group = Path("/sys/fs/cgroup")
+        limit, used = (int((group / name).read_text()) for name in ("memory.max", "memory.current"))
+        return min(free, limit - used)
+    except (OSError, ValueError):
+        return free
+
+
+@dataclass
+class _Busy:
+    task: Task
+    since: float
+    waits: bool = False
+
+
+class LocalEngine:
+    """Keeps workers, gives each a task at a time, and starts another in place of one that died."""
+
+    def __init__(self, jobs: int) -> None:
+        self._jobs = jobs
+        self._most = max(jobs, min(jobs * (1 + WAITING_A_JOB), _memory() // MEMORY_A_TASK))
+        self._idle: list[Worker] = []
+        self._busy: dict[Worker, _Busy] = {}
+
+    def __enter__(self) -> LocalEngine:  # noqa: PYI034 - typing.Self is Python 3.11's
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None, /
+    ) -> None:
+        for worker in (*self._idle, *self._busy):
+            worker.close()
+
+    def has_room(self) -> bool:
+        """Whether one more task may be started now."""
+        working = sum(not busy.waits for busy in self._busy.values())
+        return working < self._jobs and len(self._busy) < self._most
+
+    def start(self, task: Task) -> None:
+        """Begin a task."""
+        worker = self._idle.pop() if self._idle else Worker()
+        self._busy[worker] = _Busy(task, time.monotonic())
+        worker.send(task)
+
+    def events(self, timeout_s: float) -> list[Event]:
+        """What has happened; see Engine."""
+        happened: list[Event] = []
+        by_connection = {worker.connection: worker for worker in self._busy}
+        for ready in wait(list(by_connection), timeout_s):
+            event = self._heard(by_connection[ready])  # type: ignore[index]
+            if event is not None:
+                happened.append(event)
+        now = time.monotonic()
+        hung = [worker for worker, busy in self._busy.items() if now - busy.since > TASK_S]
+        return [
+            *happened,
+            *(self._lost(worker, f"it was still busy after {TASK_S / 60:.0f} minutes") for worker in hung),
+        ]
+
+    def _heard(self, worker: Worker) -> Event | None:
+        busy = self._busy[worker]
+        said = worker.receive()
+        if said is None:
+            return self._lost(worker, worker.last_words())
+        kind, what = said
+        if kind == "done":
+            self._idle.append(worker)
+            del self._busy[worker]
+            return Finished(busy.task, what)  # type: ignore[arg-type]
+        if kind == "fails":
+            raise MachineError(str(what))
+        if kind == "now":
+            busy.waits = what == "waits"
+            return None
+        return Tells(busy.task, str(what))
+
+    def _lost(self, worker: Worker, why: str) -> Died:
+        busy = self._busy.pop(worker)
+        worker.close()
+        return Died(busy.task, why)

@@ -1,0 +1,161 @@
+"""Order: what a run of `grader grade` is to do, and which of it was done before."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from grader.classroom.content import Refused, fingerprint, read
+from grader.classroom.key import Key, changed, grader_key
+from grader.classroom.private_checks import sources_of
+from grader.classroom.task import Task, lesson_folder
+from grader.errors import UsageError
+from grader.outcome import Status
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from grader.classroom.found import Found
+    from grader.classroom.private_checks import Sources
+    from grader.classroom.results import Result, Results
+    from grader.exercise import Exercise
+    from grader.grade import ClockChoice
+
+
+@dataclass(frozen=True)
+class Order:
+    """The submissions of a class, and how to grade them. `roster`: submission's name -> the student's id."""
+
+    found: tuple[Found, ...]
+    roster: Mapping[str, str]
+    sources: Mapping[str, Sources]
+    ros: str
+    clock: ClockChoice = "auto"
+    seed: int | None = None
+    in_cell: bool = True
+    """Whether there is a sandbox; False only where the submissions are trusted."""
+    trusted: bool = False
+
+    @cached_property
+    def exercises(self) -> dict[str, Exercise]:
+        """The exercises, by id. Raises UsageError naming every problem of private checks."""
+        return {name: sources.exercise(lesson_folder(sources)) for name, sources in self.sources.items()}
+
+    def key(self, found: Found) -> Key:
+        """The key of a submission's result. Raises MachineError where the disk fails."""
+        exercise = self.exercises[found.exercise]
+        return Key(
+            submission=fingerprint(found, exercise),
+            student=self._owner(found),
+            exercise=exercise.digest,
+            grader=grader_key(),
+            ros=self.ros,
+            options=f"clock {self.clock}, seed {self.seed}, {'confined' if self.in_cell else 'not confined'}",
+        )
+
+    def task(self, found: Found) -> Task:
+        """The task of grading a submission, read now. Raises MachineError where the disk fails."""
+        owner = self._owner(found)
+        content = read(found, self.exercises[found.exercise], owner)
+        if isinstance(content, Refused):
+            return self._task(found, owner, content.reason)
+        return self._task(
+            found,
+            owner,
+            dict(content.files),
+            package=content.package_dir.name,
+            rejected=content.rejected,
+            digest=content.digest,
+            executable=content.executable,
+        )
+
+    def _task(
+        self,
+        found: Found,
+        owner: str,
+        content: dict[str, bytes] | str,
+        package: str = "",
+        rejected: tuple[str, ...] = (),
+        digest: str = "",
+        executable: frozenset[str] = frozenset(),
+    ) -> Task:
+        return Task(
+            student=found.student,
+            owner=owner,
+            sources=self.sources[found.exercise],
+            content=content,
+            package=package,
+            rejected=rejected,
+            digest=digest,
+            executable=executable,
+            clock=self.clock,
+            seed=self.seed,
+            trusted=self.trusted,
+            grader=grader_key(),
+        )
+
+    def _owner(self, found: Found) -> str:
+        return self.roster.get(found.student, found.student)
+
+
+def sources_for(found: tuple[Found, ...], checks: Path | None) -> dict[str, Sources]:
+    """What the exercises of these submissions are made of. Raises UsageError as `sources_of`."""
+    return sources_of({each.exercise for each in found}, checks)
+
+
+@dataclass(frozen=True)
+class Todo:
+    """A submission that is to be graded; `why` in a word: "new", "changed", "error before", "older grader", ..."""
+
+    found: Found
+    key: Key
+    why: str
+
+
+def sort_out(order: Order, results: Results) -> tuple[list[Result], list[Todo]]:
+    """The results that hold still, and what is to be graded. Raises MachineError where the disk fails."""
+    kept: list[Result] = []
+    todo: list[Todo] = []
+    for found in order.found:
+        key = order.key(found)
+        old = results.load(found.student, found.exercise)
+        why = "new" if old is None else _why_again(old, key)
+        if old is None or why:
+            todo.append(Todo(found, key, why))
+        else:
+            kept.append(old)
+    return kept, todo
+
+
+def _why_again(old: Result, key: Key) -> str:
+    parts = changed(old.key, key)
+    if "submission" in parts or "student" in parts:
+        return "changed"
+    if "grader" in parts:
+        return "graded by another version of the grader"
+    if "exercise" in parts:
+        return "judged by other checks"
+    if parts:
+        return "graded in another way"
+    return "not finished for a fault of the machine" if old.report.with_status(Status.ERROR) else ""
+
+
+def read_roster(file: Path | None) -> dict[str, str]:
+    """Submission -> student's id, from a CSV with these two columns. Raises UsageError where it is none."""
+    if file is None:
+        return {}
+    try:
+        with file.open(encoding="utf-8-sig", newline="") as opened:
+            rows = list(csv.DictReader(opened))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        message = f"{file} cannot be read: {error}."
+        raise UsageError(message) from error
+    if not rows or not {"submission", "student"} <= rows[0].keys():
+        message = (
+            f'{file} is no roster: a CSV with the columns "submission" (the folder\'s name) and "student" (the id).'
+        )
+        raise UsageError(message)
+    return {row["submission"].strip(): row["student"].strip() for row in rows if row["submission"] and row["student"]}

@@ -1,0 +1,148 @@
+"""What a run shows while it works: a live table on a terminal, a line a submission where a program reads it.
+
+What a student named is printed so that it acts on no terminal and on no continuous integration.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Protocol
+
+from grader.report.verdict import tone, verdict
+from grader.words import count, printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rich.console import Console, RenderableType
+
+    from grader.classroom.results import Result
+
+SIGNS = {"passed": "✓", "failed": "✗", "error": "!"}
+STYLES = {"passed": "green", "failed": "red", "error": "bold magenta"}
+
+Name = tuple[str, str]
+"""Student and exercise."""
+
+
+class Screen(Protocol):
+    """Hears how a run goes on."""
+
+    def tells(self, name: Name, text: str) -> None:
+        """What is being done with a submission."""
+
+    def finished(self, result: Result) -> None:
+        """A submission has its result."""
+
+
+def plain(text: str) -> str:
+    """The text without what a terminal or a program that reads logs would act on."""
+    # GitHub reads ::command:: where a line begins, and ##[command] anywhere; Azure Pipelines ##vso[.
+    return printable(text).replace("::", ": :").replace("##", "# #")
+
+
+def estimate(done: int, of: int, seconds: float) -> str:
+    """How long the rest will take, at the pace so far."""
+    if not done or done >= of:
+        return ""
+    left_s = seconds / done * (of - done)
+    return f"about {left_s / 60:.0f} min left" if left_s >= 90 else f"about {left_s:.0f} s left"
+
+
+@contextmanager
+def screen(amount: int, several: bool) -> Iterator[Screen]:
+    """The screen for so many submissions; `several` exercises among them."""
+    if not amount:
+        yield Lines(amount, several)
+    elif sys.stderr.isatty() and not os.environ.get("CI"):
+        from rich.console import Console
+        from rich.live import Live
+
+        console = Console(stderr=True, highlight=False)
+        table = Table(amount, several, console)
+        with Live(get_renderable=table.render, console=console, refresh_per_second=4, transient=True):
+            yield table
+    else:
+        yield Lines(amount, several)
+
+
+class Lines:
+    """A line when a submission is finished, and no other."""
+
+    def __init__(self, amount: int, several: bool) -> None:
+        self._amount, self._several, self._done = amount, several, 0
+        self._begun = time.monotonic()
+
+    def tells(self, name: Name, text: str) -> None:
+        """Nothing is said: a line each would be too many."""
+
+    def finished(self, result: Result) -> None:
+        """Say how it ended."""
+        self._done += 1
+        left = estimate(self._done, self._amount, time.monotonic() - self._begun)
+        rest = f"  ({left})" if left else ""
+        print(f"[{self._done}/{self._amount}] {_line(result, self._several)}{rest}", file=sys.stderr, flush=True)
+
+
+class Table:
+    """What is being worked on, one below the other, with a bar; finished submissions go up and stay."""
+
+    def __init__(self, amount: int, several: bool, console: Console) -> None:
+        self._amount, self._several, self._console = amount, several, console
+        self._now: dict[Name, tuple[str, float]] = {}
+        self._tones: list[str] = []
+        self._begun = time.monotonic()
+
+    def tells(self, name: Name, text: str) -> None:
+        """What is being done with a submission."""
+        since = self._now[name][1] if name in self._now else time.monotonic()
+        self._now = {**self._now, name: (text, since)}
+
+    def finished(self, result: Result) -> None:
+        """A submission has its result: it moves up."""
+        from rich.text import Text
+
+        name = (result.student, result.report.exercise)
+        self._now = {key: value for key, value in self._now.items() if key != name}
+        kind = tone(result.report)
+        self._tones.append(kind)
+        self._console.print(Text(f"{SIGNS[kind]} {_line(result, self._several)}", style=STYLES[kind]))
+
+    def render(self) -> RenderableType:
+        """What is on the terminal just now."""
+        from rich.console import Group
+        from rich.progress_bar import ProgressBar
+        from rich.table import Table as Grid
+        from rich.text import Text
+
+        now = time.monotonic()
+        rows = Grid.grid(padding=(0, 2))
+        for (student, exercise), (text, since) in sorted(self._now.items(), key=lambda item: item[1][1]):
+            who = f"{student}, {exercise}" if self._several else student
+            rows.add_row(Text(plain(who)), Text(plain(text), style="dim"), Text(f"{now - since:.0f} s", style="dim"))
+        done = len(self._tones)
+        bar = Grid.grid(padding=(0, 1))
+        counted = [f"{self._tones.count(kind)} {word}" for kind, word in _WORDS if kind in self._tones]
+        told = [f"{done} of {self._amount}", *counted, estimate(done, self._amount, now - self._begun)]
+        bar.add_row(ProgressBar(total=self._amount, completed=done, width=30), Text(" · ".join(filter(None, told))))
+        return Group(rows, bar)
+
+
+_WORDS = (("passed", "passed"), ("failed", "not passed"), ("error", "not judged"))
+
+
+def _line(result: Result, several: bool) -> str:
+    who = f"{result.student}, {result.report.exercise}" if several else result.student
+    return plain(f"{who}: {verdict(result.report)}")
+
+
+def summary(results: list[Result]) -> str:
+    """A sentence or two on the whole class."""
+    tones = [tone(result.report) for result in results]
+    counted = [f"{tones.count(kind)} {word}" for kind, word in _WORDS if kind in tones]
+    shares = [each.report.points / each.report.max for each in results if each.report.max]
+    mean = f", {100 * sum(shares) / len(shares):.0f} % of the points on average" if shares else ""
+    return f"{count(len(results), 'submission')}: {', '.join(counted)}{mean}."

@@ -1,0 +1,152 @@
+"""Task: one submission to grade, as bytes that any process of ours can take; and what came of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from grader.classroom.key import grader_key
+from grader.errors import MachineError
+from grader.exercise import catalogue
+from grader.grade import Graded, Options, grade, report_of
+from grader.outcome import Finding, Outcome, Status, failed
+from grader.report.hidden import evidence_for_students, for_students
+from grader.submission import Submission
+from grader.trial.trial import Trial
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from grader.classroom.private_checks import Sources
+    from grader.exercise import Exercise
+    from grader.grade import ClockChoice
+    from grader.outcome import Report
+    from grader.recording import Recording
+
+
+Pace = Literal["waits", "works"]
+
+
+@dataclass(frozen=True)
+class Task:
+    """A submission, what it is judged by, and how; `content` is the submission's files, or why there are none.
+
+    `package` is the name of the package's folder. `grader` is the key of the grader that asks: only one that is the
+    same may answer.
+    """
+
+    student: str
+    owner: str
+    """The id that the student's own numbers must be drawn from."""
+    sources: Sources
+    content: dict[str, bytes] | str
+    package: str = ""
+    rejected: tuple[str, ...] = ()
+    digest: str = ""
+    executable: frozenset[str] = frozenset()
+    clock: ClockChoice = "auto"
+    seed: int | None = None
+    trusted: bool = False
+    grader: str = ""
+
+    @property
+    def name(self) -> tuple[str, str]:
+        """Student and exercise: no two tasks of a run share both."""
+        return self.student, self.sources.id
+
+
+@dataclass(frozen=True)
+class Done:
+    """A graded submission: its report, whole, and its page, without what is hidden."""
+
+    report: Report
+    page: bytes
+
+
+def lesson_folder(sources: Sources) -> Path:
+    """The folder of the exercise's lesson on this machine."""
+    return catalogue()[sources.id].parent
+
+
+def perform(
+    task: Task, tell: Callable[[str], None] = lambda _: None, now: Callable[[Pace], None] = lambda _: None
+) -> Done:
+    """Grade a task; `now` hears when a trial waits for the wall's clock, and leaves the processors to others.
+
+    Raises:
+        MachineError: this grader is another one than the one that asks, or has no sandbox.
+    """
+    from grader import sandbox
+
+    if task.grader != grader_key():
+        message = (
+            f"A worker has another version of the grader ({grader_key()}; this one is {task.grader}): bring it up to "
+            "date and start it again."
+        )
+        raise MachineError(message)
+    in_cell = sandbox.require(trusted=task.trusted)
+    exercise = task.sources.exercise(lesson_folder(task.sources))
+    if isinstance(task.content, str):
+        return _with_page(_refused(task, exercise, task.content))
+
+    class Waiting(Trial):
+        """A trial that says when it begins to wait."""
+
+        def run(self, package: str, executable: str, tree: bytes) -> Recording:
+            if self._plan.clock != "wall":
+                return super().run(package, executable, tree)
+            now("waits")
+            try:
+                return super().run(package, executable, tree)
+            finally:
+                now("works")
+
+    options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed)
+    return _with_page(grade(exercise, _submission(task), options, tell, trial=Waiting))
+
+
+def set_aside(task: Task, why: str) -> Done:
+    """The result of a submission that no worker came back with: an `error`, which costs no points."""
+    exercise = task.sources.exercise(lesson_folder(task.sources))
+    return _with_page(_unjudged(task, exercise, Finding(Status.ERROR, why)))
+
+
+def _submission(task: Task, files: dict[str, bytes] | None = None) -> Submission:
+    return Submission(
+        name=task.student,
+        package_dir=Path("/") / (task.package or "submission"),
+        files=files if files is not None else task.content if isinstance(task.content, dict) else {},
+        rejected=task.rejected,
+        digest=task.digest,
+        executable=task.executable,
+        student=task.owner,
+    )
+
+
+def _refused(task: Task, exercise: Exercise, reason: str) -> Graded:
+    """No package: no points, with the reason first."""
+    what = "a package" if exercise.package else "answers.toml"
+    title = f"The submission holds {what}"
+    first = failed("no-package" if exercise.package else "no-answers-file", reason, "")
+    skipped = Finding(Status.SKIPPED, f'Not judged, since "{title}" did not pass.')
+    return _unjudged(task, exercise, skipped, Outcome("submission", "submission", title, 0.0, 0.0, first))
+
+
+def _unjudged(task: Task, exercise: Exercise, finding: Finding, *first: Outcome) -> Graded:
+    from grader.checks.evidence import Evidence
+    from grader.checks.kinds import KINDS
+
+    outcomes = [
+        Outcome(spec.id, spec.kind, spec.title, 0.0, spec.points, finding, spec.hidden, KINDS[spec.kind].advice)
+        for spec in exercise.checks
+    ]
+    evidence = Evidence(exercise, _submission(task, {}))
+    return Graded(report_of(evidence, (*first, *outcomes), "none", {}), evidence, ())
+
+
+def _with_page(graded: Graded) -> Done:
+    from grader.report.html import html_page
+
+    page = html_page(evidence_for_students(graded.evidence), for_students(graded.report))
+    return Done(graded.report, page.encode("utf-8", "replace"))

@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# setup.sh of a Gradescope autograder: runs once, as root, when Gradescope builds the image. Made part of the archive by
+# `grader gradescope build`. Not tried at Gradescope.
+set -euo pipefail
+apt-get update -q
+apt-get install -y -q bubblewrap cmake g++ make python3-dev python3-venv
+cd "${AUTOGRADER:-/autograder}/source/course"
+CI=true python3 -m grader.bootstrap learner

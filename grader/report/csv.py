@@ -1,0 +1,81 @@
+"""A class as a table: one line a submission, for a spreadsheet or a gradebook. For the instructor.
+
+    submission  the name of the folder or archive
+    exercise    its id
+    points      what was got
+    max         what could be had: what the machine could not judge is not counted
+    percent     of that
+    status      passed, failed, or error: graded again by the next run
+    failed      ids of the checks that failed, in the order of the exercise, blanks between
+    diagnoses   the stable ids of their causes
+    first       what was seen by the first of them, in words
+    clock, seed, graded_by, report
+
+No cell is a formula, whatever a student wrote.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import TYPE_CHECKING
+
+from grader.outcome import Status
+from grader.report.verdict import tone
+from grader.words import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from grader.outcome import Report
+
+COLUMNS = (
+    "submission",
+    "exercise",
+    "points",
+    "max",
+    "percent",
+    "status",
+    "failed",
+    "diagnoses",
+    "first",
+    "clock",
+    "seed",
+    "graded_by",
+    "report",
+)
+
+
+def to_csv(rows: Iterable[tuple[str, Report, str]]) -> str:
+    """The table of these students, reports and names of JSON files; with a mark that tells Excel of UTF-8."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\r\n")  # as RFC 4180 has it
+    writer.writerow(COLUMNS)
+    for student, report, file in rows:
+        writer.writerow([_safe(str(value)) for value in _row(student, report, file)])
+    return "\ufeff" + text.getvalue()
+
+
+def _row(student: str, report: Report, file: str) -> tuple[object, ...]:
+    failed = report.with_status(Status.FAILED) or report.with_status(Status.ERROR)
+    return (
+        student,
+        report.exercise,
+        f"{report.points:g}",
+        f"{report.max:g}",
+        f"{100 * report.points / report.max if report.max else 0:.1f}",
+        tone(report),
+        " ".join(outcome.id for outcome in failed),
+        " ".join(dict.fromkeys(outcome.finding.diagnosis or "" for outcome in failed)).strip(),
+        failed[0].finding.seen if failed else "",
+        report.clock,
+        "" if report.seed is None else report.seed,
+        report.grader,
+        file,
+    )
+
+
+def _safe(text: str) -> str:
+    """One line, and no formula: spreadsheets run what begins like one (CWE-1236)."""
+    line = printable(text)
+    return f"'{line}" if line.startswith(("=", "+", "-", "@")) else line

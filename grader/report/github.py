@@ -1,0 +1,116 @@
+"""A report for GitHub Actions: the step's summary in Markdown, and annotations as workflow commands.
+
+Both hold what a student wrote, and neither lets it act: in the summary it is text whatever it looks like, in a
+command it is escaped as GitHub's documentation of workflow commands ("Workflow commands for GitHub Actions") and its
+toolkit's `escapeData` and `escapeProperty` do. What is hidden is left out.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from grader.outcome import Status
+from grader.report.hidden import for_students
+from grader.report.verdict import verdict
+from grader.words import printable, shorten
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from grader.outcome import Outcome, Report
+
+MOST_SUMMARY = 900_000
+"""Bytes; GitHub takes a MiB a step."""
+MOST_ANNOTATIONS = 10
+"""Of a kind in a step; GitHub shows no more."""
+LONGEST = 300
+_MARKDOWN = re.compile(r"([\\`*_{}\[\]()#+\-.!|<>~&@:$^=])")
+_SIGNS = {Status.PASSED: "✅", Status.FAILED: "❌", Status.SKIPPED: "\N{HEAVY MINUS SIGN}", Status.ERROR: "⚠️"}
+
+
+def to_summary(rows: Sequence[tuple[str, Report]]) -> str:
+    """Markdown for $GITHUB_STEP_SUMMARY: the class as a table, and the checks of as many submissions as fit."""
+    parts = ["| submission | exercise | points | |\n| --- | --- | ---: | --- |\n"]
+    for student, report in rows:
+        points = f"{report.points:g} of {report.max:g}"
+        parts.append(f"| {_text(student)} | {_text(report.exercise)} | {points} | {_text(verdict(report))} |\n")
+    size = sum(len(part.encode()) for part in parts)
+    for number, (student, report) in enumerate(rows):
+        part = _details(student, for_students(report))
+        size += len(part.encode())
+        if size > MOST_SUMMARY:
+            parts.append(f"\nThe checks of {len(rows) - number} more submissions are left out here.\n")
+            break
+        parts.append(part)
+    return "".join(parts)
+
+
+def _details(student: str, report: Report) -> str:
+    lines = [
+        f"\n### {_text(student)}: {_text(report.exercise_title)}\n",
+        "| | check | points | |",
+        "| --- | --- | ---: | --- |",
+    ]
+    for outcome in report.outcomes:
+        sign = (
+            "\N{INFORMATION SOURCE}" if outcome.advice and outcome.status is Status.FAILED else _SIGNS[outcome.status]
+        )
+        points = f"{outcome.points:g}/{outcome.max:g}" if outcome.max and outcome.status is not Status.ERROR else ""
+        lines.append(f"| {sign} | {_text(outcome.title)} | {points} | {_told(outcome)} |")
+    return "\n".join(lines) + "\n"
+
+
+def _told(outcome: Outcome) -> str:
+    finding = outcome.finding
+    if outcome.status is Status.PASSED:
+        return ""
+    where = f"({finding.where})" if finding.where else ""
+    return _text(" ".join(text for text in (finding.seen, finding.expected, finding.cause, where) if text))
+
+
+def _text(text: str) -> str:
+    """Text that stays text in Markdown, inside a table's cell too: no links, no HTML, no mention of anybody."""
+    # Numeric references: Markdown reads them as text and never as its own signs, GitHub's mentions and emoji neither.
+    return _MARKDOWN.sub(lambda sign: f"&#{ord(sign.group())};", shorten(text, LONGEST))
+
+
+def to_annotations(rows: Iterable[tuple[str, Report]], folder: str = "") -> str:
+    """Workflow commands, a line each: an error for what failed, a warning for what could not be judged.
+
+    `folder`: where the package is in the repository, so that GitHub shows them beside its lines.
+    """
+    errors: list[str] = []
+    warnings: list[str] = []
+    for student, report in rows:
+        for outcome in for_students(report).outcomes:
+            if outcome.advice:
+                continue
+            if outcome.status is Status.FAILED:
+                errors.append(_command("error", student, outcome, folder))
+            elif outcome.status is Status.ERROR:
+                warnings.append(_command("warning", student, outcome, folder))
+    return "".join(f"{line}\n" for line in (*errors[:MOST_ANNOTATIONS], *warnings[:MOST_ANNOTATIONS]))
+
+
+def _command(kind: str, student: str, outcome: Outcome, folder: str) -> str:
+    where = outcome.finding.where
+    properties = {"title": shorten(f"{student}: {outcome.title}", LONGEST)}
+    if where is not None and folder:
+        properties["file"] = printable(f"{folder.rstrip('/')}/{where.file}")
+        if where.line is not None:
+            properties["line"] = str(where.line)
+    finding = outcome.finding
+    message = shorten(" ".join(text for text in (finding.seen, finding.expected, finding.cause) if text), 3 * LONGEST)
+    told = ",".join(f"{name}={_property(value)}" for name, value in properties.items())
+    return f"::{kind} {told}::{_data(message)}"
+
+
+def _data(text: str) -> str:
+    escaped = text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    # An older form of commands is read anywhere in a line.
+    return escaped.replace("##[", "# #[")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

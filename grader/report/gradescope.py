@@ -1,0 +1,69 @@
+"""A report as Gradescope's results.json (its documentation: "Autograder Specifications", "Output Format").
+
+Students may see it: of a hidden check they see whether it passed.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from grader.outcome import Status
+from grader.report.hidden import for_students
+from grader.report.verdict import verdict
+from grader.words import printable
+
+if TYPE_CHECKING:
+    from grader.outcome import Outcome, Report
+
+
+def to_gradescope(report: Report) -> str:
+    """The text of results.json."""
+    shown = for_students(report)
+    data = {
+        "score": round(report.points, 6),
+        "execution_time": round(report.seconds.get("in all", 0.0)),
+        "output": printable(verdict(report)),
+        "output_format": "text",
+        # What the scripts print is the grader's own progress: nothing for students in it.
+        "stdout_visibility": "hidden",
+        "visibility": "visible",
+        "tests": [_test(number, outcome) for number, outcome in enumerate(shown.outcomes, 1)],
+        "extra_data": {
+            "exercise": report.exercise,
+            "grader": report.grader,
+            "ros": report.ros,
+            "clock": report.clock,
+            "submission_sha256": report.digest,
+        },
+    }
+    return json.dumps(data, ensure_ascii=True, indent=1) + "\n"
+
+
+def _test(number: int, outcome: Outcome) -> dict[str, Any]:
+    passed = outcome.status is Status.PASSED
+    test: dict[str, Any] = {
+        "number": str(number),
+        "name": printable(outcome.title),
+        "name_format": "text",
+        "output": _output(outcome),
+        "output_format": "text",
+        "visibility": "visible",
+    }
+    if outcome.max:
+        # Here, what the machine could not judge takes no points: it is worth none.
+        most = 0.0 if outcome.status is Status.ERROR else outcome.max
+        test |= {"score": round(outcome.points, 6), "max_score": round(most, 6)}
+    # Without a status of its own Gradescope would call advice and errors failed, since they have no points.
+    return {**test, "status": "passed" if passed or outcome.advice or outcome.status is Status.ERROR else "failed"}
+
+
+def _output(outcome: Outcome) -> str:
+    finding = outcome.finding
+    if outcome.status is Status.PASSED and not outcome.hidden:
+        return ""
+    note = "Advice, worth no points." if outcome.advice else ""
+    where = f"Where: {finding.where}" if finding.where else ""
+    expected = f"Expected: {finding.expected}" if finding.expected else ""
+    error = "This could not be judged, through no fault of yours." if outcome.status is Status.ERROR else ""
+    return "\n".join(printable(text) for text in (note, error, finding.seen, expected, finding.cause, where) if text)

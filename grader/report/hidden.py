@@ -1,0 +1,49 @@
+"""A report as its student may see it: of a hidden check nothing but whether it passed.
+
+Ids, titles and findings of hidden checks are left out, and so are trials that only hidden checks judge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from grader.outcome import Finding, Status
+
+if TYPE_CHECKING:
+    from grader.checks.evidence import Evidence
+    from grader.outcome import Outcome, Report
+
+
+def for_students(report: Report) -> Report:
+    """The report without what is hidden."""
+    numbers = {outcome.id: number for number, outcome in enumerate((o for o in report.outcomes if o.hidden), 1)}
+    return replace(
+        report, outcomes=tuple(_covered(each, numbers[each.id]) if each.hidden else each for each in report.outcomes)
+    )
+
+
+def _covered(outcome: Outcome, number: int) -> Outcome:
+    # A check that was not judged has not passed, and why is hidden too.
+    status = Status.FAILED if outcome.status is Status.SKIPPED else outcome.status
+    said = "passed" if status is Status.PASSED else "could not be judged" if status is Status.ERROR else "failed"
+    return replace(
+        outcome,
+        id=f"hidden-{number}",
+        kind="hidden",
+        title="Hidden check",
+        finding=Finding(status, f"Hidden check: {said}."),
+    )
+
+
+def evidence_for_students(evidence: Evidence) -> Evidence:
+    """The evidence without hidden checks and the trials that are theirs alone."""
+    exercise = evidence.exercise
+    shown = tuple(spec for spec in exercise.checks if not spec.hidden)
+    open_trials = {spec.trial for spec in shown}
+    others = {
+        trial: replace(other, exercise=replace(other.exercise, checks=shown))
+        for trial, other in evidence.others.items()
+        if trial in open_trials
+    }
+    return replace(evidence, exercise=replace(exercise, checks=shown), others=others)

@@ -1,0 +1,76 @@
+"""A class as JUnit XML, as Jenkins, GitLab and others read it: a test suite a submission, a test case a check.
+
+Students may see it: what is hidden is left out. Advice is no test case.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from typing import TYPE_CHECKING
+
+from grader.outcome import Status
+from grader.report.hidden import for_students
+from grader.report.verdict import verdict
+from grader.words import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from grader.outcome import Outcome, Report
+
+TAGS = {Status.FAILED: "failure", Status.SKIPPED: "skipped", Status.ERROR: "error"}
+
+
+def to_junit(rows: Iterable[tuple[str, Report]]) -> bytes:
+    """The XML of these students and reports."""
+    root = ET.Element("testsuites", name="grader")
+    for student, report in rows:
+        _suite(root, student, for_students(report))
+    for name in ("tests", "failures", "errors", "skipped"):
+        root.set(name, str(sum(int(suite.get(name, "0")) for suite in root)))
+    root.set("time", f"{sum(float(suite.get('time', '0')) for suite in root):.3f}")
+    ET.indent(root)
+    text: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return text + b"\n"
+
+
+def _suite(root: ET.Element, student: str, report: Report) -> None:
+    checks = [outcome for outcome in report.outcomes if not outcome.advice]
+    counts = {status: sum(outcome.status is status for outcome in checks) for status in TAGS}
+    seconds = f"{report.seconds.get('in all', 0.0):.3f}"
+    suite = ET.SubElement(
+        root,
+        "testsuite",
+        name=_text(f"{student}: {report.exercise}"),
+        tests=str(len(checks)),
+        failures=str(counts[Status.FAILED]),
+        errors=str(counts[Status.ERROR]),
+        skipped=str(counts[Status.SKIPPED]),
+        time=seconds,
+    )
+    properties = ET.SubElement(suite, "properties")
+    for name, value in (("points", f"{report.points:g}"), ("max", f"{report.max:g}"), ("verdict", verdict(report))):
+        ET.SubElement(properties, "property", name=name, value=_text(value))
+    for outcome in checks:
+        _case(suite, student, report, outcome)
+
+
+def _case(suite: ET.Element, student: str, report: Report, outcome: Outcome) -> None:
+    # The time of a check alone is not known; what is not there is not added up wrongly.
+    case = ET.SubElement(
+        suite, "testcase", name=_text(outcome.title), classname=_text(f"{report.exercise}.{student}"), time="0"
+    )
+    tag = TAGS.get(outcome.status)
+    if tag is None:
+        return
+    finding = outcome.finding
+    told = ET.SubElement(case, tag, message=_text(finding.seen))
+    if tag != "skipped":
+        told.set("type", _text(finding.diagnosis or tag))
+    rows = (("expected", finding.expected), ("why", finding.cause), ("where", str(finding.where or "")))
+    told.text = "\n".join(_text(f"{label}: {text}") for label, text in rows if text) or None
+
+
+def _text(text: str) -> str:
+    """Printable characters alone: XML 1.0 has no way to write most others."""
+    return printable(text)
