@@ -165,7 +165,8 @@ def sim(
     context: typer.Context,
     image: Image = None,
     view: Annotated[
-        bool, typer.Option("--view", help="See it move, on a page of this machine; `--view terminal`: in this terminal.")
+        bool,
+        typer.Option("--view", help="See it move, on a page of this machine; `--view terminal`: in this terminal."),
     ] = False,
     port: Annotated[Optional[int], typer.Option(help="Of the page; the one of the last time when left out.")] = None,  # noqa: UP045
 ) -> None:

@@ -1,18 +1,15 @@
-"""The command `rqt_graph`: the ROS graph as a picture, or as text where there is no screen."""
+"""The command `rqt_graph`: the ROS graph live on a page, as a picture in a file, or as text without a browser."""
 
 from __future__ import annotations
 
 import argparse
 import os
-import shutil
 import signal
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.errors import GraderError, UsageError
+from grader.errors import GraderError, MachineError, UsageError
 from grader.ros2.graph import Show, picture, to_dot, to_text
 from grader.ros2.layout import Format, render
 from grader.ros2.start import hand_over, see_to_environment
@@ -23,8 +20,6 @@ if TYPE_CHECKING:
     from grader.ros2.graph import Picture
 
 _FORMATS = (".svg", ".png", ".dot")
-_OPENED_S = 3.0
-"""A viewer that has not failed by then has opened the picture."""
 _NOTHING = (
     "No node is running here (ROS_DOMAIN_ID is {domain}). Start one in another terminal, with the same domain id: "
     "ros2 run turtlesim turtlesim_node"
@@ -58,12 +53,14 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="rqt_graph",
         description="Show which nodes are running, and which topics they publish and subscribe to.",
-        epilog="Without --output the picture is opened where there is a screen, else it is printed as text.",
+        epilog="Without --output it is shown live in a browser, until Ctrl-C; without a browser it is printed as text. "
+        "Example: rqt_graph --output graph.svg",
     )
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE", help="write the picture: graph.svg, graph.png or graph.dot"
     )
-    parser.add_argument("--text", action="store_true", help="print it as text, also where there is a screen")
+    parser.add_argument("--text", action="store_true", help="print it as text, also where there is a browser")
+    parser.add_argument("--port", type=int, help="of the page; the same as the last time, or a free one")
     parser.add_argument("--active", action="store_true", help="leave out topics that nobody publishes or subscribes to")
     parser.add_argument("--debug", action="store_true", help="show /rosout, /parameter_events, /clock and tools, too")
     parser.add_argument(
@@ -90,6 +87,9 @@ def _check(output: Path) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
+    show = Show(debug=options.debug or options.all, hidden=options.hidden or options.all, dead_ends=not options.active)
+    if options.output is None and not options.text and _shown_live(show, options.port):
+        return 0
     # Here, since rclpy cannot be imported before the environment has it.
     from grader.ros2.discovery import cli_node, settle
     from grader.ros2.heard import heard
@@ -100,11 +100,10 @@ def _run(options: argparse.Namespace) -> int:
     if not seen.nodes:
         print(_NOTHING.format(domain=os.environ.get("ROS_DOMAIN_ID", "0")), file=sys.stderr)
         return 1
-    show = Show(debug=options.debug or options.all, hidden=options.hidden or options.all, dead_ends=not options.active)
     drawn = picture(seen.nodes, seen.ends, show)
     if options.output is not None:
         _write(options.output, drawn)
-    elif options.text or not _opened(drawn):
+    else:
         print(to_text(drawn, ascii_only=not sys.stdout.encoding.lower().startswith("utf")), end="")
     sys.stdout.flush()
     return 0
@@ -121,30 +120,34 @@ def _write(file: Path, drawn: Picture) -> None:
         raise UsageError(message) from error
 
 
-def _opened(drawn: Picture) -> bool:
-    """Open the picture in the desktop's viewer; returns whether there is one."""
-    opener = shutil.which("xdg-open")
-    if opener is None or not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+def _shown_live(show: Show, port: int | None) -> bool:
+    """Serve the graph on a page until Ctrl-C; returns False, at once, where there is no browser to show it in."""
+    from grader.view import browser
+
+    if not browser.there_is_one():
         return False
-    # It stays: the viewer reads it when it likes.
-    file = Path(tempfile.mkdtemp(prefix="rqt_graph-"), "graph.png")
-    _write(file, drawn)
-    viewer = subprocess.Popen(
-        [opener, str(file)],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
+    import asyncio
+
+    from grader.view.address import listen
+    from grader.view.launch import see_that_it_can_be_served
+
     try:
-        opened = viewer.wait(_OPENED_S) == 0
-    except subprocess.TimeoutExpired:
-        opened = True
-    if opened:
-        print(f"Opened {file}")
-    else:
-        shutil.rmtree(file.parent)
-    return opened
+        see_that_it_can_be_served()
+    except MachineError as error:
+        print(f"rqt_graph: {error}", file=sys.stderr)
+        return False
+    from grader.view.page import Page
+
+    place = listen("graph", port)
+
+    async def serve() -> bool:
+        return await Page(None, show).serve(place)
+
+    print(f"The graph, live until Ctrl-C: {place.address.url}", flush=True)
+    shown = asyncio.run(serve())
+    # From here on Ctrl-C is Python's again.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    return shown
 
 
 if __name__ == "__main__":

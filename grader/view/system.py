@@ -21,7 +21,6 @@ from grader.ros2.graph import DEBUG_TOPICS
 from grader.ros2.heard import Heard, heard
 from grader.ros2.names import hidden
 from grader.turtles.keys import Cancel, Drive, Turn
-from grader.turtles.turtle_teleop_key import Teleop
 from grader.view.rates import Arrivals
 
 if TYPE_CHECKING:
@@ -29,6 +28,8 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
     from typing_extensions import Self
+
+    from grader.turtles.turtle_teleop_key import Teleop
 
 LOOKED_EVERY_S = 0.4
 MOST_HZ = 500.0
@@ -123,6 +124,9 @@ class Ears:
 
     async def _drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
         if self._driver is None or self._driver[0] != turtle:
+            # Only here, since it needs turtlesim, and the graph may be that of other nodes.
+            from grader.turtles.turtle_teleop_key import Teleop
+
             self._leave()
             made = Teleop(DRIVER, turtle, tell=lambda _: None)
             self._executor.add_node(made)
