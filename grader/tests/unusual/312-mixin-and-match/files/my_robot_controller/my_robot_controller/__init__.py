@@ -1,0 +1,3 @@
+from my_robot_controller.draw import CircleNode
+
+cli = CircleNode.run
