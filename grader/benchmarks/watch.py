@@ -1,0 +1,89 @@
+"""What `grader watch` costs, from save to verdict, in F: a bare colcon build and a bare process with one rclpy node.
+
+    python -m grader.benchmarks.watch [--times N] [--submission FOLDER --exercise NAME --file PATH]
+
+A real terminal is watched: the time runs from the save until the line that follows the verdict. F is measured in the
+same run, alternating, so that a busy moment strikes both alike.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pexpect
+
+from grader.benchmarks.bare import bare_costs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_ROOT = Path(__file__).resolve().parents[2]
+_GRADER = str(Path(sys.executable).with_name("grader"))
+_STEP = "03-circle-publisher"
+_FILE = "my_robot_controller/draw_circle.py"
+_PATIENCE_S = 300
+_REST_S = 2.0
+"""A learner thinks for at least so long between two saves; meanwhile the next trial gets ready."""
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--times", type=int, default=5, help="saves; medians are printed")
+    parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _STEP / "my_robot_controller")
+    parser.add_argument("--exercise", default=_STEP)
+    parser.add_argument("--file", default=_FILE, help="what is saved, below the submission")
+    asked = parser.parse_args()
+    bare, saves = [], []
+    with tempfile.TemporaryDirectory() as folder:
+        package = Path(shutil.copytree(asked.submission, Path(folder) / "home" / asked.submission.name))
+        for number, save_s in enumerate(_saves(package, asked.exercise, package / asked.file, asked.times)):
+            scratch = Path(folder) / str(number)
+            scratch.mkdir()
+            bare.append(sum(each.wall_s for each in bare_costs(package, scratch).values()))
+            saves.append(save_s)
+    f_s, save_s = statistics.median(bare), statistics.median(saves)
+    print(f"F = {f_s:.2f} s wall (median of {len(bare)})")
+    print(f"save to verdict {save_s:.2f} s = {save_s / f_s:.2f} F, worst {max(saves) / f_s:.2f} F")
+
+
+def _saves(package: Path, exercise: str, file: Path, times: int) -> Iterator[float]:
+    """Save so many times; the seconds from each save to its verdict."""
+    env = {
+        **os.environ,
+        "HOME": str(package.parent),
+        "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache"),
+        "TERM": "xterm",
+    }
+    screen = pexpect.spawn(
+        _GRADER,
+        ["watch", str(package), "--exercise", exercise],
+        env=env,  # type: ignore[arg-type] - os._Environ was asked for, a dict is what is used
+        encoding="utf-8",
+        timeout=_PATIENCE_S,
+        dimensions=(60, 110),
+    )
+    screen.delaybeforesend = None
+    screen.expect("Watching")
+    text = file.read_text(encoding="utf-8")
+    for number in range(times):
+        time.sleep(_REST_S)
+        begun = time.monotonic()
+        file.write_text(f"{text}# save {number}\n", encoding="utf-8")
+        screen.expect("Watching")
+        yield time.monotonic() - begun
+    screen.send("q")
+    screen.expect(pexpect.EOF)
+    screen.close()
+
+
+if __name__ == "__main__":
+    main()
