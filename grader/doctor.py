@@ -69,7 +69,7 @@ class Line:
 def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] = lambda _: None) -> list[Line]:
     """All lines, in the order in which things need each other; `tell` gets a line where something takes long."""
     lines = [look_at_system(), look_at_python(), *look_at_set_up(env), *look_at_tools(env), look_at_colcon()]
-    lines += [look_at_disk(_cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
+    lines += [look_at_disk(underlay.cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
     sandbox_line = look_at_sandbox()
     lines.append(sandbox_line)
     try:
@@ -235,11 +235,6 @@ def look_at_node(ros: Ros, ours: Path | None) -> Line:
     if closed and os.getuid() == 0:
         todo += f"; it may help that other users can enter {closed}, where this Python lies"
     return Line("a node", f"is not heard from a cell: {said[0]}", "broken", todo)
-
-
-def _cache() -> Path:
-    home = os.environ.get("XDG_CACHE_HOME", "")
-    return (Path(home) if home.startswith("/") else Path.home() / ".cache") / "grader"
 
 
 def _distribution() -> str:

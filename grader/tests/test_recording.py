@@ -57,6 +57,7 @@ RECORDING = Recording(
     doubts=("slow",),
     seconds={"run": 1.0},
     stalls=((1.0, 1.5),),
+    crowded=True,
 )
 
 

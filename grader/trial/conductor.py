@@ -108,6 +108,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             interventions=tuple(stage.interventions),
             doubts=doubts,
             stalls=tuple(stall for stall in stage.stalls if not _own_doing(stall, node, stage.now())),
+            crowded=stage.crowded(),
             seconds=stage.seconds,
         )
         _say(answers, {"recording": to_json(recording)})

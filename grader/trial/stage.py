@@ -68,6 +68,10 @@ class Stage:
         """Return the time on the trial's clock (s)."""
         raise NotImplementedError
 
+    def crowded(self) -> bool:
+        """Whether other programs kept simulator and node from running; in simulated time that changes nothing."""
+        return False
+
     def frame(self, now_s: float) -> None:
         """Let the simulator make one frame, and keep it."""
         drive = self.inputs.drive(now_s)

@@ -16,6 +16,10 @@ STALL_S = 0.03
 """Time that the machine owed to simulator or node between two frames: from here on, arrivals are not to be trusted."""
 OWN_DOING = 0.5
 """A node that itself used this share of the time and more kept itself waiting: that is no stall."""
+OTHERS = 0.2
+"""Others use the machine when they take this share of one processor and more ..."""
+WAITED = 0.05
+"""... and crowd it when simulator and node together wait for a processor this share of the time and more."""
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
@@ -23,6 +27,7 @@ class WallTrial(Stage):
     """A stage on CLOCK_MONOTONIC. Frames keep their schedule: a late one is caught up, never left out."""
 
     _begun: float | None = None
+    _crowded = False
 
     def now(self) -> float:
         """Return the time since the scenario began (s)."""
@@ -35,6 +40,7 @@ class WallTrial(Stage):
         self.lap("discovery")
         self._begun = time.monotonic()
         watch = _Stalls(self.node.pid)
+        others = _Others()
         frame = 0
         while frame * FRAME_S < duration_s and not self.node.ended():
             early_s = frame * FRAME_S - self.now()
@@ -51,11 +57,17 @@ class WallTrial(Stage):
                 self.recorder.follow_graph()
                 self.recorder.snapshot()
         stopped_s = self.now()
+        worked_s = self.node.worked_s(self._begun, time.monotonic())
+        self._crowded = watch.waited_s >= WAITED * stopped_s and others.worked_s(but_s=worked_s) >= OTHERS * stopped_s
         self.recorder.snapshot()
         self.lap("run")
         self.wind_down()
         self.lap("stop")
         return stopped_s
+
+    def crowded(self) -> bool:
+        """Whether other programs used the machine so much that simulator and node often had to wait."""
+        return self._crowded
 
     def _discover(self) -> None:
         """Let the clock start when the node is in the graph and its topics are recorded, or has ended."""
@@ -76,7 +88,10 @@ class _Stalls:
         self._before = [(0.0, 0.0), (0.0, 0.0)]
         self._stolen_s = _stolen_s()
         self._since_s = 0.0
+        self.waited_s = 0.0
         self.look(0.0, late_s=0.0)
+        self.waited_s = 0.0
+        """How long simulator and node have waited for a processor since (s), all threads together."""
 
     def look(self, now_s: float, *, late_s: float) -> tuple[float, float] | None:
         """Look at the time since the last look; the stall that fell into it, if any. `late_s`: of this frame."""
@@ -85,6 +100,7 @@ class _Stalls:
         for index, threads in enumerate(self._parts):
             ran_s, waited_s = _times(threads)
             before_ran_s, before_waited_s = self._before[index]
+            self.waited_s += waited_s - before_waited_s
             if ran_s - before_ran_s <= OWN_DOING * passed_s:
                 owed.append(waited_s - before_waited_s)
             elif index == 0:
@@ -95,6 +111,17 @@ class _Stalls:
         self._stolen_s = stolen_s
         begun_s, self._since_s = self._since_s, now_s
         return (begun_s, now_s) if max(owed) > STALL_S else None
+
+
+class _Others:
+    """Counts what all programs of the machine but ours have worked since it was made."""
+
+    def __init__(self) -> None:
+        self._before = _machine_worked_s() - time.process_time()
+
+    def worked_s(self, *, but_s: float) -> float:
+        """CPU time of all but this process and what somebody else has worked (s)."""
+        return _machine_worked_s() - time.process_time() - self._before - but_s
 
 
 def _threads(pid: int) -> Threads | None:
@@ -117,4 +144,14 @@ def _times(threads: Threads | None) -> tuple[float, float]:
 
 def _stolen_s() -> float:
     """How long other machines on the same hardware took the processors, all together (s)."""
-    return int(Path("/proc/stat").read_text().split(maxsplit=10)[8]) * _TICK_S
+    return _machine_s()[7]
+
+
+def _machine_worked_s() -> float:
+    user, nice, system, _idle, _iowait, irq, softirq, steal = _machine_s()
+    return user + nice + system + irq + softirq + steal
+
+
+def _machine_s() -> list[float]:
+    """What the processors of the machine have done, all together (s): the columns of proc(5), /proc/stat."""
+    return [int(column) * _TICK_S for column in Path("/proc/stat").read_text().split(maxsplit=9)[1:9]]
