@@ -12,6 +12,7 @@ import typer
 
 from grader.classroom import cli as classroom
 from grader.errors import GraderError, UsageError
+from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
 
 if TYPE_CHECKING:
@@ -256,6 +257,7 @@ def validate(
 
 learner.add_to(app)
 classroom.add_to(app)
+gradebook.add_to(app)
 
 
 def main() -> None:

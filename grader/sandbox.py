@@ -60,10 +60,14 @@ class Limits:
 
 @dataclass(frozen=True)
 class View:
-    """What a room or cell sees of the disk, read-only, each at its own path; `hidden` folders are empty there."""
+    """What a room or cell sees of the disk, each at its own path; `hidden` folders are empty there.
+
+    `writable`: folders through which the cell may hand something out, as the sockets of a kernel.
+    """
 
     read_only: tuple[Path, ...]
     hidden: tuple[Path, ...] = ()
+    writable: tuple[Path, ...] = ()
 
 
 def ros_view(ros: Ros, *more: Path) -> View:
@@ -230,9 +234,11 @@ def _disk(view: View) -> list[str]:
     shown = [Path("/usr"), *(path for path in etc if path.exists())]
     shown += [path for path in view.read_only if not path.is_relative_to("/usr")]
     # Parents that bwrap makes by itself are closed to all but their owner; named ones are not.
-    parents = dict.fromkeys(parent for path in shown for parent in reversed(path.parents[:-1]))
+    named = [*shown, *view.writable]
+    parents = dict.fromkeys(parent for path in named for parent in reversed(path.parents[:-1]))
     command += [word for parent in parents for word in ("--dir", str(parent))]
     command += [word for path in shown for word in ("--ro-bind", str(path), str(path))]
+    command += [word for folder in view.writable for word in ("--bind", str(folder), str(folder))]
     command += [word for folder in view.hidden for word in ("--tmpfs", str(folder), "--remount-ro", str(folder))]
     return [*command, "--dev", "/dev"]
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.classroom.engine import Engine
+    from grader.classroom.found import Found
     from grader.classroom.order import Todo
     from grader.classroom.results import Result
     from grader.grade import ClockChoice
@@ -53,12 +54,16 @@ def grade_class(asked: Asked, say: Callable[[str], None], tell: Callable[[str], 
         UsageError: the command is wrong.
         MachineError: nothing more can be graded or written; what was written stays, and the next run goes on.
     """
-    local = asked.engine == "local"
-    if not local and not asked.engine.startswith(DASK):
-        message = f'--engine is "{asked.engine}"; it must be local or {DASK}HOST:PORT.'
-        raise UsageError(message)
+    _engine_is_known(asked)
+    return grade_found(asked, find_submissions(asked.submissions, asked.exercise, asked.out), say, tell)
+
+
+def grade_found(
+    asked: Asked, found: tuple[Found, ...], say: Callable[[str], None], tell: Callable[[str], None]
+) -> list[Result]:
+    """The same for submissions that were found already; raises as `grade_class`."""
+    local = _engine_is_known(asked)
     roster = read_roster(asked.roster)
-    found = find_submissions(asked.submissions, asked.exercise, asked.out)
     sources = sources_for(found, asked.checks)
     order = Order(
         found=found,
@@ -89,6 +94,15 @@ def grade_class(asked: Asked, say: Callable[[str], None], tell: Callable[[str], 
     if left:
         say(f"{count(left, 'result')} in {asked.out}/{results.REPORTS} of submissions not named now: left as they are.")
     return ordered
+
+
+def _engine_is_known(asked: Asked) -> bool:
+    """Whether the engine is this machine. Raises UsageError for one that is not known."""
+    local = asked.engine == "local"
+    if not local and not asked.engine.startswith(DASK):
+        message = f'--engine is "{asked.engine}"; it must be local or {DASK}HOST:PORT.'
+        raise UsageError(message)
+    return local
 
 
 def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:

@@ -1,0 +1,81 @@
+"""`grader class new DIR`: a course folder for an instructor, in which nbgrader's commands work as its manual says."""
+
+from __future__ import annotations
+
+import csv
+import shutil
+from typing import TYPE_CHECKING
+
+from grader.errors import MachineError, UsageError
+from grader.exercise import catalogue, course_folder
+from grader.gradebook.folders import CONFIG, open_class
+from grader.release import release
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+COLUMNS = ("id", "first_name", "last_name", "email")
+_LEFTOVERS = shutil.ignore_patterns("__pycache__", "*.pyc", ".ipynb_checkpoints", "build", "install", "log")
+
+
+def make_class(folder: Path, roster: Path | None) -> int:
+    """Make the folder, with the roster's students in its gradebook; returns how many there are.
+
+    Raises:
+        UsageError: the folder is not empty, the roster is none, or this copy of the course has no solutions.
+        MachineError: it cannot be written, or nbgrader is not installed.
+    """
+    students = read_students(roster)
+    root = course_folder().parent
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        message = f"{folder} is not an empty folder: name a new one."
+        raise UsageError(message)
+    if not (root / "solutions").is_dir():
+        message = "This copy of the course comes without solutions: a class is made from a whole checkout."
+        raise UsageError(message)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        shutil.copytree(root / "course", folder / "course", ignore=_LEFTOVERS)
+        for name in catalogue():
+            shutil.copytree(root / "solutions" / name, folder / "solutions" / name, ignore=_LEFTOVERS)
+            release(folder / "solutions" / name, folder / "exercises" / name)
+    except OSError as error:
+        message = f"{error.filename or folder} could not be written: {error.strerror}."
+        raise MachineError(message) from error
+    assert (folder / "course" / CONFIG).is_file()
+    folders = open_class(folder / "course")
+    from nbgrader.api import Gradebook
+
+    with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
+        for student in students:
+            about = {key: value for key, value in student.items() if key != "id" and value}
+            gradebook.update_or_create_student(student["id"], **about)
+    return len(students)
+
+
+def read_students(file: Path | None) -> list[dict[str, str]]:
+    """The students of a roster, each with COLUMNS. Raises UsageError where the file is none."""
+    if file is None:
+        return []
+    try:
+        with file.open(encoding="utf-8-sig", newline="") as opened:
+            rows = list(csv.DictReader(opened))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        message = f"{file} cannot be read: {error}."
+        raise UsageError(message) from error
+    if not rows or "id" not in rows[0]:
+        also = ", ".join(COLUMNS[1:])
+        message = f'{file} is no roster: a CSV whose first line names the column "id", and perhaps {also}.'
+        raise UsageError(message)
+    students = [{key: (row.get(key) or "").strip() for key in COLUMNS} for row in rows]
+    for line, student in enumerate(students, 2):
+        # nbgrader makes folders of it, and names with a + in the exchange.
+        if not student["id"] or "/" in student["id"] or student["id"].startswith(".") or "+" in student["id"]:
+            why = 'nbgrader makes a folder of it: no "/", no "+", and no "." at its beginning'
+            message = f'{file}, line {line}: the id is "{student["id"]}"; {why}.'
+            raise UsageError(message)
+    twice = {student["id"] for student in students if [each["id"] for each in students].count(student["id"]) > 1}
+    if twice:
+        message = f"{file}: the id {min(twice)} is there twice."
+        raise UsageError(message)
+    return students

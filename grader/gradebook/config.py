@@ -1,0 +1,85 @@
+"""What course/nbgrader_config.py sets: nbgrader's folders onto ours, and our steps among its own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+CLASS = "class"
+"""The folder of a class, which git ignores: submitted/, autograded/, feedback/, reports/, gradebook.db."""
+COURSE_ID = "ros2-topics"
+BUSY_S = 60
+"""How long the database may be somebody else's before nbgrader gives up."""
+
+
+def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Config, whose sections appear when named
+    """Set nbgrader up for the course in `root`, the folder that holds solutions/ and exercises/."""
+    from nbgrader import preprocessors as steps
+
+    from grader.gradebook.confined import ConfinedExecute
+    from grader.gradebook.feedback import GraderReasons, HideHiddenTests
+    from grader.gradebook.mend import MendCells
+    from grader.gradebook.steps import ReleaseFiles, StripSolutions
+
+    folders = config.CourseDirectory
+    folders.root = str(root)
+    folders.course_id = COURSE_ID
+    folders.source_directory = "solutions"
+    folders.release_directory = "exercises"
+    folders.submitted_directory = f"{CLASS}/submitted"
+    folders.autograded_directory = f"{CLASS}/autograded"
+    folders.feedback_directory = f"{CLASS}/feedback"
+    folders.solution_directory = f"{CLASS}/solution"
+    folders.source_with_tests_directory = f"{CLASS}/source_with_tests"
+    (root / CLASS).mkdir(exist_ok=True)
+    folders.db_url = f"sqlite:///{root / CLASS / 'gradebook.db'}?timeout={BUSY_S}"
+
+    # exercises/ is there already, in git: made again, not left as it is.
+    config.GenerateAssignment.force = True
+    config.GenerateAssignment.preprocessors = [
+        steps.LockCells,
+        StripSolutions,
+        steps.ClearOutput,
+        steps.CheckCellMetadata,
+        steps.ComputeChecksums,
+        steps.SaveCells,
+        steps.ClearHiddenTests,
+        steps.ComputeChecksums,
+        steps.CheckCellMetadata,
+        ReleaseFiles,
+    ]
+    config.Autograde.sanitize_preprocessors = [
+        steps.ClearOutput,
+        MendCells,
+        steps.DeduplicateIds,
+        steps.OverwriteKernelspec,
+        steps.OverwriteCells,
+        steps.CheckCellMetadata,
+    ]
+    config.Autograde.autograde_preprocessors = [
+        ConfinedExecute,
+        steps.IgnorePattern,
+        "nbconvert.preprocessors.ClearMetadataPreprocessor",
+        steps.LimitOutput,
+        steps.SaveAutoGrades,
+        steps.AssignLatePenalties,
+        steps.CheckCellMetadata,
+    ]
+    # Whatever a student edits is graded as the student left it, and what is missing is not filled in by the solution.
+    config.Autograde.exclude_overwriting = {
+        step.name: [path for path in _files(step) if not path.endswith(".ipynb")]
+        for step in sorted((root / "solutions").glob("*"))
+        if step.is_dir()
+    }
+    config.GenerateFeedback.preprocessors = [
+        steps.GetGrades,
+        HideHiddenTests,
+        GraderReasons,
+        "nbconvert.preprocessors.CSSHTMLHeaderPreprocessor",
+    ]
+
+
+def _files(step: Path) -> list[str]:
+    return [str(file.relative_to(step)) for file in sorted(step.rglob("*")) if file.is_file()]

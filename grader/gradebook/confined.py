@@ -1,0 +1,229 @@
+"""Autograde's kernels: each in a cell of its own (sandbox.py), heard over sockets in a folder that both sides see.
+
+A notebook's cells are a student's code. A cell has no network but its own loopback, so the kernel is not reached over
+TCP but over ipc sockets; interrupts go as messages, since a signal would reach bubblewrap and not the kernel.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import signal
+import sys
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jupyter_client.kernelspec import KernelSpec
+from jupyter_client.manager import AsyncKernelManager
+from nbclient.exceptions import DeadKernelError
+from nbgrader.preprocessors import Execute
+from traitlets import Bool, Instance, Unicode
+
+from grader import sandbox, tree, underlay
+from grader.exercise import course_folder
+from grader.notebook.mode import CONFINED
+from grader.ros import environment, find_ros
+from grader.sandbox import HOME, Limits, View, lone_cell, ros_view
+from grader.submission import Submission, write_copy
+from grader.system_calls import call_filter
+from grader.watch import Guard
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+CELL_S = 20
+"""How long a student's own cell may run."""
+CHECK_S = 300
+"""How long a cell of the instructor's may: it builds and runs a package, at wall time if need be."""
+MOST_OUTPUT = 4_000_000
+"""Characters of all outputs together; a notebook that prints more is ended."""
+
+
+class ConfinedKernelManager(AsyncKernelManager):
+    """Starts a kernel in a cell. `submission` is the folder that the kernel gets a copy of."""
+
+    submission = Unicode("")
+    trusted = Bool(default_value=False)
+    _folder = Instance(tempfile.TemporaryDirectory, allow_none=True)
+    _guard: Guard | None = None
+
+    @property
+    def kernel_spec(self) -> KernelSpec:
+        """The course's own, whatever the notebook asks for."""
+        argv = [sys.executable, "-m", "grader.notebook.confined", "{submission}", "-f", "{connection_file}"]
+        return KernelSpec(argv=argv, display_name="", language="python", interrupt_mode="message")
+
+    async def _async_pre_start_kernel(self, **kw: Any) -> Any:  # noqa: ANN401 - as the base class
+        self._folder = tempfile.TemporaryDirectory(prefix="kernel-")
+        sockets = Path(self._folder.name) / "sockets"
+        sockets.mkdir()
+        # Whoever the cell runs as may write there; nobody else gets past the folder around it.
+        sockets.chmod(0o777)
+        self.transport = "ipc"
+        self.connection_file = str(sockets / "kernel.json")
+        self.ip = str(sockets / "socket")
+        return await super()._async_pre_start_kernel(**kw)
+
+    async def _async_launch_kernel(self, kernel_cmd: list[str], **kw: Any) -> None:  # noqa: ANN401 - as the base class
+        confined = sandbox.require(trusted=self.trusted)
+        assert self._folder is not None
+        copy = Path(self._folder.name) / "submission"
+        _copy(Path(self.submission), copy)
+        Path(self.connection_file).chmod(0o644)
+        argv = [word.replace("{submission}", str(copy)) for word in kernel_cmd]
+        env, view = _environment(copy, Path(self.connection_file).parent)
+        kw.pop("cwd", None)
+        kw["env"] = env
+        limits = Limits()
+        with call_filter() as filter_fd:
+            if confined:
+                argv = lone_cell(argv, view, env=env, limits=limits, filter_fd=filter_fd)
+                kw["pass_fds"] = () if filter_fd is None else (filter_fd,)
+            await super()._async_launch_kernel(argv, **kw)
+        pid = self.provisioner.process.pid  # type: ignore[union-attr]
+        self._guard = Guard(pid, limits, lambda _: _kill(pid))
+
+    async def _async_cleanup_resources(self, restart: bool = False) -> None:
+        if self._guard is not None:
+            self._guard.close()
+            self._guard = None
+        await super()._async_cleanup_resources(restart)
+        if self._folder is not None:
+            with suppress(OSError):
+                self._folder.cleanup()
+            self._folder = None
+
+
+class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
+    """Runs a submitted notebook in a cell, to its end whatever becomes of the kernel: what did not run has an error."""
+
+    trust_submissions = Bool(
+        default_value=False,
+        help="Run submitted notebooks without a sandbox where there is none: on a machine that you can lose.",
+    ).tag(config=True)
+
+    def __init__(self, *arguments: Any, **keywords: Any) -> None:  # noqa: ANN401 - as the base class
+        keywords.setdefault("kernel_manager_class", ConfinedKernelManager)
+        super().__init__(*arguments, **keywords)
+        self._ended = ""
+        self._printed = 0
+        self._late = 0
+
+    def preprocess(self, nb: NotebookNode, resources: Any = None, km: Any = None) -> tuple[NotebookNode, Any]:  # noqa: ANN401
+        """Run all cells."""
+        self._ended, self._printed, self._late = "", 0, 0
+        course, about = self.parent.parent.coursedir, resources["nbgrader"]
+        folder = course.format_path(course.submitted_directory, about["student"], about["assignment"])
+        self._submission = folder
+        try:
+            nb, resources = super().preprocess(nb, resources, km)
+        except (DeadKernelError, RuntimeError) as error:
+            # Its start was in the way, or its end.
+            self._ended = self._ended or str(error).partition("\n")[0]
+            self.log.warning("The kernel ended: %s", self._ended)
+            for cell in nb.cells:
+                if cell.cell_type == "code" and not cell.get("outputs") and cell.get("execution_count") is None:
+                    _mark(cell, self._ended)
+        for cell in nb.cells:
+            _honest(cell)
+        return nb, resources
+
+    def create_kernel_manager(self) -> Any:  # noqa: ANN401 - as the base class
+        """The manager of this submission's kernel, whatever the notebook's metadata name."""
+        self.km = ConfinedKernelManager(submission=self._submission, trusted=self.trust_submissions, config=self.config)
+        return self.km
+
+    def preprocess_cell(self, cell: NotebookNode, resources: Any, index: int) -> tuple[NotebookNode, Any]:  # noqa: ANN401
+        """Run one cell, if the kernel is still to be had."""
+        if self._ended:
+            if cell.cell_type == "code":
+                _mark(cell, self._ended)
+            return cell, resources
+        try:
+            return super().preprocess_cell(cell, resources, index)  # type: ignore[no-any-return, unused-ignore]
+        except DeadKernelError:
+            self._ended = self._ended or "The kernel died."
+            if cell.cell_type == "code":
+                _mark(cell, self._ended)
+            return cell, resources
+
+    def on_cell_executed(self, **keywords: Any) -> None:  # noqa: ANN401 - as the base class
+        """Give up a kernel that does not stop when it is interrupted."""
+        super().on_cell_executed(**keywords)
+        timed_out = keywords["execute_reply"]["content"].get("ename") == "CellTimeoutError"
+        self._late = self._late + 1 if timed_out else 0
+        if self._late == 2:
+            self._end("Two cells in a row did not end in time, so the rest was not run.")
+
+    def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> NotebookNode | None:
+        """Take a message of the kernel's, as long as all of them together are not too long."""
+        if msg["msg_type"] in {"stream", "display_data", "execute_result", "error", "update_display_data"}:
+            self._printed += len(str(msg["content"]))
+            if self._printed > MOST_OUTPUT:
+                self._end(f"The notebook printed more than {MOST_OUTPUT // 1_000_000} million characters.")
+                return None
+        return super().process_message(msg, cell, cell_index)  # type: ignore[no-any-return, unused-ignore]
+
+    def _get_timeout(self, cell: NotebookNode | None) -> int | None:
+        locked = cell is not None and cell.get("metadata", {}).get("nbgrader", {}).get("locked")
+        return CHECK_S if locked or cell is None else CELL_S
+
+    def _end(self, why: str) -> None:
+        if not self._ended:
+            self._ended = why
+            _kill(self.km.provisioner.process.pid)  # type: ignore[union-attr]
+
+
+def _mark(cell: NotebookNode, why: str) -> None:
+    from nbformat.v4 import new_output
+
+    cell.outputs = [new_output("error", ename="NotRun", evalue=why, traceback=[why])]  # type: ignore[no-untyped-call]
+
+
+def _honest(cell: NotebookNode) -> None:
+    """See that a cell which is to give its points has given a number that is one: silence would be full marks."""
+    about = cell.get("metadata", {}).get("nbgrader", {})
+    if not about.get("grade") or cell.cell_type != "code" or ".points(" not in cell.source:
+        return
+    results = [output for output in cell.outputs if output.output_type == "execute_result"]
+    failed = any(output.output_type == "error" for output in cell.outputs)
+    try:
+        number = float(results[0]["data"]["text/plain"]) if len(results) == 1 else math.nan
+    except (KeyError, TypeError, ValueError):
+        number = math.nan
+    if not failed and not 0.0 <= number <= float(about["points"]):
+        _mark(cell, "The cell did not give its points.")
+
+
+def _copy(folder: Path, copy: Path) -> None:
+    """What of the submission can be read without trusting it; links that lead out of it are left out."""
+    with tree.open_folder(str(folder)) as descriptor:
+        found = tree.read_tree(descriptor)
+    files = {path: data for path, data in found.files.items() if not path.endswith(".ipynb")}
+    write_copy(Submission("", folder, files, (), "", frozenset(found.executable & files.keys())), copy)
+
+
+def _environment(*folders: Path) -> tuple[dict[str, str], View]:
+    here = find_ros()
+    turtlesim = underlay.ensure(here)
+    course = course_folder()
+    package = Path(__file__).resolve().parent.parent
+    exercises = course.parent / "exercises"
+    seen = [package, course, exercises, *([turtlesim] if turtlesim else []), folders[0]]
+    ros = ros_view(here, *(path for path in seen if path.exists()))
+    # Solutions stand in the grader's tests too, and beside the course where it is installed.
+    hidden = [path for path in ros.hidden if path.name == "solutions"]
+    hidden += [path for path in (package / "tests",) if path.is_dir()]
+    view = View(ros.read_only, tuple(hidden), (folders[1],))
+    env = environment(here, home=HOME, underlay=turtlesim)
+    env |= {CONFINED: "1", "NBGRADER_EXECUTION": "autograde", "IPYTHONDIR": str(HOME / "ipython")}
+    if turtlesim:
+        env["XDG_CACHE_HOME"] = str(turtlesim.parent.parent)
+    return env, view
+
+
+def _kill(pid: int) -> None:
+    with suppress(ProcessLookupError):
+        os.kill(pid, signal.SIGKILL)

@@ -1,0 +1,79 @@
+"""The folders of a class, as the nbgrader_config.py of a course names them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from grader.errors import MachineError, UsageError
+from grader.exercise import catalogue, find_exercise
+from grader.gradebook.config import CLASS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+CONFIG = "nbgrader_config.py"
+RESULTS = "results"
+"""What the grader itself found out, below the folder of the class: see grader/classroom/results.py."""
+HANDED_IN = "handed-in"
+"""Submissions whose package is partly in their notebook, put together; below the folder of the class."""
+
+
+@dataclass(frozen=True)
+class ClassFolders:
+    """A class: nbgrader's course directory, with our folders beside its own."""
+
+    course: Any
+    config: Any
+
+    @property
+    def results(self) -> Path:
+        """The folder of the grader's own results."""
+        return Path(self.course.root) / CLASS / RESULTS
+
+    def submitted(self, student: str, step: str) -> Path:
+        """What a student handed in for a step."""
+        return Path(self.course.format_path(self.course.submitted_directory, student, step))
+
+    def handed_in(self, student: str, step: str) -> Path:
+        """The same, put together with what its notebook writes."""
+        return Path(self.course.root) / CLASS / HANDED_IN / student / step
+
+    def autograded(self, student: str, step: str) -> Path:
+        """The notebook that autograde has run; it may not be there."""
+        return Path(self.course.format_path(self.course.autograded_directory, student, step)) / f"{step}.ipynb"
+
+    def submissions(self, steps: Sequence[str]) -> list[tuple[str, str]]:
+        """(student, step) of all that was collected. Raises UsageError for a step that there is not."""
+        wanted = [find_exercise(step).id for step in steps] or list(catalogue())
+        root = Path(self.course.root) / self.course.submitted_directory
+        students = sorted(
+            folder.name for folder in root.glob("*") if folder.is_dir() and not folder.name.startswith(".")
+        )
+        return [(student, step) for step in wanted for student in students if (root / student / step).is_dir()]
+
+
+def open_class(folder: Path | None) -> ClassFolders:
+    """The class whose nbgrader_config.py is in `folder`; in this one or its course/ when None.
+
+    Raises:
+        UsageError: there is no nbgrader_config.py.
+        MachineError: nbgrader is not installed.
+    """
+    tried = [folder] if folder else [Path(), Path("course")]
+    found = next((each for each in tried if (each / CONFIG).is_file()), None)
+    if found is None:
+        message = (
+            f"There is no {CONFIG} in {folder or Path.cwd()}: go to the course's folder, or name it with --course. "
+            "`grader class new DIR` makes one."
+        )
+        raise UsageError(message)
+    try:
+        from nbgrader.coursedir import CourseDirectory
+        from traitlets.config.loader import PyFileConfigLoader
+    except ImportError as error:
+        message = "nbgrader is not installed here. `make notebooks` brings it."
+        raise MachineError(message) from error
+    config = PyFileConfigLoader(CONFIG, path=str(found.resolve())).load_config()
+    return ClassFolders(CourseDirectory(config=config), config)

@@ -1,0 +1,81 @@
+"""Mend a submitted notebook before it is graded: the instructor's cells as they were, all of them, each with its id.
+
+nbgrader trusts a submission's metadata where it is valid, and gives up where it is not. Here nothing of it counts but
+the id: what a cell is worth and whether it is locked is what the gradebook says, and locked cells that are missing
+come back.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from nbformat.v4 import new_code_cell, new_markdown_cell
+from nbgrader.api import Gradebook
+from nbgrader.preprocessors import NbGraderPreprocessor
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+
+class MendCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
+    """The first step after the outputs were cleared."""
+
+    def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
+        """Mend the notebook, by what generate_assignment has put into the gradebook."""
+        about = resources["nbgrader"]
+        with Gradebook(about["db_url"]) as gradebook:
+            notebook = gradebook.find_notebook(about["notebook"], about["assignment"])
+            points = {cell.name: cell.max_score for cell in notebook.grade_cells}
+            solutions = {cell.name for cell in notebook.solution_cells}
+            known = {
+                cell.name: (_metadata(cell, points.get(cell.name), solution=cell.name in solutions), cell.source)
+                for cell in notebook.source_cells
+            }
+        seen: set[str] = set()
+        cells = []
+        for cell in nb.cells:
+            name = _name(cell)
+            if name is None or name not in known:
+                cell.get("metadata", {}).pop("nbgrader", None)
+                cells.append(cell)
+                continue
+            seen.add(name)
+            metadata, source = known[name]
+            cells.append(_cell(metadata, source if metadata["nbgrader"]["locked"] else cell.source))
+        missing = [
+            _cell(metadata, source)
+            for name, (metadata, source) in known.items()
+            if name not in seen and metadata["nbgrader"]["locked"]
+        ]
+        # What loads the magics comes first, what counts points last.
+        nb.cells = [
+            *(cell for cell in missing if not cell.metadata.nbgrader.grade),
+            *cells,
+            *(cell for cell in missing if cell.metadata.nbgrader.grade),
+        ]
+        return nb, resources
+
+
+def _name(cell: NotebookNode) -> str | None:
+    about = cell.get("metadata", {}).get("nbgrader")
+    name = about.get("grade_id") if isinstance(about, dict) else None
+    return name if isinstance(name, str) else None
+
+
+def _metadata(cell: Any, points: float | None, *, solution: bool) -> dict[str, Any]:  # noqa: ANN401 - nbgrader's SourceCell
+    about = {
+        "cell_type": cell.cell_type,
+        "checksum": cell.checksum,
+        "grade": points is not None,
+        "grade_id": cell.name,
+        "locked": cell.locked,
+        "schema_version": 3,
+        "solution": solution,
+        "task": False,
+    }
+    return {"nbgrader": about if points is None else {**about, "points": points}}
+
+
+def _cell(metadata: dict[str, Any], source: str) -> NotebookNode:
+    make = new_code_cell if metadata["nbgrader"]["cell_type"] == "code" else new_markdown_cell
+    return make(source, metadata=metadata)  # type: ignore[no-untyped-call, no-any-return, unused-ignore]

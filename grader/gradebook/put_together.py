@@ -1,0 +1,76 @@
+"""What is graded of a submission: its package as it was handed in, with what only the notebook holds put in.
+
+A student may have written a node in a cell and never run it, or have handed in nothing but the notebook. The cell's
+text then counts, where the file beside it is missing or still the starting point's. Nothing is run for that, and
+nothing that a kernel wrote under autograde is looked at.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from typing import TYPE_CHECKING
+
+from grader import tree
+from grader.learner.workspace import starting_point
+from grader.notebook.place import Part, counts, ended, parts_of, starting_text
+from grader.package_search import PACKAGE_FILES
+from grader.submission import Submission, write_copy
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from grader.exercise import Exercise
+
+
+def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:
+    """The folder to grade: the submission's own, or `together`, where it is written when its notebook says more.
+
+    Raises:
+        MachineError: it cannot be read, or written.
+    """
+    if together.exists():
+        shutil.rmtree(together)
+    with tree.open_folder(str(submitted)) as descriptor:
+        found = tree.read_tree(descriptor)
+    notebook = found.files.get(f"{exercise.id}.ipynb")
+    parts = _worked_on(exercise, notebook) if notebook else []
+    files = _with(exercise, found.files, parts)
+    if files is None or found.rejected:
+        return submitted
+    together.parent.mkdir(parents=True, exist_ok=True)
+    write_copy(Submission("", submitted, files, (), "", frozenset(found.executable & files.keys())), together)
+    return together
+
+
+def _worked_on(exercise: Exercise, notebook: bytes) -> list[Part]:
+    """The files that the notebook's cells write, but those that still hold the starting point."""
+    try:
+        cells = json.loads(notebook)["cells"]
+        sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return []
+    return [part for part in parts_of(sources, exercise) if part.text != _start(exercise, part.path)]
+
+
+def _start(exercise: Exercise, path: str) -> str | None:
+    text = starting_text(exercise, path)
+    return None if text is None else ended(text)
+
+
+def _with(exercise: Exercise, files: Mapping[str, bytes], parts: list[Part]) -> dict[str, bytes] | None:
+    """The files with those parts that count; None where the submission is whole without them."""
+    whole = {path: data for path, data in files.items() if not path.endswith(".ipynb")}
+    if parts and exercise.package and not any(path.rpartition("/")[2] in PACKAGE_FILES for path in whole):
+        with tree.open_folder(str(starting_point(exercise))) as descriptor:
+            start = tree.read_tree(descriptor).files
+        whole = {path: data for path, data in start.items() if not path.endswith(".ipynb")} | whole
+    counted = [part for part in parts if counts(_text(whole.get(part.path)), _start(exercise, part.path)) == "cell"]
+    if not counted:
+        return None
+    return whole | {part.path: part.text.encode() for part in counted}
+
+
+def _text(data: bytes | None) -> str | None:
+    return None if data is None else data.decode("utf-8", "replace")

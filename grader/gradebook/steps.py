@@ -1,0 +1,44 @@
+"""Our steps of `nbgrader generate_assignment`: the starting point instead of "YOUR CODE HERE", and stripped files.
+
+Both fail loudly, and nbgrader then removes what it has made so far: a solution must not slip through.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nbgrader import utils
+from nbgrader.preprocessors import NbGraderPreprocessor
+
+from grader.notebook.released import solved_away
+from grader.release import release
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+Resources = dict[str, Any]
+
+
+class StripSolutions(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
+    """ClearSolutions with starting points: what stands in a BEGIN STARTER block takes the solution's place."""
+
+    def preprocess_cell(
+        self, cell: NotebookNode, resources: Resources, cell_index: int
+    ) -> tuple[NotebookNode, Resources]:
+        """Strip one cell. Raises UsageError for markers that are amiss."""
+        name = f"{resources['nbgrader']['notebook']}.ipynb, cell {cell_index + 1}"
+        cell.source = solved_away(cell.source, cell.cell_type, solution=utils.is_solution(cell), name=name)
+        return cell, resources
+
+
+class ReleaseFiles(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
+    """Strips the step's other files, which nbgrader has copied as they are."""
+
+    def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
+        """Make the release folder what `grader release` makes it; nbgrader writes the notebook after that."""
+        course = self.parent.parent.coursedir
+        step = resources["nbgrader"]["assignment"]
+        source = Path(course.format_path(course.source_directory, ".", step)).resolve()
+        release(source, Path(course.format_path(course.release_directory, ".", step)).resolve())
+        return nb, resources
