@@ -37,7 +37,7 @@ class Hooks:
     `on_command(topic, data, twist)`: a command as it arrived, before it moves the turtle.
     `on_publish(topic, type, data)`: a pose or colour as it is sent.
     `on_intervention(name)`: somebody called a service or an action ("spawn", "rotate_absolute") or set a parameter
-    ("set_parameters").
+    ("set_background" for the colours alone, else "set_parameters").
     """
 
     on_command: Callable[[str, bytes, Any], object]

@@ -189,8 +189,10 @@ class TurtlesimNode(Node):
         return ours
 
     def _parameters_set(self, changed: Iterable[Parameter]) -> None:
-        self._hooks.on_intervention("set_parameters")
-        self._take_parameters(changed)
+        given = list(changed)
+        colours = all(parameter.name in parameters.CHANNELS for parameter in given)
+        self._hooks.on_intervention("set_background" if colours else "set_parameters")
+        self._take_parameters(given)
 
     def _take_parameters(self, changed: Iterable[Parameter]) -> None:
         background = list(self.world.canvas.background)

@@ -315,12 +315,14 @@ def hooks() -> dict[str, Any]:
         rig.call(TeleportRelative, "/turtle1/teleport_relative")
         rig.call(Kill, "/kill", name="t")
         rig.goal(0.0, [])
-        value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=True)
-        rig.call(
-            SetParametersAtomically,
-            "/turtlesim/set_parameters_atomically",
-            parameters=[Parameter(name="holonomic", value=value)],
-        )
+        red = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=200)
+        holonomic = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=True)
+        for name, value in (("background_r", red), ("holonomic", holonomic)):
+            rig.call(
+                SetParametersAtomically,
+                "/turtlesim/set_parameters_atomically",
+                parameters=[Parameter(name=name, value=value)],
+            )
         rig.call(Empty, "/reset")
         topic, data, heard = commands[0]
         return {

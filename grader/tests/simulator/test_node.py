@@ -173,6 +173,7 @@ def test_a_trial_is_told_what_the_node_hears_and_says(in_ros: InRos) -> None:
         "teleport_relative",
         "kill",
         "rotate_absolute",
+        "set_background",
         "set_parameters",
         "reset",
     ]
