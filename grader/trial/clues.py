@@ -24,6 +24,8 @@ _MODULES = {
     "multiprocessing",
     "concurrent",
     "sched",
+    "select",
+    "selectors",
     "signal",
 }
 _NAMES = {
@@ -38,6 +40,8 @@ _NAMES = {
     # Whoever leaves out what was typed behind the node's name leaves out use_sim_time.
     "use_global_arguments",
 }
+_CLOCKS = {"Clock", "ROSClock"}
+"""What is made by itself, not taken from the node, never hears /clock."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
 """What nodes of several threads need, and nobody can wait in for a time."""
 
@@ -74,6 +78,10 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
             yield Clue(modules[node.id], path, node.lineno)
         elif isinstance(node, ast.Call) and _has_own_arguments(node):
             yield Clue("a list of arguments for rclpy.init", path, node.lineno)
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in _CLOCKS:
+            yield Clue("a clock of its own", path, node.lineno)
+        elif isinstance(node, ast.Constant) and node.value == "use_sim_time":
+            yield Clue("use_sim_time", path, node.lineno)
 
 
 def _is_timeless(node: ast.Attribute, modules: Mapping[str, str]) -> bool:

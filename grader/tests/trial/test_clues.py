@@ -41,6 +41,9 @@ def test_a_node_with_a_timer_gives_no_clue() -> None:
         ("Node('draw_circle', use_global_arguments=False)", "use_global_arguments"),
         ("rclpy.init(args=['--ros-args'])", "a list of arguments for rclpy.init"),
         ("rclpy.init([])", "a list of arguments for rclpy.init"),
+        ("now = rclpy.clock.Clock().now()", "a clock of its own"),
+        ("Parameter('use_sim_time', value=False)", "use_sim_time"),
+        ("from select import select\nselect([], [], [], 0.5)", "select.select"),
     ],
 )
 def test_what_follows_wall_time_is_found(line: str, name: str) -> None:
@@ -59,6 +62,7 @@ def test_a_module_that_is_imported_and_not_used_is_no_clue() -> None:
         "rclpy.init(args=args)",
         "rclpy.init(args=sys.argv)",
         "self.init([1, 2])",
+        "now = self.get_clock().now()",
     ],
 )
 def test_what_only_looks_like_it_is_no_clue(source: str) -> None:
