@@ -18,7 +18,7 @@ class DrawCircle(Node):
         now = self.get_clock().now()
         if now < self.due:
             return
-        self.due = self.due + HALF_A_SECOND
+        self.due = now + HALF_A_SECOND
         self.get_logger().debug(f'at {pose.x:.1f} {pose.y:.1f}')
         self.drive()
 
