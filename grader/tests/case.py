@@ -55,6 +55,8 @@ class Case:
     """Belongs to the sample that `make test` runs."""
     clock: str = ""
     """The clock that must judge under `--clock auto`; empty for any."""
+    wall_varies: str = ""
+    """Why it does not behave the same twice in wall time, so that the clocks are not compared; empty for nearly all."""
     points: float | None = None
     failed: tuple[str, ...] = ()
     skipped: tuple[str, ...] = ()

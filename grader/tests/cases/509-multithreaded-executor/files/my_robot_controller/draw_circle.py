@@ -3,7 +3,6 @@ from geometry_msgs.msg import Twist
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
-from turtlesim.msg import Pose
 
 
 class DrawCircleNode(Node):
@@ -11,23 +10,19 @@ class DrawCircleNode(Node):
         super().__init__("draw_circle")
         group = ReentrantCallbackGroup()
         self.pub = self.create_publisher(Twist, "turtle1/cmd_vel", 10)
-        self.pose = None
-        self.sub = self.create_subscription(Pose, "turtle1/pose", self.on_pose, 10, callback_group=group)
+        self.sent = 0
         self.timer = self.create_timer(0.5, self.send, callback_group=group)
         self.logging = self.create_timer(1.0, self.log, callback_group=group)
-
-    def on_pose(self, msg):
-        self.pose = msg
 
     def send(self):
         msg = Twist()
         msg.linear.x = 2.0
         msg.angular.z = 1.0
         self.pub.publish(msg)
+        self.sent += 1
 
     def log(self):
-        if self.pose is not None:
-            self.get_logger().info(f"x={self.pose.x:.2f} y={self.pose.y:.2f}")
+        self.get_logger().info(f"{self.sent} commands so far")
 
 
 def main(args=None):
