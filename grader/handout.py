@@ -3,39 +3,41 @@
 from __future__ import annotations
 
 import shutil
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from grader.errors import MachineError, UsageError
 from grader.exercise import catalogue, course_folder, find_exercise
 from grader.release import release
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
 _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore")
-_NOT_FOR_STUDENTS = shutil.ignore_patterns("tests", "benchmarks", "__pycache__", "*.pyc")
+_NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc")
+_IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
+"""What an installed wheel has within the package, and a checkout beside it (see hatch_build.py)."""
 
 
 def hand_out(to: Path) -> None:
     """Write the students' repository into the new folder `to`.
 
     Raises:
-        UsageError: the folder holds something already, or this is no checkout of the course.
+        UsageError: the folder holds something already, or this copy of the course has no solutions itself.
         MachineError: it cannot be written.
     """
     root = course_folder().parent
     if to.exists() and (not to.is_dir() or any(to.iterdir())):
         message = f"{to} is not an empty folder: name a new one."
         raise UsageError(message)
-    if not (root / "solutions").is_dir() or not (root / "Makefile").is_file():
-        message = f"The course is handed out from a checkout with solutions/; {root} is none."
+    if not (root / "solutions").is_dir():
+        message = f"The course is handed out from its solutions/, and {root} has none."
         raise UsageError(message)
+    package = Path(__file__).parent
+    files = package / "repository" if (package / "repository").is_dir() else root
+    skipped = shutil.ignore_patterns(*_NOT_FOR_STUDENTS, *_IN_A_WHEEL)
     try:
         to.mkdir(parents=True, exist_ok=True)
         for name in _FILES:
-            shutil.copy2(root / name, to / name)
-        shutil.copytree(root / "course", to / "course", ignore=_NOT_FOR_STUDENTS)
-        shutil.copytree(root / "grader", to / "grader", ignore=_NOT_FOR_STUDENTS)
+            shutil.copyfile(files / name, to / name)
+        shutil.copytree(root / "course", to / "course", ignore=shutil.ignore_patterns(*_NOT_FOR_STUDENTS))
+        shutil.copytree(package, to / "grader", ignore=skipped)
         for name in catalogue():
             release(root / "solutions" / name, to / "exercises" / name)
         (to / "README.md").write_text(_readme(), encoding="utf-8")

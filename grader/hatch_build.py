@@ -1,10 +1,14 @@
-"""What a wheel holds beside the package: the course, which in a checkout lies beside it."""
+"""What a wheel holds beside the package: the course, and what a repository of it needs, which lie beside it here."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+_FOLDERS = ("course", "exercises", "solutions")
+_FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore")
 
 
 class CourseHook(BuildHookInterface):  # type: ignore[type-arg]
@@ -13,4 +17,7 @@ class CourseHook(BuildHookInterface):  # type: ignore[type-arg]
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Add the folders, called by hatchling before it builds."""
         if version == "standard":
-            build_data["force_include"] |= {name: f"grader/{name}" for name in ("course", "exercises", "solutions")}
+            # (An instructor's copy for students has no solutions.)
+            there = [name for name in _FOLDERS if Path(self.root, name).is_dir()]
+            build_data["force_include"] |= {name: f"grader/{name}" for name in there}
+            build_data["force_include"] |= {name: f"grader/repository/{name}" for name in _FILES}

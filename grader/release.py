@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 from grader import tree
 from grader.errors import GraderError, UsageError
-from grader.exercise import FILE_NAME, load_exercise
+from grader.exercise import FILE_NAME, course_folder, load_exercise
 from grader.markers import MEANT, stripped, syntax_of
 from grader.notebook.released import released_notebook
 from grader.notebook.source import refreshed
@@ -165,9 +165,10 @@ def main(arguments: list[str] | None = None) -> int:
     """The author's command; exit code 1 when --check finds something stale."""
     parser = argparse.ArgumentParser(prog="python -m grader.release", description="Make exercises/ from solutions/.")
     parser.add_argument("--check", action="store_true", help="change nothing; fail when exercises/ is stale")
-    parser.add_argument("--root", type=Path, default=Path(__file__).parent.parent, help="the folder that holds both")
+    parser.add_argument("--root", type=Path, help="the folder that holds both; the course's own when left out")
     options = parser.parse_args(arguments)
-    solutions, exercises = options.root / "solutions", options.root / "exercises"
+    root = options.root or course_folder().parent
+    solutions, exercises = root / "solutions", root / "exercises"
     try:
         if options.check:
             lines = stale(solutions, exercises)
