@@ -22,7 +22,7 @@ from grader.view.hub import Hub
 from grader.view.server import application
 from grader.view.state import State
 from grader.view.system import Ears
-from grader.view.topics import rows
+from grader.view.topics import VIEWS, rows
 
 if TYPE_CHECKING:
     import socket
@@ -69,7 +69,7 @@ class Page:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             loop.add_signal_handler(number, self._ended.set)
         with (
-            cli_node(f"_view_{os.getpid()}") as node,
+            cli_node(f"{VIEWS[1:]}{os.getpid()}") as node,
             Ears(node, lambda system: _in(loop, self._look, system), lambda: list(self._state.rates)) as ears,
         ):
             self._ears = ears

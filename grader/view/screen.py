@@ -146,5 +146,5 @@ def _topics(system: System | None, state: State) -> list[Text]:
 
 
 def _names(names: object) -> str:
-    assert isinstance(names, tuple)
+    assert isinstance(names, list)
     return ", ".join(map(printable, names)) or "nobody"

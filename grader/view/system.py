@@ -168,7 +168,7 @@ class _Counter:
 
     def look(self, node: Node, now: float) -> None:
         """Subscribe if it is time to, and rest from a flood."""
-        flood = self._count > MOST_HZ * (now - self._looked_s)
+        flood = self._count > MOST_HZ * max(now - self._looked_s, LOOKED_EVERY_S)
         self._count, self._looked_s = 0, now
         if flood:
             self.close(node)
@@ -178,7 +178,7 @@ class _Counter:
             self._subscription = node.create_subscription(self._class, self._topic, self._arrived, _COUNTING, raw=True)
 
     def hertz(self, now: float) -> float | None:
-        """What was counted; the most that is counted where it was more."""
+        """What was counted; MOST_HZ where it was more."""
         return MOST_HZ if now < self._spared_until_s else self._arrivals.hertz(now)
 
     def close(self, node: Node) -> None:

@@ -26,6 +26,7 @@ from grader.view.hands import ARROWS, Hands
 from grader.view.screen import Screen, side_for
 from grader.view.state import State
 from grader.view.system import Ears, System
+from grader.view.topics import VIEWS
 
 if TYPE_CHECKING:
     import socket
@@ -124,7 +125,7 @@ def watch(feed: socket.socket, said: int) -> int:
 
     try:
         with (
-            cli_node(f"_view_{os.getpid()}") as node,
+            cli_node(f"{VIEWS[1:]}{os.getpid()}") as node,
             Ears(node, look, lambda: list(shown.state.rates)) as ears,
             keyboard() as read,
             Live(

@@ -1,5 +1,8 @@
 // The table of topics: who speaks, who hears, how often.
 
+// What is not counted any more.
+const MOST_HZ = 500;
+
 function cell(name, ...parts) {
   const made = document.createElement(name);
   made.append(...parts);
@@ -23,7 +26,7 @@ export class Topics {
     this.body.replaceChildren(...topics.map(({ name, types, publishers, subscribers, hertz }) => {
       const title = cell("th", cell("span", name), " ", cell("small", types.join(", ")));
       title.scope = "row";
-      const rate = cell("td", hertz === null ? "–" : `${hertz} Hz`);
+      const rate = cell("td", hertz === null ? "–" : hertz < MOST_HZ ? `${hertz} Hz` : `over ${MOST_HZ} Hz`);
       rate.className = "rate";
       const row = cell("tr", title, rate, names(publishers), names(subscribers));
       row.dataset.topic = name;

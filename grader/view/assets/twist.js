@@ -6,17 +6,17 @@ const LASTS_S = 1;
 const LONGEST = 62;
 
 function head(x, y, degrees, kind) {
-  return element("path", { d: "M0 0l-13-7v14z", class: kind, transform: `translate(${x} ${y}) rotate(${degrees})` });
+  return element("path", { d: "M0 0l-19-11v22z", class: kind, transform: `translate(${x} ${y}) rotate(${degrees})` });
 }
 
-// Seen from above, the turtle looks upwards: x is up, y to the left. The length tells the speed, 2 m/s are half of it.
+// Seen from above, the turtle looks upwards: x is up, y to the left. The length tells the speed, 1 m/s is half of it.
 function linear(x, y) {
   const speed = Math.hypot(x, y);
   if (!(speed > 0)) return element("circle", { r: 4, class: "linear none" });
-  const length = 14 + (LONGEST - 14) * speed / (speed + 2);
+  const length = 20 + (LONGEST - 20) * speed / (speed + 1);
   const [toX, toY] = [-y / speed * length, -x / speed * length];
   return element("g", {},
-    element("path", { d: `M0 0L${toX * 0.86} ${toY * 0.86}`, class: "linear line" }),
+    element("path", { d: `M0 0L${toX * (1 - 14 / length)} ${toY * (1 - 14 / length)}`, class: "linear line" }),
     head(toX, toY, Math.atan2(toY, toX) * 180 / Math.PI, "linear"));
 }
 
@@ -27,7 +27,7 @@ function angular(z) {
   const side = z > 0 ? -1 : 1;
   const at = (angle) => [side * radius * Math.sin(angle), -radius * Math.cos(angle)];
   const [x, y] = at(sweep);
-  const [lineX, lineY] = at(sweep - 0.18);
+  const [lineX, lineY] = at(sweep - 0.3);
   const large = sweep > Math.PI ? 1 : 0;
   return element("g", {},
     element("path", { d: `M0 ${-radius}A${radius} ${radius} 0 ${large} ${side > 0 ? 1 : 0} ${lineX} ${lineY}`,

@@ -1,0 +1,146 @@
+"""From the simulator to its view over a real socket; also when nobody reads at the other end."""
+
+from __future__ import annotations
+
+import json
+import math
+import socket
+from contextlib import suppress
+from types import SimpleNamespace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.simulator.turtle import FRAME_S, Start
+from grader.simulator.world import World
+from grader.view.feed import LARGEST, MOST_LINES, Feed
+from grader.view.state import State
+from grader.view.trail import place
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+MIDDLE = Start(5.0, 5.0, 0.0)
+
+
+class Simulator:
+    """A world with its feed, and what arrives at the other end."""
+
+    def __init__(self) -> None:
+        ours, self.view = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.view.settimeout(0.0)
+        self.feed = Feed(ours)
+        self.world = World(MIDDLE, self.feed.canvas)
+        self.frames = 0
+
+    def run(self, frames: int, *, paused: bool = False) -> None:
+        for _ in range(frames):
+            self.world.step(self.frames * FRAME_S)
+            self.frames += 1
+            self.feed.show(self.world.turtles, paused=paused)
+
+    def told(self) -> list[dict[str, object]]:
+        """All that can be read now."""
+        messages = []
+        with suppress(BlockingIOError):
+            while True:
+                messages.append(json.loads(self.view.recv(LARGEST)))
+        return messages
+
+
+@pytest.fixture
+def simulator() -> Iterator[Simulator]:
+    made = Simulator()
+    yield made
+    made.feed.channel.close()
+    made.view.close()
+
+
+def twist(linear_x: float, angular_z: float) -> SimpleNamespace:
+    zero = {"x": 0.0, "y": 0.0, "z": 0.0}
+    return SimpleNamespace(
+        linear=SimpleNamespace(**{**zero, "x": linear_x}), angular=SimpleNamespace(**{**zero, "z": angular_z})
+    )
+
+
+def test_every_second_frame_is_told_while_the_turtle_moves(simulator: Simulator) -> None:
+    simulator.world.command("turtle1", 2.0, 0.0, 1.0)
+    simulator.run(20)
+    assert len(simulator.told()) == 10
+
+
+def test_the_view_knows_what_the_simulator_knows(simulator: Simulator) -> None:
+    simulator.world.command("turtle1", 2.0, 0.0, 1.0)
+    simulator.feed.on_command("/turtle1/cmd_vel", b"", twist(2.0, 1.0))
+    simulator.run(40)
+    state = State()
+    for message in simulator.told():
+        state.take(message)
+    turtle = simulator.world.turtles["turtle1"]
+    assert state.turtles["turtle1"][:5] == pytest.approx(turtle.state()[:5])
+    (stroke,) = state.trail.strokes
+    assert (stroke.points[0], stroke.points[-1]) == (place(5.0, 5.0), place(turtle.x, turtle.y))
+    assert state.commands["/turtle1/cmd_vel"].twist == (2.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+
+def test_a_turtle_at_rest_costs_no_messages(simulator: Simulator) -> None:
+    simulator.run(2)
+    simulator.told()
+    simulator.feed._told_s = math.inf  # so that the time does not matter
+    simulator.run(40)
+    assert simulator.told() == []
+
+
+def test_a_view_that_does_not_read_stops_nobody_and_gets_a_picture(simulator: Simulator) -> None:
+    # So many that the socket is full long before.
+    frames = 0
+    while len(simulator.feed.canvas.lines) <= MOST_LINES + 100:
+        simulator.world.command("turtle1", 1.0, 0.0, 1.5)
+        simulator.run(50)
+        frames += 50
+        assert frames < 100_000
+    messages = simulator.told()
+    simulator.run(2)
+    messages += simulator.told()
+    state = State()
+    for message in messages:
+        state.take(message)
+    assert messages[-1]["picture"]
+    assert len(simulator.feed.canvas.lines) == 0
+    painted, real = state.trail.painted(500), simulator.feed.canvas.trail()
+    assert painted.getbbox() == real.getbbox()
+
+
+def test_a_cleared_canvas_is_cleared_in_the_view(simulator: Simulator) -> None:
+    simulator.world.command("turtle1", 1.0, 0.0, 0.0)
+    simulator.run(10)
+    simulator.world.canvas.clear()
+    simulator.run(4)
+    state = State()
+    news = [state.take(message) for message in simulator.told()]
+    assert any("trail" in each for each in news[1:])
+    begin = place(5.0 + 10 * 0.016, 5.0)
+    assert [stroke.points[0] for stroke in state.trail.strokes] == [begin]
+
+
+def test_a_position_that_is_no_number_is_told_as_none(simulator: Simulator) -> None:
+    simulator.world.command("turtle1", math.nan, 0.0, 0.0)
+    simulator.run(2)
+    state = State()
+    (message,) = simulator.told()
+    news = state.take(message)
+    turtles = news["turtles"]
+    assert isinstance(turtles, dict)
+    assert turtles["turtle1"][0] is None
+    json.dumps(news, allow_nan=False)
+
+
+def test_commands_are_heard_by_the_view_until_it_is_gone(simulator: Simulator) -> None:
+    simulator.view.send(b'"pause"')
+    simulator.view.send(b'"clear"')
+    assert simulator.feed.asked() == ["pause", "clear"]
+    simulator.view.close()
+    with pytest.raises(ConnectionError):
+        simulator.feed.asked()
+    # And what is told to nobody is no error.
+    simulator.run(4)

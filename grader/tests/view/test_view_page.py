@@ -1,0 +1,366 @@
+"""The page as a learner has it: turtlesim_node --view on the real ROS 2, in the system's Chromium."""
+
+from __future__ import annotations
+
+import io
+import re
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+from PIL import Image
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+
+from grader.tests.browser import browser_or_reason, launched, violations
+from grader.tests.ros2.world import HANG_S, SOLUTION, World, world
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from playwright.sync_api import Browser, Page
+
+    from grader.tests.ros2.world import Running
+
+VIEW = "ros2 run turtlesim turtlesim_node --view"
+PEN = (179, 184, 255)
+FEW = 60
+"""Pixels at the turtle's edge are of nearly that colour."""
+DRAW_CIRCLE = f"python3 {SOLUTION}/my_robot_controller/draw_circle.py"
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with launched(browser_or_reason()) as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    """A world with nothing in it but turtlesim and its view."""
+    for made in world(tmp_path_factory.mktemp("view")):
+        made.start(VIEW, "Spawning turtle")
+        yield made
+
+
+def address(of: World) -> str:
+    """What the last turtlesim that was started has printed."""
+    started = of.running[-1] if len(of.running) == 1 else next(each for each in reversed(of.running) if url(each))
+    return url(started)
+
+
+def url(running: Running) -> str:
+    found = re.search(r"http://\S+", "\n".join(running.lines))
+    return found[0] if found else ""
+
+
+@pytest.fixture
+def page(browser: Browser, system: World) -> Iterator[Page]:
+    """The page of a canvas that is clean."""
+    tab = opened(browser, address(system))
+    tab.get_by_role("button", name="Reset").click()
+    tab.get_by_text("turtle1: x 5.54 m, y 5.54 m, heading 0.00 rad").wait_for()
+    yield tab
+    tab.close()
+
+
+def opened(browser: Browser, url: str) -> Page:
+    tab = browser.new_page(viewport={"width": 1280, "height": 900})
+    tab.set_default_timeout(HANG_S * 1000)
+    tab.goto(url)
+    tab.get_by_role("status").get_by_text("Live").wait_for()
+    return tab
+
+
+def until(there: Callable[[], bool]) -> None:
+    """Wait for something to be seen."""
+    deadline = time.monotonic() + HANG_S
+    while not there():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+
+def drawn(page: Page) -> int:
+    """How many pixels of the canvas have the pen's colour, as they are seen."""
+    picture = Image.open(io.BytesIO(page.locator("#sea").screenshot())).convert("RGB")
+    return sum(
+        count
+        for count, color in picture.getcolors(maxcolors=1 << 24) or []
+        if isinstance(color, tuple) and all(abs(a - b) < 12 for a, b in zip(color, PEN, strict=True))
+    )
+
+
+def turtle(page: Page, name: str = "turtle1") -> str:
+    """Where it is drawn."""
+    return page.locator(f'.turtle[data-name="{name}"]').get_attribute("transform") or ""
+
+
+# --- what is seen -----------------------------------------------------------------------------------------------------
+
+
+def test_the_turtle_is_seen_to_move_and_the_graph_shows_who_moves_it(page: Page, system: World) -> None:
+    before = turtle(page)
+    assert drawn(page) < FEW
+    node = system.start(DRAW_CIRCLE, "Draw")
+    until(lambda: drawn(page) > 400)
+    assert turtle(page) != before
+    for begin, end in (("/draw_circle", "/turtle1/cmd_vel"), ("/turtle1/cmd_vel", "/turtlesim")):
+        page.locator(f'.arrow.flows[data-from="{begin}"][data-to="{end}"]').wait_for()
+    row = page.locator('[data-topic="/turtle1/cmd_vel"]')
+    row.get_by_text("geometry_msgs/msg/Twist").wait_for()
+    assert row.locator("td").nth(1).inner_text() == "/draw_circle"
+    assert row.locator("td").nth(2).inner_text() == "/turtlesim"
+    page.locator('[data-topic="/turtle1/cmd_vel"] .rate', has_text=re.compile(r"^(1\.\d+|2|2\.\d+) Hz$")).wait_for()
+    page.locator('[data-topic="/turtle1/pose"] .rate', has_text=re.compile(r"^[3-6]\d(\.\d)? Hz$")).wait_for()
+    page.get_by_role("img", name="Linear: linear.x 2.00 m/s").wait_for()
+    page.get_by_role("img", name="Angular: angular.z 1.00 rad/s").wait_for()
+    node.stop()
+    page.locator('.node[data-name="/draw_circle"]').wait_for(state="detached")
+
+
+def test_several_turtles_their_pens_and_the_background_are_seen(page: Page, system: World) -> None:
+    system.run("ros2 service call /spawn turtlesim/srv/Spawn '{x: 2.0, y: 2.0, theta: 1.5, name: leo}'")
+    page.locator('.turtle[data-name="leo"]').wait_for()
+    pen = system.run("ros2 service call /leo/set_pen turtlesim/srv/SetPen '{r: 179, g: 184, b: 255, width: 9}'")
+    assert pen.code == 0
+    system.run("ros2 service call /leo/teleport_absolute turtlesim/srv/TeleportAbsolute '{x: 9.0, y: 2.0}'")
+    until(lambda: drawn(page) > 2000)
+    system.run("ros2 param set /turtlesim background_r 150")
+    page.wait_for_function("getComputedStyle(document.getElementById('sea')).backgroundColor === 'rgb(150, 86, 255)'")
+    assert page.get_by_label("Keys drive").locator("option").all_inner_texts() == ["leo", "turtle1"]
+    system.run("ros2 param set /turtlesim background_r 69")
+    system.run("ros2 service call /kill turtlesim/srv/Kill '{name: leo}'")
+    page.locator('.turtle[data-name="leo"]').wait_for(state="detached")
+
+
+def test_a_page_that_is_opened_late_sees_what_was_drawn_before(page: Page, browser: Browser, system: World) -> None:
+    system.run("ros2 service call /turtle1/teleport_absolute turtlesim/srv/TeleportAbsolute '{x: 1.0, y: 9.0}'")
+    until(lambda: drawn(page) > 400)
+    late = opened(browser, address(system))
+    assert drawn(late) == pytest.approx(drawn(page), rel=0.05)
+    late.close()
+
+
+# --- what is pressed --------------------------------------------------------------------------------------------------
+
+STANDS = "0.0,0.0,0.0,0.0,0.0,0.0"
+
+
+def test_keys_drive_while_they_are_held(page: Page, system: World) -> None:
+    echo = system.start("ros2 topic echo /turtle1/cmd_vel --csv")
+    page.keyboard.down("ArrowUp")
+    # More than a second's, after which turtlesim would stop by itself.
+    echo.wait_for("2.0,0.0,0.0,0.0,0.0,0.0", times=12)
+    page.keyboard.down("ArrowLeft")
+    echo.wait_for("2.0,0.0,0.0,0.0,0.0,2.0")
+    page.locator('.node[data-name="/view_keys"]').wait_for()
+    page.keyboard.up("ArrowUp")
+    echo.wait_for("0.0,0.0,0.0,0.0,0.0,2.0", times=2)
+    page.keyboard.up("ArrowLeft")
+    echo.wait_for(STANDS)
+    assert echo.lines[-1] == STANDS
+    assert drawn(page) > 100
+    echo.stop()
+
+
+def test_a_tab_that_is_closed_lets_go_and_its_node_leaves(page: Page, browser: Browser, system: World) -> None:
+    echo = system.start("ros2 topic echo /turtle1/cmd_vel --csv")
+    other = opened(browser, address(system))
+    other.keyboard.down("ArrowRight")
+    echo.wait_for("0.0,0.0,0.0,0.0,0.0,-2.0", times=3)
+    page.locator('.node[data-name="/view_keys"]').wait_for()
+    other.close()
+    echo.wait_for(STANDS)
+    page.locator('.node[data-name="/view_keys"]').wait_for(state="detached")
+    echo.stop()
+
+
+def test_a_page_that_hangs_lets_go(page: Page, system: World) -> None:
+    echo = system.start("ros2 topic echo /turtle1/cmd_vel --csv")
+    page.keyboard.down("ArrowDown")
+    echo.wait_for("-2.0,0.0,0.0,0.0,0.0,0.0", times=3)
+    # Nothing of the page runs meanwhile.
+    page.evaluate("() => { const until = performance.now() + 1500; while (performance.now() < until); }")
+    echo.wait_for(STANDS)
+    page.keyboard.up("ArrowDown")
+    echo.stop()
+
+
+def test_letters_turn_the_turtle(page: Page) -> None:
+    page.keyboard.press("t")
+    page.get_by_text(re.compile(r"heading 0\.7[5-9] rad")).wait_for()
+    page.keyboard.press("f")
+    page.get_by_label("D: to the left").click()
+    page.get_by_text(re.compile(r"heading (-3|3)\.1\d rad")).wait_for()
+
+
+def test_pause_stops_the_time_clear_wipes_and_reset_begins_anew(page: Page, system: World) -> None:
+    poses = system.start("ros2 topic echo /turtle1/pose --csv")
+    node = system.start(DRAW_CIRCLE, "Draw")
+    until(lambda: drawn(page) > 200)
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_role("status").get_by_text("Paused").wait_for()
+    stands, seen = turtle(page), len(poses.lines)
+    # As many commands as would have moved it.
+    page.locator('[data-topic="/turtle1/pose"] .rate', has_text=re.compile("^\u2013$")).wait_for()
+    assert turtle(page) == stands
+    assert len(poses.lines) - seen < 20
+    page.get_by_role("button", name="Clear").click()
+    until(lambda: drawn(page) < FEW)
+    page.get_by_role("button", name="Go on").click()
+    page.get_by_role("status").get_by_text("Live").wait_for()
+    until(lambda: turtle(page) != stands)
+    node.stop()
+    poses.stop()
+    page.get_by_role("button", name="Reset").click()
+    page.get_by_text("turtle1: x 5.54 m, y 5.54 m, heading 0.00 rad").wait_for()
+
+
+# --- sleep and restart ------------------------------------------------------------------------------------------------
+
+SLEEP = """state => {
+    Object.defineProperty(document, "visibilityState", { value: state, configurable: true });
+    document.dispatchEvent(new Event("visibilitychange"));
+}"""
+
+
+def test_a_tab_that_slept_catches_up_at_once(page: Page, browser: Browser, system: World) -> None:
+    asleep = opened(browser, address(system))
+    asleep.evaluate(
+        "() => { window.told = 0; const parse = JSON.parse; JSON.parse = text => { told++; return parse(text); } }"
+    )
+    asleep.evaluate(SLEEP, "hidden")
+    until(lambda: _quiet(asleep))
+    before = asleep.evaluate("told")
+    node = system.start(DRAW_CIRCLE, "Draw")
+    until(lambda: drawn(page) > 1000)
+    node.stop()
+    assert asleep.evaluate("told") == before
+    assert turtle(asleep) != turtle(page)
+    asleep.evaluate(SLEEP, "visible")
+    until(lambda: turtle(asleep) == turtle(page))
+    assert drawn(asleep) == pytest.approx(drawn(page), rel=0.05)
+    # Not what it missed, message by message.
+    assert asleep.evaluate("told") - before < 40
+    asleep.close()
+
+
+def _quiet(tab: Page) -> bool:
+    before = tab.evaluate("told")
+    tab.wait_for_timeout(600)
+    return bool(tab.evaluate("told") == before)
+
+
+def test_a_simulator_that_was_started_again_is_found_by_the_same_tab(
+    browser: Browser, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    for made in world(tmp_path_factory.mktemp("again")):
+        first = made.start(VIEW, "Spawning turtle")
+        tab = opened(browser, url(first))
+        assert first.stop() == 0
+        tab.get_by_role("status").get_by_text("Not running").wait_for()
+        second = made.start(VIEW, "Spawning turtle")
+        tab.get_by_role("status").get_by_text("Live").wait_for()
+        assert url(second) == url(first)
+        moved = made.run(
+            "ros2 service call /turtle1/teleport_absolute turtlesim/srv/TeleportAbsolute '{x: 1.0, y: 9.0}'"
+        )
+        assert moved.code == 0
+        tab.get_by_text("turtle1: x 1.00 m, y 9.00 m").wait_for()
+        tab.close()
+
+
+# --- who may not come in ----------------------------------------------------------------------------------------------
+
+
+def live(of: World) -> tuple[str, str, str]:
+    """The server's host and port, the token, and the address of the connection that reads and drives."""
+    host, _, token = address(of).removeprefix("http://").partition("/#")
+    return host, token, f"ws://{host}/live?token={token}"
+
+
+def test_with_the_right_host_origin_and_token_one_comes_in(system: World) -> None:
+    host, _, way = live(system)
+    with connect(way, origin=f"http://{host}") as link:  # type: ignore[arg-type]
+        assert '"kind":"all"' in str(link.recv())
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"origin": "http://evil.example"},
+        {"origin": "http://localhost:1"},
+        {"origin": None},
+        {"additional_headers": {"Host": "evil.example"}, "origin": "http://evil.example"},
+        {"token": "x" * 22},
+        {"token": ""},
+    ],
+    ids=["foreign origin", "other port", "no origin", "rebound name", "wrong token", "no token"],
+)
+def test_who_has_not_all_three_is_refused(system: World, wrong: dict[str, object]) -> None:
+    host, token, way = live(system)
+    asked = {"origin": f"http://{host}", **wrong}
+    way = way.replace(token, str(asked.pop("token", token)))
+    with pytest.raises(InvalidStatus) as refused, connect(way, **asked):  # type: ignore[arg-type]
+        pass
+    assert refused.value.response.status_code == 403
+
+
+def test_a_foreign_page_can_neither_read_nor_drive(browser: Browser, system: World) -> None:
+    host, _, way = live(system)
+    tab = browser.new_page()
+    tab.route("http://evil.example/", lambda route: route.fulfill(body="<p>evil</p>", content_type="text/html"))
+    tab.goto("http://evil.example/")
+    opens = """way => new Promise(resolve => {
+        const link = new WebSocket(way);
+        link.onopen = () => resolve("open");
+        link.onerror = () => resolve("refused");
+    })"""
+    assert tab.evaluate(opens, way) == "refused"
+    reads = "address => fetch(address).then(answer => answer.text(), () => 'refused')"
+    assert tab.evaluate(reads, f"http://{host}/") == "refused"
+    framed = """address => new Promise(resolve => {
+        const frame = document.createElement("iframe");
+        frame.onload = () => resolve(frame.contentDocument === null ? "sealed" : "open");
+        frame.src = address;
+        document.body.append(frame);
+    })"""
+    assert tab.evaluate(framed, f"http://{host}/") == "sealed"
+    tab.close()
+
+
+def test_a_page_with_a_wrong_token_says_what_to_do(browser: Browser, system: World) -> None:
+    tab = browser.new_page()
+    tab.goto(address(system)[:-3] + "xyz")
+    tab.get_by_text("This address is not that of the simulator that runs.").wait_for()
+    tab.close()
+
+
+# --- for everybody ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing(page: Page, system: World, scheme: str) -> None:
+    page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    system.run(
+        "ros2 topic pub --once /turtle1/cmd_vel geometry_msgs/msg/Twist '{linear: {x: 1.0}, angular: {z: -1.0}}'"
+    )
+    page.get_by_role("img", name="Angular: angular.z -1.00 rad/s").wait_for()
+    assert violations(page) == []
+    page.set_viewport_size({"width": 360, "height": 700})
+    assert violations(page) == []
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_nothing_goes_wrong_in_the_tab_and_nothing_is_asked_of_others(browser: Browser, system: World) -> None:
+    said: list[str] = []
+    tab = browser.new_page()
+    tab.on("pageerror", lambda error: said.append(str(error)))
+    tab.on("console", lambda message: said.append(message.text))
+    tab.on("requestfailed", lambda request: said.append(request.url))
+    host, _, _ = live(system)
+    tab.on("request", lambda request: said.append(request.url) if f"//{host}/" not in request.url else None)
+    tab.goto(address(system))
+    tab.locator(".graph .node").first.wait_for()
+    assert said == []
+    tab.close()
