@@ -16,12 +16,12 @@ from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from contextlib import AbstractContextManager
 
     from grader.checks.evidence import Evidence
     from grader.exercise import Exercise
     from grader.outcome import Report
+    from grader.report.progress import Progress
     from grader.submission import Submission
 
 app = typer.Typer(
@@ -81,6 +81,7 @@ def check(
     """Build and run one submission, and say what is right and what is not."""
     from grader import archive, sandbox
     from grader.grade import Options, grade
+    from grader.report.terminal import early
 
     for file in (json, image, html):
         _writable(file)
@@ -94,7 +95,7 @@ def check(
     asked, opened = _opened(exercise, submission)
     options = Options(in_cell=sandbox.require() if confined else sandbox.usable(), clock=clock.value, seed=seed)
     with _progress() as tell:
-        graded = grade(asked, opened, options, tell)
+        graded = grade(asked, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)))
         if recording:
             archive.save(recording, graded.evidence, graded.report.ros, graded.prefixes)
     from grader.learner import steps
@@ -327,7 +328,7 @@ def _show(report: Report, evidence: Evidence, json: Path | None, image: Path | N
     raise typer.Exit(report.exit_code)
 
 
-def _progress() -> AbstractContextManager[Callable[[str], None]]:
+def _progress() -> AbstractContextManager[Progress]:
     from grader.report.progress import progress
 
     return progress()

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import grader
 from grader import underlay, workspace
 from grader.checks.evidence import Evidence, Fault
-from grader.checks.judge import judge, near_edge, of_this_trial, wants_trial
+from grader.checks.judge import judge, judge_early, near_edge, of_this_trial, wants_trial
 from grader.errors import MachineError
 from grader.outcome import Report, Status
 from grader.ros import find_ros
@@ -24,7 +24,7 @@ from grader.turns import folder as turns_folder
 from grader.words import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     from grader.checks.kind import Stage
@@ -67,17 +67,18 @@ def grade(
     options: Options,
     tell: Callable[[str], None] = lambda _: None,
     *,
+    early: Callable[[Sequence[Outcome]], object] = lambda _: None,
     build: Callable[..., workspace.Built] = workspace.build,
     trial: Callable[..., Trial] = Trial,
 ) -> Graded:
-    """Grade a submission; `tell` hears in a few words what is being done.
+    """Grade a submission; `tell` hears in a few words what is being done, `early` what failed for certain before that.
 
     A fault of the machine becomes outcomes of status `error`, never an exception. `build` and `trial` stand in for
     what they are named after: `grader watch` has builds and trials that it began before.
     """
     turns = Turns(turns_folder())
     with turns.shared():
-        return _Grading(exercise, submission, options, tell, build, trial, turns).run()
+        return _Grading(exercise, submission, options, tell, early, build, trial, turns).run()
 
 
 def report_of(evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float]) -> Report:
@@ -105,6 +106,7 @@ class _Grading:
     submission: Submission
     options: Options
     tell: Callable[[str], None]
+    early: Callable[[Sequence[Outcome]], object]
     builder: Callable[..., workspace.Built]
     trials: Callable[..., Trial]
     turns: Turns
@@ -118,6 +120,9 @@ class _Grading:
         ros_name = "none"
         prefixes: tuple[Path, ...] = ()
         stage: Stage = "build"
+        with self._timed("files"):
+            certain = judge_early(evidence)
+        self.early(certain.failed)
         try:
             here = find_ros()
             ros_name = here.name
@@ -129,11 +134,14 @@ class _Grading:
                 evidence = self._simulator_alone(evidence, here, extra)
             else:
                 clock, why = self._first_clock(evidence)
-                with self._trial(clock, here, extra) as trial:
+                # Simulator and launcher start beside the build; not for a node that cannot run.
+                with self._trial(clock, here, extra) if certain.may_run(evidence) else nullcontext() as trial:
                     evidence = self._build(evidence, here, extra)
                     stage = "trial"
                     if wants_trial(evidence):
-                        evidence = self._try_twice(evidence, trial, clock, why, here, extra)
+                        ready = trial or self._trial(clock, here, extra)
+                        with ready:
+                            evidence = self._try_twice(evidence, ready, clock, why, here, extra)
                 evidence = self._further_trials(evidence, here, extra)
         except MachineError as error:
             evidence = dataclasses.replace(evidence, fault=Fault(stage, str(error)))

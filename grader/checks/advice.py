@@ -16,6 +16,8 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
     timers = evidence.code.calls("create_timer")
     if timers:
         return passed("A timer gives the rhythm.")
+    if evidence.code.node_file is None:
+        return Finding(Status.SKIPPED, "Not judged, since it is not known yet which file is the node's.")
     if evidence.code.node_file not in {module.file for module in evidence.code.modules if module.tree is not None}:
         return Finding(Status.SKIPPED, "Not judged, since the node's file cannot be read.")
     cause = "In a loop of its own a node hears nothing from other nodes; a timer leaves the waiting to rclpy.spin."

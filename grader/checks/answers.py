@@ -107,7 +107,7 @@ def answer_graph(evidence: Evidence, params: Asked) -> Finding:
     answer = str(given)
     if answer in truth:
         return passed(f"{shorten(answer)} is right.")
-    return _wrong(evidence, params.answer, answer, *_why(answer, params.find, truth))
+    return _wrong(evidence, params.answer, answer, *_why(answer, params.find, truth, _all(evidence.trial, params.find)))
 
 
 def _ask(recording: Recording, params: Asked) -> tuple[str, ...]:
@@ -117,6 +117,11 @@ def _ask(recording: Recording, params: Asked) -> tuple[str, ...]:
         other = {(end.topic, end.type) for end in both if end.kind != params.among}
         endpoints = [end for end in endpoints if (end.topic, end.type) in other]
     return tuple(sorted({getattr(end, params.find) for end in endpoints}))
+
+
+def _all(recording: Recording, find: str) -> set[str]:
+    """All that the graph has of what is asked for."""
+    return {getattr(end, find) for graph in recording.graphs for end in graph.endpoints}
 
 
 def _counts(end: Endpoint, params: Asked) -> bool:
@@ -129,7 +134,7 @@ def _counts(end: Endpoint, params: Asked) -> bool:
     )
 
 
-def _why(answer: str, find: str, truth: Collection[str]) -> tuple[str, str]:
+def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]) -> tuple[str, str]:
     if find in ("topic", "node") and f"/{answer}" in truth:
         return "no-slash", f"The full name of a {find} begins with a slash."
     if find == "type" and any(each.replace("/msg/", "/") == answer for each in truth):
@@ -138,6 +143,8 @@ def _why(answer: str, find: str, truth: Collection[str]) -> tuple[str, str]:
         return "type-without-package", "A type's full name begins with its package, as in std_msgs/msg/String."
     if any(each.lower() == answer.lower() for each in truth):
         return "capitals", "Capital and small letters differ."
+    if answer in others:
+        return "answer-another", f"There is such a {find}, but it is not the one that is asked for."
     return "wrong-answer", KEEP_LOOKING
 
 
@@ -198,7 +205,8 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
     told = " and ".join(part for part in parts if part)
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
     seen = f"{name} is {_shown(given)}: {told}."
-    return failed("wrong-list", seen, "All that belong there, and no others.", cause.strip(), where=where)
+    diagnosis = "wrong-list" if extra and missing else "list-too-long" if extra else "list-incomplete"
+    return failed(diagnosis, seen, "All that belong there, and no others.", cause.strip(), where=where)
 
 
 def _wrong(evidence: Evidence, name: str, given: Answer, diagnosis: str, cause: str) -> Finding:

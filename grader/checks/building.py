@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 from grader.checks.code import import_path
 from grader.checks.crash import read_tracebacks
 from grader.checks.kind import Kind, NoParams
+from grader.checks.syntax import why_unreadable
 from grader.outcome import Finding, Where, failed, passed
 from grader.words import a_list, shorten
 
 if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
+    from grader.checks.setup_py import EntryPoint
 
 INSTALLED_MODULE = re.compile(r"(?:local/)?lib/python[\d.]+/(?:site|dist)-packages/(?P<path>.+\.py)")
 LAST_WORDS = re.compile(r"^(?:error|[\w.]*Error|[\w.]*Exception)\b.*", re.MULTILINE)
@@ -37,33 +39,60 @@ def plain_files(evidence: Evidence, _: NoParams) -> Finding:
 def builds(evidence: Evidence, _: NoParams) -> Finding:
     """The package builds with colcon, which installs its Python modules."""
     build = evidence.built
-    setup = evidence.setup_py
-    if setup is None:
-        cause = "colcon builds an ament_python package by running its setup.py."
-        return failed("setup-py-missing", "There is no setup.py beside package.xml.", EXPECTED, cause)
-    if setup.unreadable is not None:
-        seen = f"Python cannot read setup.py: {shorten(setup.unreadable.message, 120)}."
-        return failed("setup-py-syntax", seen, EXPECTED, where=Where("setup.py", setup.unreadable.line))
+    known = early(evidence, _)
+    if known is not None:
+        return known
     if build.timed_out:
         cause = "setup.py should only call setup(): it must not wait, ask or loop."
         return failed(
-            "build-timeout", f"`colcon build` was still running after {build.seconds:.0f} s.", EXPECTED, cause
+            "build-timeout",
+            f"`colcon build` was still running after {build.seconds:.0f} s.",
+            EXPECTED,
+            cause,
+            where=Where("setup.py", _setup_line(evidence)),
         )
     if build.out_of is not None:
         seen = f"`colcon build` used up the {shorten(build.out_of, 40)} that a package may use."
-        return failed("build-limit", seen, EXPECTED, "setup.py should only call setup().")
+        return failed("build-limit", seen, EXPECTED, "setup.py should only call setup().", where=Where("setup.py"))
     if build.exit_code != 0:
         return _broken(evidence)
     return _modules(evidence)
+
+
+def early(evidence: Evidence, _: NoParams) -> Finding | None:
+    """What keeps the package from being built, whatever colcon says: a setup.py that is not there, or not Python."""
+    setup = evidence.setup_py
+    if setup is None:
+        cause = "colcon builds an ament_python package by running its setup.py."
+        where = Where("package.xml") if "package.xml" in evidence.submission.files else None
+        return failed("setup-py-missing", "There is no setup.py beside package.xml.", EXPECTED, cause, where=where)
+    if setup.unreadable is None:
+        return None
+    why = why_unreadable(setup.unreadable, evidence.submission.files["setup.py"])
+    seen = f"Python cannot read setup.py: {shorten(setup.unreadable.message, 120)}."
+    return failed("setup-py-syntax", seen, EXPECTED, why.text, where=Where("setup.py", setup.unreadable.line))
+
+
+def bad_entry_point(point: EntryPoint) -> Finding:
+    """A failed finding about a text in console_scripts that is of no form that setuptools knows."""
+    seen = f'setuptools cannot read the entry point "{shorten(point.text)}".'
+    expected = "An entry point reads NAME = PACKAGE.MODULE:FUNCTION."
+    diagnosis, cause = "entry-point-format", "Compare it sign by sign: = and : each stand once."
+    if point.text.count("=") > 1:
+        diagnosis, cause = "entry-point-comma", "A comma is missing between two texts, so Python joins them to one."
+    elif "/" in point.text:
+        diagnosis, cause = "entry-point-slash", "This is a file's path; a module has points between folder and file."
+    elif ":" not in point.text:
+        cause = "It names no function: after the module come a colon and the function's name."
+        diagnosis = "entry-point-no-function"
+    return failed(diagnosis, seen, expected, cause, where=Where("setup.py", point.line))
 
 
 def _broken(evidence: Evidence) -> Finding:
     build, setup = evidence.built, evidence.setup_py
     bad = next((point for point in (setup.entry_points if setup else None) or () if point.target is None), None)
     if bad is not None:
-        seen = f'setuptools cannot read the entry point "{shorten(bad.text)}".'
-        expected = "An entry point reads NAME = PACKAGE.MODULE:FUNCTION."
-        return failed("entry-point-format", seen, expected, where=Where("setup.py", bad.line))
+        return bad_entry_point(bad)
     log = SETUP_PY_FRAME.sub(r'\g<before>"setup.py"', build.log)
     crashes = [crash for _, crash in read_tracebacks(log, evidence.submission.files) if crash.where is not None]
     if crashes:
@@ -79,7 +108,7 @@ def _broken(evidence: Evidence) -> Finding:
     if words and NO_FILE.search(words[-1]):
         cause = "setup.py names a file in data_files that the package does not have."
         return failed("data-file-missing", f"`colcon build` failed{said}.", EXPECTED, cause, where=where)
-    return failed("build-failed", f"`colcon build` failed{said}.", EXPECTED)
+    return failed("build-failed", f"`colcon build` failed{said}.", EXPECTED, where=where)
 
 
 def _modules(evidence: Evidence) -> Finding:
@@ -140,5 +169,5 @@ def _package_name(evidence: Evidence) -> str:
 
 
 PLAIN_FILES = Kind("plain_files", "source", "The package is plain files", NoParams, plain_files)
-BUILDS = Kind("builds", "build", "colcon builds the package", NoParams, builds)
+BUILDS = Kind("builds", "build", "colcon builds the package", NoParams, builds, early=early)
 INSTALLS = Kind("installs", "build", "The package can be found once it is installed", NoParams, installs)

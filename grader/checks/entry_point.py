@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import ast
-import re
 from typing import TYPE_CHECKING
 
 from grader.checks.building import INSTALLED_MODULE, is_linked
-from grader.checks.code import import_path, module_file, read_code, read_module
+from grader.checks.code import import_path, module_file, read_module
+from grader.checks.constants import dotted
 from grader.checks.kind import Kind, NoParams
+from grader.checks.no_entry_point import FORM, line, no_entry_point
+from grader.checks.syntax import unreadable_finding
 from grader.outcome import Finding, Where, failed, passed
 from grader.words import nearest, shorten
 
@@ -18,9 +20,6 @@ if TYPE_CHECKING:
     from grader.checks.code import Module
     from grader.checks.evidence import Evidence
 
-FORM = "An entry point reads NAME = PACKAGE.MODULE:FUNCTION, in the list console_scripts of setup.py"
-NOT_UTF8 = re.compile(r"codec can't decode|unicode error|[Nn]on-UTF-8|encoding")
-"""What Python says of a file whose bytes are not the text that they should be."""
 DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
 """Expressions whose value nobody can call."""
 
@@ -30,7 +29,7 @@ def entry_point(evidence: Evidence, _: NoParams) -> Finding:
     executable, build = evidence.exercise.executable, evidence.built
     target = build.entry_points.get(executable)
     if target is None:
-        return _missing(evidence)
+        return no_entry_point(evidence)
     if executable not in build.executables:
         folder = f"lib/{build.package or evidence.exercise.package}"
         seen = f"{executable} was not installed into the package's own folder, {folder}."
@@ -46,57 +45,6 @@ def entry_point(evidence: Evidence, _: NoParams) -> Finding:
     return _resolve(evidence, module.strip(), attribute.split("[")[0].strip())
 
 
-def _line(evidence: Evidence) -> Where:
-    """The line of setup.py with the exercise's entry point, else with the call of setup()."""
-    setup = evidence.setup_py
-    point = setup.entry_point(evidence.exercise.executable) if setup is not None else None
-    return Where("setup.py", point.line if point is not None else setup.setup_line if setup is not None else None)
-
-
-def _missing(evidence: Evidence) -> Finding:
-    """No executable of that name was installed; look at what is there instead."""
-    executable, setup = evidence.exercise.executable, evidence.setup_py
-    expected = f"{FORM}; NAME is {executable}."
-    others = sorted(set(evidence.built.entry_points) | set(evidence.built.executables))
-    points = (setup.entry_points if setup is not None else None) or ()
-    joined = next((point for point in points if point.text.count("=") > 1), None)
-    if joined is not None:
-        cause = "A comma is missing between two entry points, so Python joins the two texts."
-        return failed(
-            "entry-point-comma",
-            f'An entry point reads "{shorten(joined.text, 90)}".',
-            expected,
-            cause,
-            where=Where("setup.py", joined.line),
-        )
-    guess = nearest(executable, others)
-    if guess is not None and guess != executable:
-        where = next((Where("setup.py", point.line) for point in points if point.name == guess), _line(evidence))
-        return failed(
-            "entry-point-name",
-            f"There is no executable {executable}; there is {shorten(guess)}.",
-            expected,
-            where=where,
-        )
-    seen = f"The package has no executable {executable}."
-    if setup is not None and setup.groups and "console_scripts" not in setup.groups:
-        cause = f'entry_points has the group "{shorten(setup.groups[0])}"; executables come from console_scripts.'
-        return failed("entry-point-group", seen, expected, cause, where=_line(evidence))
-    file = evidence.node_file or _looks_like_a_node(evidence, [point.target for point in points])
-    if file is not None:
-        cause = f"{shorten(file)} is there, but setup.py does not name it: a file alone is no executable."
-        return failed("entry-point-missing", seen, expected, cause, where=_line(evidence))
-    return failed("entry-point-missing", seen, expected, where=_line(evidence))
-
-
-def _looks_like_a_node(evidence: Evidence, targets: list[str | None]) -> str | None:
-    """A file that makes a publisher, and that no entry point leads to."""
-    taken = [module_file((target or "").partition(":")[0], evidence.submission.files) for target in targets]
-    everything = read_code(evidence.submission.files, first=None)
-    files = [call.module.file for call in everything.calls("create_publisher")]
-    return next((file for file in files if file not in taken), None)
-
-
 def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
     files = evidence.submission.files
     file = module_file(module_name, files)
@@ -110,18 +58,13 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
             seen,
             f"The entry point {evidence.exercise.executable} needs it.",
             cause,
-            where=_line(evidence),
+            where=line(evidence),
         )
     module = read_module(file, files[file])
     if module.tree is None and module.unreadable is None:
         return passed(f"The entry point {evidence.exercise.executable} leads to {file}.")
     if module.unreadable is not None:
-        where = Where(file, module.unreadable.line)
-        seen = f"Python cannot read {file}: {shorten(module.unreadable.message, 120)}."
-        if NOT_UTF8.search(module.unreadable.message):
-            return failed("not-utf8", seen, "A file saved as UTF-8.", "Say UTF-8 when you save it.", where=where)
-        cause = "Often the fault is at the end of the line before: a bracket, a colon, the indentation."
-        return failed("syntax-error", seen, "A file that Python can read.", cause, where=where)
+        return unreadable_finding(file, module.unreadable, files[file])
     return _attribute(evidence, module, attribute)
 
 
@@ -132,13 +75,17 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
     modules = [
         import_path(path)[: -len(".py")].replace("/", ".") for path in files if path.endswith(".py") and "/" in path
     ]
+    expected = "A module is named by its folder and file, as in FOLDER.FILE."
     if module_name.endswith(".py"):
         cause = "A module is named without the ending .py."
+        return failed("entry-point-py", seen, expected, cause, where=line(evidence))
+    if module_name in evidence.exercise.package or "." not in module_name:
+        guess = None
+        cause = "The folder comes first, then a point, then the file without its .py."
     else:
         guess = nearest(module_name, modules)
-        cause = f"There is a module {shorten(guess)}." if guess else ""
-    expected = "A module is named by its folder and file, as in FOLDER.FILE."
-    return failed("entry-point-module", seen, expected, cause, where=_line(evidence))
+        cause = f"There is a module {shorten(guess)}." if guess else "Compare it with the names of your files."
+    return failed("entry-point-module", seen, expected, cause, where=line(evidence))
 
 
 def _is_installed(evidence: Evidence, file: str) -> bool:
@@ -154,21 +101,11 @@ def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
     if not name:
         seen = f"The entry point {executable} leads to {module.file}, and names no function in it."
         return failed(
-            "entry-point-function", seen, f"{FORM}.", "The part with the colon is missing.", where=_line(evidence)
+            "entry-point-function", seen, f"{FORM}.", "The part with the colon is missing.", where=line(evidence)
         )
     bound = list(_bindings(module, name))
     if not bound:
-        defined = [node.name for node in module.nodes if isinstance(node, ast.FunctionDef) and node.col_offset == 0]
-        guess = nearest(name, defined)
-        seen = f"The entry point {executable} leads to the function {shorten(name)}, which {module.file} does not have."
-        cause = (
-            f"It has {shorten(guess)}."
-            if guess
-            else "A function inside of a class does not count: look at its indentation."
-        )
-        return failed(
-            "entry-point-function", seen, "A function at the top level of the file.", cause, where=_line(evidence)
-        )
+        return _no_function(evidence, module, name)
     last = bound[-1]
     if isinstance(last, ast.Assign | ast.AnnAssign) and isinstance(last.value, DATA):
         seen = f"The entry point {executable} leads to {shorten(name)}, which is no function."
@@ -176,6 +113,47 @@ def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
             "entry-point-not-callable", seen, "A function, made with def.", where=Where(module.file, last.lineno)
         )
     return passed(f"The entry point {executable} leads to {shorten(name)} in {module.file}.")
+
+
+def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
+    executable = evidence.exercise.executable
+    if not module.nodes[1:]:
+        expected = f"It has the function {shorten(name)}, which the entry point leads to."
+        where = Where(module.file)
+        return failed("empty-file", f"{module.file} has no code in it.", expected, "Is it saved?", where=where)
+    seen = f"The entry point {executable} leads to the function {shorten(name)}, which {module.file} does not have."
+    expected = "A function at the top level of the file."
+    functions = [node for node in module.nodes if isinstance(node, ast.FunctionDef)]
+    at_top = next((node for node in module.nodes if isinstance(node, ast.Call) and _is_top_level(module, node)), None)
+    if at_top is not None and not any(node.name == name for node in functions):
+        cause = "The program stands at the top level of the file: it belongs into a function of that name."
+        return failed("top-level-code", seen, expected, cause, where=Where(module.file, at_top.lineno))
+    inside = next((node for node in functions if node.name == name and node.col_offset), None)
+    if inside is not None:
+        cause = f"{name} is indented, and so belongs to the class above it: move it to the left edge."
+        return failed("main-in-class", seen, expected, cause, where=Where(module.file, inside.lineno))
+    guess = nearest(name, [node.name for node in functions if node.col_offset == 0])
+    cause = f"It has {shorten(guess)}." if guess else "Nothing at the left edge of the file has that name."
+    return failed("entry-point-function", seen, expected, cause, where=line(evidence))
+
+
+def _is_top_level(module: Module, call: ast.Call) -> bool:
+    """Whether the call is rclpy.init or rclpy.spin, outside of every function."""
+    top = [
+        node
+        for node in (module.tree.body if module.tree is not None else [])
+        if isinstance(node, ast.Expr | ast.Assign)
+    ]
+    return dotted(call.func) in ("rclpy.init", "rclpy.spin") and any(call in ast.walk(node) for node in top)
+
+
+def early(evidence: Evidence, _: NoParams) -> Finding | None:
+    """A module that Python cannot read: no build makes it run."""
+    setup, files = evidence.setup_py, evidence.submission.files
+    point = setup.entry_point(evidence.exercise.executable) if setup is not None else None
+    file = module_file(point.target.partition(":")[0], files) if point is not None and point.target else None
+    unreadable = read_module(file, files[file]).unreadable if file is not None else None
+    return None if file is None or unreadable is None else unreadable_finding(file, unreadable, files[file])
 
 
 def _bindings(module: Module, name: str) -> Iterator[ast.stmt]:
@@ -203,4 +181,4 @@ def _binds(node: ast.stmt, name: str) -> bool:
     return isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and node.target.id == name
 
 
-ENTRY_POINT = Kind("entry_point", "build", "The entry point leads to a function", NoParams, entry_point)
+ENTRY_POINT = Kind("entry_point", "build", "The entry point leads to a function", NoParams, entry_point, early=early)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.kind import STAGES
@@ -34,6 +35,38 @@ def judge(evidence: Evidence) -> tuple[Outcome, ...]:
         if finding.status is not Status.PASSED and not KINDS[spec.kind].advice:
             causes[spec.id] = cause or spec
     return tuple(_outcome(spec, findings[spec.id]) for spec in evidence.exercise.checks)
+
+
+@dataclass(frozen=True)
+class Early:
+    """What is certain before anything of a submission has run: outcomes that failed, ids that cannot pass any more."""
+
+    failed: tuple[Outcome, ...]
+    blocked: frozenset[str]
+
+    def may_run(self, evidence: Evidence) -> bool:
+        """Whether the trial may still be wanted: some check of it is not blocked."""
+        specs = evidence.exercise.checks
+        return any(_of_this_trial(evidence, spec) and spec.id not in self.blocked for spec in specs)
+
+
+def judge_early(evidence: Evidence) -> Early:
+    """Judge what the files alone tell: nothing is built, no process starts."""
+    failed_: list[Outcome] = []
+    blocked: set[str] = set()
+    for spec in _in_order(evidence.exercise.checks):
+        kind = KINDS[spec.kind]
+        if any(need in blocked for need in spec.needs):
+            blocked.add(spec.id)
+            continue
+        try:
+            finding = kind.judge_early(evidence.in_trial(spec.trial), spec.params)
+        except Exception:  # (it is judged once more in the end, and told then)
+            continue
+        if finding is not None and finding.status is Status.FAILED and not kind.advice:
+            blocked.add(spec.id)
+            failed_.append(_outcome(spec, finding))
+    return Early(tuple(failed_), frozenset(blocked))
 
 
 def wants_trial(evidence: Evidence) -> bool:

@@ -57,6 +57,8 @@ class Kind(Generic[P]):
     params: type[P]
     check: Callable[[Evidence, P], Finding]
     advice: bool = False
+    early: Callable[[Evidence, P], Finding | None] | None = None
+    """What the files alone tell of a check that needs more: a failed finding that stands whatever comes, else None."""
 
     def parameters(self) -> dict[str, Allowed]:
         """Every parameter's name with what it may be."""
@@ -69,6 +71,12 @@ class Kind(Generic[P]):
     def judge(self, evidence: Evidence, values: Mapping[str, Value]) -> Finding:
         """What the check finds with these parameter values (as read from exercise.toml, defaults filled in)."""
         return self.check(evidence, self.params(**values))
+
+    def judge_early(self, evidence: Evidence, values: Mapping[str, Value]) -> Finding | None:
+        """What is certain before anything of the submission's has run."""
+        if self.stage == "source":
+            return self.judge(evidence, values)
+        return self.early(evidence, self.params(**values)) if self.early is not None else None
 
 
 def number(

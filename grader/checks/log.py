@@ -12,7 +12,8 @@ from grader.checks.arrivals import measure_arrivals
 from grader.checks.crash import crash_of, end_seen, ended_early
 from grader.checks.kind import Kind, number, text
 from grader.checks.rate import Rate, Subject, rate_of
-from grader.checks.timers import timer_fault
+from grader.checks.why_crashed import crash_finding
+from grader.checks.why_silent import why_nothing, why_qos
 from grader.outcome import Finding, failed, passed
 from grader.words import number as shown
 from grader.words import shorten
@@ -39,8 +40,12 @@ def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
         return passed(f'The log has lines such as "{example}".')
     crash = crash_of(evidence)
     if crash is not None:
-        return failed("crash", end_seen(evidence), expected, crash.meaning, where=crash.where)
+        return crash_finding(evidence, crash, end_seen(evidence), expected)
     said = [line.text for line in lines.students(evidence.trial)]
+    qos = why_qos(evidence)
+    if qos is not None:
+        seen = "No message reached the subscription, and no line came."
+        return failed(qos.diagnosis, seen, expected, qos.text, where=qos.where)
     if said:
         return _other_format(evidence, params, said, expected)
     pattern = lines.Format(params.format).pattern()
@@ -53,15 +58,13 @@ def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
 
 def _silent(evidence: Evidence, expected: str) -> Finding:
     seen = f"The node logged nothing. {end_seen(evidence)}".rstrip()
-    fault = timer_fault(evidence)
-    if fault is not None:
-        return failed(fault.diagnosis, seen, expected, fault.cause, where=fault.where)
     code = evidence.code
     if not any(code.calls(level) for level in LEVELS):
         cause = "get_logger().info(...) is called nowhere."
         return failed("no-log", seen, expected, cause, where=code.start)
-    if not any(code.calls(name) for name in ("spin", "spin_once", "spin_until_future_complete")):
-        return failed("no-spin", seen, expected, "Without rclpy.spin no timer is ever called.", where=code.start)
+    why = why_nothing(evidence, LEVELS)
+    if why is not None:
+        return failed(why.diagnosis, seen, expected, why.text, where=why.where)
     cause = "create_timer is called nowhere." if not code.calls("create_timer") else "The line is never reached."
     return failed("never-logs", seen, expected, cause, where=evidence.place(*LEVELS))
 
@@ -69,17 +72,17 @@ def _silent(evidence: Evidence, expected: str) -> Finding:
 def _other_format(evidence: Evidence, params: LogFormat, said: list[str], expected: str) -> Finding:
     line = said[-1]
     seen = f'The log says "{shorten(line, 90)}".'
-    cause = "Compare it letter by letter: capitals, blanks and points count."
+    diagnosis, cause = "log-format", "Compare it letter by letter: capitals, blanks and points count."
     pattern = lines.Format(params.format).pattern()
     if re.fullmatch(pattern.pattern, line, re.IGNORECASE | re.ASCII):
-        cause = "Capital and small letters differ."
+        diagnosis, cause = "log-capitals", "Capital and small letters differ."
     elif re.search(rf"{pattern.pattern}(?!\.?\d)", line, re.ASCII):  # (not a number of which a part fits)
-        cause = "There is more on the line than what is asked for."
+        diagnosis, cause = "log-more", "There is more on the line than what is asked for."
     elif _same_words(line, params.format):
-        cause = "The words are right; the numbers have another form, or are missing."
+        diagnosis, cause = "log-numbers", "The words are right; the numbers have another form, or are missing."
         if ":." in params.format:
             cause += " In an f-string {value:.2f} writes two digits behind the point."
-    return failed("log-format", seen, expected, cause, where=evidence.place(*LEVELS))
+    return failed(diagnosis, seen, expected, cause, where=evidence.place(*LEVELS))
 
 
 def _same_words(line: str, format_: str) -> bool:

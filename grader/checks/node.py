@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from grader.checks import seen as seen_in
 from grader.checks.crash import crash_of
 from grader.checks.kind import Kind, NoParams
+from grader.checks.why_crashed import crash_finding
+from grader.checks.why_ended import why_ended, why_no_node
 from grader.outcome import Finding, failed, passed
 from grader.words import a_list, nearest, shorten
 
@@ -23,13 +25,10 @@ def starts(evidence: Evidence, _: NoParams) -> Finding:
     if end.by == "itself" and end.t_s <= 0.0:
         crash = crash_of(evidence)
         if crash is not None:
-            return failed(
-                "crash", f"{executable} crashed at its start: {crash.seen}.", expected, crash.meaning, where=crash.where
-            )
-        cause = "" if evidence.code.calls("spin") else "rclpy.spin keeps a node running; it is called nowhere."
-        return failed(
-            "ends-at-once", f"{executable} ended by itself at its start.", expected, cause, where=evidence.place("init")
-        )
+            return crash_finding(evidence, crash, f"{executable} crashed at its start: {crash.seen}.", expected)
+        why = why_ended(evidence)
+        seen = f"{executable} ended by itself at its start."
+        return failed(why.diagnosis, seen, expected, why.text, where=why.where)
     if not seen_in.nodes(recording):
         return _no_node(evidence)
     return passed("The node starts.")
@@ -41,11 +40,9 @@ def _no_node(evidence: Evidence) -> Finding:
     expected = "The program makes a node, and spins it."
     if crash is not None:
         seen = f"{evidence.exercise.executable} crashed before it had made a node: {crash.seen}."
-        return failed("crash", seen, expected, crash.meaning, where=crash.where)
-    if not evidence.code.calls("init"):
-        return failed("no-init", seen, expected, "rclpy.init is called nowhere.", where=evidence.code.start)
-    cause = "Something before it waits or loops for ever, or the class of the node is never called."
-    return failed("no-node", seen, expected, cause, where=evidence.place("init"))
+        return crash_finding(evidence, crash, seen, expected)
+    why = why_no_node(evidence)
+    return failed(why.diagnosis, seen, expected, why.text, where=why.where)
 
 
 def name(evidence: Evidence, _: NoParams) -> Finding:

@@ -26,7 +26,9 @@ def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
         return found
     by = evidence.submission.student
     if by is not None and found.student.strip().casefold() != by.strip().casefold():
-        seen = f'The numbers in {FILE} were drawn for "{shorten(found.student)}"; this was handed in by "{shorten(by)}".'
+        seen = (
+            f'The numbers in {FILE} were drawn for "{shorten(found.student)}"; this was handed in by "{shorten(by)}".'
+        )
         expected = "Everybody drives a circle of their own."
         cause = f"`grader start 07 --student {shorten(by)} --fresh` draws yours; your work is kept aside."
         return failed("numbers-of-another", seen, expected, cause, where=Where(FILE))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,9 +14,17 @@ from grader.words import a_list, nearest, shorten
 
 if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
+    from grader.checks.manifest import Manifest
 
 FILE = "package.xml"
 BUILD_TYPE = "ament_python"
+CATKIN = "catkin"
+XML = re.compile(
+    r"mismatched tag|not well-formed|no element found|junk after|unclosed|duplicate attribute|invalid XML|syntax error"
+    r"|invalid token|undefined entity"
+)
+"""What an XML parser says of a text that is no XML."""
+ROS_1_TAGS = re.compile(r"must not contain the following tags: .*\b(?P<tag>run_depend)\b")
 
 
 def _line(evidence: Evidence, *patterns: str) -> Where:
@@ -29,12 +38,20 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
     if manifest is None:
         cause = "setup.py alone makes a Python package; package.xml is what makes it a ROS 2 package."
         return failed(
-            "package-xml-missing", f"There is no {FILE} beside setup.py.", f"A package has {expected}.", cause
+            "package-xml-missing",
+            f"There is no {FILE} beside setup.py.",
+            f"A package has {expected}.",
+            cause,
+            where=Where("setup.py"),
         )
     if manifest.problem is not None:
-        where = Where(FILE, manifest.line)
-        seen = f"{FILE} cannot be read: {manifest.problem}."
-        return failed("package-xml-invalid", seen, f"The lesson shows {expected}.", where=where)
+        return _unreadable(evidence, manifest, f"The lesson shows {expected}.")
+    if manifest.build_type != BUILD_TYPE and CATKIN in manifest.other_depends:
+        cause = f"{CATKIN} is the build tool of ROS 1; an old tutorial or package may be behind it."
+        where = _line(evidence, CATKIN)
+        return failed(
+            "ros-1-package-xml", f"{FILE} asks for {CATKIN}.", f"A Python package has {BUILD_TYPE}.", cause, where=where
+        )
     if manifest.build_type != BUILD_TYPE:
         seen = f"The build type is {shorten(manifest.build_type or 'missing')}."
         cause = (
@@ -50,6 +67,21 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
     return passed(f"{FILE} is valid.")
 
 
+def _unreadable(evidence: Evidence, manifest: Manifest, expected: str) -> Finding:
+    problem = manifest.problem or ""
+    seen = f"{FILE} cannot be read: {problem}."
+    tag = ROS_1_TAGS.search(problem)
+    if tag is not None:
+        cause = f"<{tag['tag']}> is of format 1, that of ROS 1; format 3 has <exec_depend>, and <depend> for all."
+        return failed("package-xml-old-tag", seen, expected, cause, where=_line(evidence, f"<{tag['tag']}"))
+    if XML.search(problem):
+        cause = "Each <tag> ends with a </tag> of the same name, the inner one before the outer one."
+        return failed("xml-malformed", seen, expected, cause, where=Where(FILE, manifest.line))
+    return failed(
+        "package-xml-invalid", seen, expected, where=Where(FILE, manifest.line or _line(evidence, "<package").line)
+    )
+
+
 @dataclass(frozen=True, kw_only=True)
 class Dependencies:
     """`packages`: the names that must be declared for running."""
@@ -62,7 +94,7 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
     manifest = evidence.manifest
     expected = f"It declares {a_list(params.packages)}."
     if manifest is None or manifest.problem is not None:
-        return failed("package-xml-invalid", f"There is no {FILE} that can be read.", expected)
+        return failed("package-xml-invalid", f"There is no {FILE} that can be read.", expected, where=Where(FILE))
     missing = [name for name in params.packages if name not in manifest.run_depends]
     if not missing:
         return passed(f"{FILE} declares {a_list(params.packages)}.")
@@ -73,13 +105,26 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
         return failed(
             "depend-kind", f"{FILE} declares {a_list(late)}, but not for running.", expected, cause, where=where
         )
+    seen = f"{FILE} does not declare {a_list(missing)}."
     guess = nearest(missing[0], set(manifest.run_depends) - set(params.packages))
-    cause = (
-        f'It has "{shorten(guess)}": is that a typing error?'
-        if guess
-        else "Here the node runs all the same, since the package is installed; on another machine it may not be."
-    )
-    return failed("missing-depend", f"{FILE} does not declare {a_list(missing)}.", expected, cause, where=where)
+    if guess is not None:
+        cause = f'It has "{shorten(guess)}": is that a typing error?'
+        return failed("depend-misspelt", seen, expected, cause, where=_line(evidence, re.escape(guess)))
+    comment = re.search(rf"<!--(?:(?!-->).)*\b{re.escape(missing[0])}\b", _text(evidence), re.DOTALL)
+    if comment is not None:
+        cause = "The line is inside of a comment, between <!-- and -->, where nobody reads it."
+        line = _text(evidence)[: comment.end()].count("\n") + 1
+        return failed("depend-commented-out", seen, expected, cause, where=Where(FILE, line))
+    setup = evidence.setup_py
+    if setup is not None and missing[0] in setup.required:
+        cause = f"install_requires in setup.py is for packages of pip. ROS 2 reads {FILE}."
+        return failed("depend-in-setup-py", seen, expected, cause, where=where)
+    cause = "Here the node runs all the same, since the package is installed; on another machine it may not be."
+    return failed("missing-depend", seen, expected, cause, where=where)
+
+
+def _text(evidence: Evidence) -> str:
+    return evidence.submission.files[FILE].decode("utf-8", "replace")
 
 
 def name(evidence: Evidence, _: NoParams) -> Finding:
@@ -98,7 +143,13 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
         folders = {path.partition("/")[0] for path in modules if path.count("/") == 1}
         guess = nearest(wanted, folders)
         cause = f"There is a folder {shorten(guess)}." if guess else ""
-        return failed("package-folder", f"There is no folder {wanted} with Python files.", expected, cause)
+        return failed(
+            "package-folder",
+            f"There is no folder {wanted} with Python files.",
+            expected,
+            cause,
+            where=Where("setup.py"),
+        )
     return passed(f"package.xml, setup.py and the folder agree on the name {wanted}.")
 
 

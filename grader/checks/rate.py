@@ -11,6 +11,8 @@ from grader.checks.constants import number as constant
 from grader.checks.crash import crash_of, end_seen, ended_early
 from grader.checks.kind import Kind, number
 from grader.checks.tolerance import Band
+from grader.checks.why_crashed import crash_finding
+from grader.checks.why_rate import why_often, why_timers_grow
 from grader.outcome import Finding, Status, Where, failed, passed
 from grader.words import count
 
@@ -93,6 +95,9 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
             f"Every {period:.2f} s, each interval from {params.min_interval_s:.2f} to {params.max_interval_s:.2f} s."
         )
         cause = _uneven_cause(evidence, what)
+        grow = why_timers_grow(evidence)
+        if grow is not None:
+            return failed(grow.diagnosis, seen, wanted, grow.text, where=grow.where, near_edge=near)
         return failed("uneven-rate", seen, wanted, cause, where=evidence.place(what.call), near_edge=near)
     if not first.holds(measured.first_s):
         seen = f"The first {what.noun} came {measured.first_s:.1f} s after the start."
@@ -114,7 +119,7 @@ def _few(evidence: Evidence, what: Subject, measured: Measured, expected: str) -
     crash = crash_of(evidence)
     seen = f"{count(amount, what.noun)} arrived in {seen_in.end_s(evidence.trial):.0f} s."
     if crash is not None:
-        return failed("crash", f"{seen} {end_seen(evidence)}", expected, crash.meaning, where=crash.where)
+        return crash_finding(evidence, crash, f"{seen} {end_seen(evidence)}", expected)
     where = evidence.place(what.call)
     if amount == 1:
         cause = f"{what.call} is called once; a timer calls a method again and again."
@@ -132,10 +137,13 @@ def _wrong_mean(
     evidence: Evidence, what: Subject, measured: Measured, params: Rate, expected: str, *, near_edge: bool
 ) -> Finding:
     mean = measured.mean_s
+    often = why_often(evidence, what.call, mean) or why_timers_grow(evidence)
     if mean < 0.01:
         seen = f"{count(len(measured.arrivals), what.noun)} arrived, one every {1000.0 * mean:.2f} ms."
     else:
         seen = f"{what.plural} arrived every {mean:.2f} s ({1.0 / mean:.1f} Hz)."
+    if often is not None:
+        return failed(often.diagnosis, seen, expected, often.text, where=often.where, near_edge=near_edge)
     diagnosis, cause, where = _why_mean(evidence, what, mean)
     if diagnosis == "timer-period" and abs(mean - params.rate_hz) <= SAME * params.rate_hz:
         diagnosis, cause = (
@@ -189,7 +197,7 @@ def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: st
     wanted = f"{expected[:-1]}, until Ctrl-C."
     crash = crash_of(evidence)
     if crash is not None:
-        return failed("crash", seen, wanted, ended_early(evidence), where=crash.where)
+        return crash_finding(evidence, crash, f"{seen} {end_seen(evidence)}", wanted)
     return failed(
         "stopped-early", seen, wanted, ended_early(evidence), where=evidence.place(what.call), near_edge=near_edge
     )

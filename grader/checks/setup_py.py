@@ -43,6 +43,10 @@ class SetupPy:
     setup_line: int | None = None
     groups: tuple[str, ...] = ()
     """The names of the groups in entry_points."""
+    required: tuple[str, ...] = ()
+    """install_requires."""
+    stray: tuple[EntryPoint, ...] = ()
+    """What reads like an entry point, and stands in setup.py outside of console_scripts."""
     unreadable: Unreadable | None = None
 
     def entry_point(self, name: str) -> EntryPoint | None:
@@ -63,14 +67,32 @@ def read_setup_py(data: bytes) -> SetupPy:
     value = evaluate(name, module.names)
     packages = call.argument(99, "packages")
     groups = _groups(call, module)
+    points = _entry_points(groups, module)
     return SetupPy(
         name=value if isinstance(value, str) else None,
         name_line=_value_line(name, module),
-        entry_points=_entry_points(groups, module),
+        entry_points=points,
         data_files=_data_files(call, module),
         finds_packages=isinstance(packages, ast.Call) and _last(packages.func) == "find_packages",
         setup_line=call.node.lineno,
         groups=tuple(groups or ()),
+        required=tuple(_texts(call.argument(99, "install_requires"), module)),
+        stray=_stray(module, points or ()),
+    )
+
+
+def _stray(module: Module, points: tuple[EntryPoint, ...]) -> tuple[EntryPoint, ...]:
+    known = {point.text for point in points}
+    texts = [
+        (node.value, node.lineno)
+        for node in module.nodes
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    ]
+    matches = [(ENTRY_POINT.fullmatch(text[:MAX_ENTRY_POINT]), text, line) for text, line in texts if text not in known]
+    return tuple(
+        EntryPoint(text, line, match["name"], f"{match['module']}:{match['attribute']}")
+        for match, text, line in matches
+        if match
     )
 
 
@@ -144,7 +166,7 @@ def _data_file(item: ast.expr, module: Module) -> tuple[str, tuple[str, ...]]:
     return _text(folder, module), tuple(_texts(files, module))
 
 
-def _texts(node: ast.expr, module: Module) -> Iterator[str]:
+def _texts(node: ast.expr | None, module: Module) -> Iterator[str]:
     resolved = _resolved(node, module)
     if isinstance(resolved, ast.List | ast.Tuple):
         for item in resolved.elts:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from grader.checks.crash import crash_of, end_seen
 from grader.checks.kind import Kind, number
 from grader.checks.tolerance import Band
+from grader.checks.why_crashed import crash_finding
+from grader.checks.why_ended import why_ended
 from grader.outcome import Finding, failed, passed
 
 if TYPE_CHECKING:
@@ -44,9 +46,9 @@ def stop(evidence: Evidence, params: Stop) -> Finding:
 def _too_early(evidence: Evidence, expected: str) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
-        return failed("crash", end_seen(evidence), expected, crash.meaning, where=crash.where)
-    cause = "" if evidence.code.calls("spin") else "rclpy.spin keeps a node running; it is called nowhere."
-    return failed("ended-early", end_seen(evidence), expected, cause, where=evidence.place("spin", "init"))
+        return crash_finding(evidence, crash, end_seen(evidence), expected)
+    why = why_ended(evidence)
+    return failed(why.diagnosis, end_seen(evidence), expected, why.text, where=why.where)
 
 
 STOP = Kind("stops", "trial", "The node stops on Ctrl-C", Stop, stop)

@@ -9,7 +9,8 @@ from grader.checks import seen as seen_in
 from grader.checks.constants import evaluate
 from grader.checks.crash import crash_of, end_seen
 from grader.checks.kind import Kind, text
-from grader.checks.timers import timer_fault
+from grader.checks.why_crashed import crash_finding
+from grader.checks.why_silent import why_nothing, why_qos
 from grader.outcome import Finding, Where, failed, passed
 from grader.words import a_list, nearest, shorten
 
@@ -73,14 +74,28 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     guess = nearest(params.topic, topics)
     shown = [guess] if guess is not None else topics
     seen = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, where no turtle listens."
-    cause = "The topic's name is the second argument of create_publisher; compare it letter by letter."
-    return failed("wrong-topic", seen, _expected(params), cause, where=_publisher_line(evidence, shown[0]))
+    diagnosis, cause = _why_topic(params.topic, shown[0])
+    return failed(diagnosis, seen, _expected(params), cause, where=_publisher_line(evidence, shown[0]))
+
+
+def _why_topic(wanted: str, topic: str) -> tuple[str, str]:
+    """What is wrong with a topic's name, as far as the two names tell."""
+    last = wanted.rpartition("/")[2]
+    if topic == f"/{last}":
+        return "topic-without-turtle", "Each turtle has a topic of its own: the turtle's name is part of the topic's."
+    if topic.endswith(wanted):
+        return "topic-namespace", "The name has a namespace before it: one that begins with a slash is taken as it is."
+    if topic.endswith(f"/{last}") and topic.count("/") == 2 and nearest(topic, [wanted]):
+        return "topic-other-turtle", "There is no turtle of that name here."
+    if topic.lower() == wanted.lower():
+        return "topic-capitals", "Capital and small letters differ."
+    return "wrong-topic", "The topic's name is the second argument of create_publisher; compare it letter by letter."
 
 
 def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
-        return failed("crash", end_seen(evidence), _expected(params), crash.meaning, where=crash.where)
+        return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
     subscribed = [each for each in seen_in.endpoints(evidence.trial, "subscription") if each.topic == params.topic]
     if subscribed:
         cause = "A subscription only listens; create_publisher makes what sends."
@@ -98,7 +113,7 @@ def _silent(evidence: Evidence, params: Topic) -> Finding:
     seen = f"The publisher on {params.topic} is there, but no message came."
     crash = crash_of(evidence)
     if crash is not None:
-        return failed("crash", end_seen(evidence), _expected(params), crash.meaning, where=crash.where)
+        return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
     cause, diagnosis, where = _why_silent(evidence)
     return failed(diagnosis, f"{seen} {end_seen(evidence)}".rstrip(), _expected(params), cause, where=where)
 
@@ -107,11 +122,9 @@ def _why_silent(evidence: Evidence) -> tuple[str, str, Where | None]:
     code = evidence.code
     if not code.calls("publish"):
         return "The method publish is called nowhere.", "no-publish", code.start
-    fault = timer_fault(evidence)
-    if fault is not None:
-        return fault.cause, fault.diagnosis, fault.where
-    if not any(code.calls(name) for name in ("spin", "spin_once", "spin_until_future_complete")):
-        return "Without rclpy.spin no timer is ever called.", "no-spin", code.start
+    why = why_qos(evidence) or why_nothing(evidence, ("publish",))
+    if why is not None:
+        return why.text, why.diagnosis, why.where or code.start
     return "The line that publishes is never reached.", "never-publishes", evidence.place("publish")
 
 
@@ -158,7 +171,7 @@ def subscribes(evidence: Evidence, params: Topic) -> Finding:
         return failed("wrong-topic", seen, expected, cause, where=where)
     crash = crash_of(evidence)
     if crash is not None:
-        return failed("crash", end_seen(evidence), expected, crash.meaning, where=crash.where)
+        return crash_finding(evidence, crash, end_seen(evidence), expected)
     cause = "" if evidence.code.calls("create_subscription") else "create_subscription is called nowhere."
     return failed("no-subscription", "The node has no subscription.", expected, cause, where=where)
 

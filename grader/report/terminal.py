@@ -16,6 +16,8 @@ from grader.report.verdict import tone, verdict
 from grader.words import printable
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rich.console import Console
 
 NARROW = 50
@@ -37,6 +39,16 @@ def render(report: Report, console: Console) -> None:
     _line(console, _verdict(report))
     for text in _footnotes(report):
         _line(console, Text(text, style="dim"))
+
+
+def early(outcomes: Sequence[Outcome]) -> list[str]:
+    """Lines on what the files alone tell, to be read while the rest is built and run."""
+    told = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
+    lines = [
+        f"{outcome.title}: {finding.seen}" + (f" ({finding.where})" if finding.where else "")
+        for outcome, finding in told
+    ]
+    return [printable(f"Not right, as the files say: {line}") for line in lines]
 
 
 def _look(outcome: Outcome) -> str:

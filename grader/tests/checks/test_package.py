@@ -64,12 +64,12 @@ def test_a_good_package_passes(check: str, build: Build) -> None:
 @pytest.mark.parametrize(
     ("check", "files", "diagnosis", "where"),
     [
-        ("package-xml", {"package.xml": None}, "package-xml-missing", "None"),
-        ("package-xml", xml("</package>"), "package-xml-invalid", "package.xml:15"),
-        ("package-xml", xml("  <license>MIT</license>\n"), "package-xml-invalid", "package.xml"),
-        ("package-xml", xml('format="3"', 'format="9"'), "package-xml-invalid", "package.xml"),
-        ("package-xml", xml('format="3"', 'format="x"'), "package-xml-invalid", "package.xml"),
-        ("package-xml", {"package.xml": b"\xff\xfe\x00"}, "package-xml-invalid", "package.xml:1"),
+        ("package-xml", {"package.xml": None}, "package-xml-missing", "setup.py"),
+        ("package-xml", xml("</package>"), "xml-malformed", "package.xml:15"),
+        ("package-xml", xml("  <license>MIT</license>\n"), "package-xml-invalid", "package.xml:2"),
+        ("package-xml", xml('format="3"', 'format="9"'), "package-xml-invalid", "package.xml:2"),
+        ("package-xml", xml('format="3"', 'format="x"'), "package-xml-invalid", "package.xml:2"),
+        ("package-xml", {"package.xml": b"\xff\xfe\x00"}, "xml-malformed", "package.xml:1"),
         ("package-xml", {"package.xml": b"<a>" * 100_000}, "package-xml-invalid", "package.xml"),
         ("package-xml", xml("    <build_type>ament_python</build_type>\n"), "build-type", "package.xml:11"),
         ("package-xml", xml("ament_python", "ament_cmake"), "build-type", "package.xml:12"),
@@ -82,7 +82,7 @@ def test_a_good_package_passes(check: str, build: Build) -> None:
         ),
         ("package-name", xml("my_robot_controller", "my_robot"), "package-name", "package.xml:3"),
         ("package-name", setup_py('"my_robot_controller"', '"my-robot-controller"'), "package-name", "setup.py:3"),
-        ("package-name", {INIT: None, NODE_FILE: None, "my_robot/x.py": ""}, "package-folder", "None"),
+        ("package-name", {INIT: None, NODE_FILE: None, "my_robot/x.py": ""}, "package-folder", "setup.py"),
     ],
 )
 def test_each_fault_of_the_files(check: str, files: dict[str, str | bytes | None], diagnosis: str, where: str) -> None:
@@ -145,16 +145,16 @@ NO_MARKER = "error: can't copy 'resource/my_robot_controller': doesn't exist or 
 @pytest.mark.parametrize(
     ("files", "build", "diagnosis", "where"),
     [
-        ({"setup.py": None}, NOTHING, "setup-py-missing", "None"),
+        ({"setup.py": None}, NOTHING, "setup-py-missing", "package.xml"),
         ({"setup.py": "setup(\n"}, replace(NOTHING, exit_code=1), "setup-py-syntax", "setup.py:1"),
         ({}, replace(NOTHING, exit_code=1, log=SETUP_TRACEBACK), "setup-py-raises", "setup.py:5"),
         ({}, replace(NOTHING, exit_code=1, log=READ_BY_COLCON), "setup-py-raises", "setup.py:7"),
         ({}, replace(NOTHING, exit_code=1, log=UNREAD), "setup-py-output", "setup.py:5"),
         ({}, replace(NOTHING, exit_code=1, log=NO_MARKER), "data-file-missing", "setup.py:5"),
-        ({}, replace(NOTHING, exit_code=1, log="error: no such option"), "build-failed", "None"),
-        ({}, replace(NOTHING, exit_code=-9, timed_out=True, seconds=60.0), "build-timeout", "None"),
-        ({}, replace(NOTHING, exit_code=1, out_of="disk"), "build-limit", "None"),
-        (setup_py(":main", ""), replace(NOTHING, exit_code=1), "entry-point-format", "setup.py:14"),
+        ({}, replace(NOTHING, exit_code=1, log="error: no such option"), "build-failed", "setup.py:5"),
+        ({}, replace(NOTHING, exit_code=-9, timed_out=True, seconds=60.0), "build-timeout", "setup.py:5"),
+        ({}, replace(NOTHING, exit_code=1, out_of="disk"), "build-limit", "setup.py"),
+        (setup_py(":main", ""), replace(NOTHING, exit_code=1), "entry-point-no-function", "setup.py:14"),
         ({INIT: None}, BARE, "missing-init", "setup.py:5"),
         ({INIT: None}, LINKED, "missing-init", "setup.py:5"),
         ({}, BARE, "nothing-installed", "setup.py:5"),
@@ -198,7 +198,7 @@ def leads_to(target: str) -> Build:
     ("files", "build", "diagnosis", "where"),
     [
         (setup_py(f'            "{POINT}",\n', ""), NOTHING, "entry-point-missing", "setup.py:5"),
-        (setup_py("console_scripts", "console_script"), NOTHING, "entry-point-group", "setup.py:5"),
+        (setup_py("console_scripts", "console_script"), NOTHING, "entry-point-group", "setup.py:14"),
         (
             setup_py(f'"{POINT}",', f'"test_node = my_robot_controller.first:main"\n            "{POINT}",'),
             replace(NOTHING, entry_points={"test_node": "x"}),
@@ -220,7 +220,7 @@ def leads_to(target: str) -> Build:
         ({}, leads_to("draw_circle:main"), "entry-point-module", "setup.py:14"),
         ({}, leads_to("my_robot_controller.draw_circle:man"), "entry-point-function", "setup.py:14"),
         ({NODE_FILE: NODE + "\nmain = 7\n"}, BUILD, "entry-point-not-callable", f"{NODE_FILE}:23"),
-        ({NODE_FILE: NODE.replace("def send(self):", "def send(self)")}, BUILD, "syntax-error", f"{NODE_FILE}:12"),
+        ({NODE_FILE: NODE.replace("def send(self):", "def send(self)")}, BUILD, "colon-missing", f"{NODE_FILE}:12"),
         ({NODE_FILE: b"name = '\xe4'\n"}, BUILD, "not-utf8", NODE_FILE),
         ({NODE_FILE: NODE.encode() + b"\0"}, BUILD, "syntax-error", NODE_FILE),
         (
@@ -264,7 +264,7 @@ def test_anything_that_may_be_called_will_do(text: str) -> None:
 
 def test_a_function_inside_of_the_class_is_not_found() -> None:
     found = of("entry-point", {NODE_FILE: "class A:\n    def main(self):\n        pass\n"})
-    assert found.cause == "A function inside of a class does not count: look at its indentation."
+    assert found.cause == "main is indented, and so belongs to the class above it: move it to the left edge."
 
 
 @pytest.mark.parametrize("text", [b"x = " + b"(" * 5000, b"x = " + b"-" * 90_000 + b"1", b"a" * 500_000])

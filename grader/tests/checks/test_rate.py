@@ -27,7 +27,14 @@ def rate(shape: str, *changes: tuple[str, str]) -> Finding:
         ("twice", "too-few-commands", "2 commands arrived in 10 s."),
         ("late", "late-start", "The first command came 3.7 s after the start."),
         ("three quarters", "stopped-early", "The last command came at 4.0 s, 6.0 s before the end."),
-        ("crash", "crash", "The last command came at 4.0 s, 6.0 s before the end."),
+        (
+            "crash",
+            "crash",
+            (
+                "The last command came at 4.0 s, 6.0 s before the end. "
+                "The node crashed after 4.5 s: ZeroDivisionError: division by zero."
+            ),
+        ),
     ],
 )
 def test_each_wrong_rhythm_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:

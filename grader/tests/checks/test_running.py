@@ -43,7 +43,7 @@ def test_a_good_run_passes(check: str) -> None:
     ("check", "shape", "diagnosis", "line"),
     [
         ("start", "crash at the start", "crash", ":14"),
-        ("start", "ends at once", "ends-at-once", ":20"),
+        ("start", "ends at once", "ends-at-once", ":21"),
         ("start", "no node", "no-node", ":20"),
         ("node-name", "other name", "node-name", ":8"),
         ("node-name", "no node", "no-node", None),

@@ -1,0 +1,101 @@
+"""Names of ROS 2 Jazzy that a beginner meets, for telling the nearest one to what was written."""
+
+from __future__ import annotations
+
+LIVES_IN = {
+    "Node": "rclpy.node",
+    "MultiThreadedExecutor": "rclpy.executors",
+    "ExternalShutdownException": "rclpy.executors",
+    "QoSProfile": "rclpy.qos",
+    "ReliabilityPolicy": "rclpy.qos",
+    "Twist": "geometry_msgs.msg",
+    "Vector3": "geometry_msgs.msg",
+    "TwistStamped": "geometry_msgs.msg",
+    "Pose": "turtlesim.msg",
+    "Color": "turtlesim.msg",
+    "SetPen": "turtlesim.srv",
+    "Spawn": "turtlesim.srv",
+    "TeleportAbsolute": "turtlesim.srv",
+    "String": "std_msgs.msg",
+    "Float32": "std_msgs.msg",
+    "Int32": "std_msgs.msg",
+    "Empty": "std_srvs.srv",
+}
+"""Class -> the module that one usually imports it from."""
+
+MODULES = (
+    "rclpy",
+    "rclpy.node",
+    "rclpy.executors",
+    "rclpy.qos",
+    "geometry_msgs.msg",
+    "turtlesim.msg",
+    "turtlesim.srv",
+    "std_msgs.msg",
+    "std_srvs.srv",
+    "math",
+    "random",
+    "time",
+    "threading",
+    "functools",
+    "os",
+    "sys",
+)
+ROS_1 = frozenset({"rospy", "roslib", "tf", "catkin", "roscpp", "rosbag", "actionlib"})
+"""Modules that only ROS 1 has."""
+
+NODE = (
+    "create_publisher",
+    "create_subscription",
+    "create_timer",
+    "create_client",
+    "create_service",
+    "create_rate",
+    "declare_parameter",
+    "destroy_node",
+    "get_clock",
+    "get_logger",
+    "get_name",
+    "get_parameter",
+)
+"""Methods of a node."""
+
+RCLPY = (
+    "init",
+    "spin",
+    "spin_once",
+    "spin_until_future_complete",
+    "shutdown",
+    "try_shutdown",
+    "ok",
+    "create_node",
+    "node",
+)
+"""What the module rclpy has."""
+
+FIELDS = {
+    "Twist": ("linear", "angular"),
+    "Vector3": ("x", "y", "z"),
+    "Pose": ("x", "y", "theta", "linear_velocity", "angular_velocity"),
+    "String": ("data",),
+}
+"""Message -> its fields."""
+
+OTHERS = {
+    "Publisher": ("publish",),
+    "Subscription": (),
+    "Timer": ("cancel", "reset"),
+    "RcutilsLogger": ("debug", "info", "warning", "warn", "error", "fatal"),
+}
+"""Other objects -> their methods."""
+
+SERVICES = (
+    "/spawn",
+    "/kill",
+    "/reset",
+    "/clear",
+    "/turtle1/set_pen",
+    "/turtle1/teleport_absolute",
+    "/turtle1/teleport_relative",
+)
+"""What turtlesim offers."""
