@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from grader import sandbox
@@ -16,6 +18,7 @@ from grader.words import a_list
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+    from concurrent.futures import Executor, Future
     from pathlib import Path
 
     from grader.exercise import Exercise
@@ -26,12 +29,17 @@ _LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 _CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 
 
-def validate(names: list[str], tell: Callable[[str], None] = lambda _: None) -> list[str]:
+def validate(
+    names: list[str], tell: Callable[[str], None] = lambda _: None, *, course: Path | None = None
+) -> list[str]:
     """The problems of these exercises (all of the course when empty), a sentence each, with what to do.
 
-    `tell` hears what is being done: grading takes its time.
+    `tell` hears what is being done: grading takes its time. `course` is the folder course/, ours when left out.
+
+    Raises:
+        UsageError: there is no exercise of such a name.
     """
-    course = course_folder()
+    course = course or course_folder()
     files = catalogue(course)
     unknown = [name for name in names if name not in files]
     if unknown:
@@ -40,29 +48,57 @@ def validate(names: list[str], tell: Callable[[str], None] = lambda _: None) -> 
     problems = [
         f"{line} Run: grader release" for line in stale(course.parent / "solutions", course.parent / "exercises")
     ]
-    for name in names or files:
-        problems += _exercise(name, files[name], course.parent, tell)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        looked = [_Validation(name, files[name], course.parent, pool, tell) for name in names or files]
+        for each in looked:
+            problems += each.problems()
     return problems
 
 
-def _exercise(name: str, file: Path, root: Path, tell: Callable[[str], None]) -> Iterator[str]:
+class _Validation:
+    """What is wrong with one exercise; its gradings begin at once, beside those of others."""
+
+    def __init__(self, name: str, file: Path, root: Path, pool: Executor, tell: Callable[[str], None]) -> None:
+        self._name = name
+        self._file = file
+        self._root = root
+        self._tell = tell
+        try:
+            self._exercise = load_exercise(file)
+        except UsageError as error:
+            self._unreadable = str(error)
+        else:
+            self._unreadable = ""
+            self._solution = pool.submit(self._graded, "solution", "solutions")
+            self._starting_point = pool.submit(self._graded, "starting point", "exercises")
+
+    def problems(self) -> Iterator[str]:
+        """A sentence each."""
+        if self._unreadable:
+            yield self._unreadable
+            return
+        if not self._exercise.hints:
+            yield f"{self._file}: there is no [[hint]]; a learner who is stuck needs some."
+        yield from _lesson(self._file.with_name("lesson.md"))
+        yield from _judged(self._exercise, self._solution, _solution)
+        yield from _judged(self._exercise, self._starting_point, _starting_point)
+
+    def _graded(self, what: str, side: str) -> Report:
+        self._tell(f"{self._name}: grading the {what}")
+        folder = self._root / side / self._name
+        opened = open_submission(folder) if self._exercise.package else open_answers(folder)
+        return grade(self._exercise, opened, Options(in_cell=sandbox.usable())).report
+
+
+def _judged(
+    exercise: Exercise, grading: Future[Report], problems: Callable[[Exercise, Report], Iterator[str]]
+) -> Iterator[str]:
     try:
-        exercise = load_exercise(file)
-    except UsageError as error:
+        report = grading.result()
+    except UsageError as error:  # (there is no such folder, or no package in it)
         yield str(error)
-        return
-    if not exercise.hints:
-        yield f"{file}: there is no [[hint]]; a learner who is stuck needs some."
-    yield from _lesson(file.with_name("lesson.md"))
-    tell(f"{name}: grading the solution")
-    yield from _solution(exercise, _graded(exercise, root / "solutions" / name))
-    tell(f"{name}: grading the starting point")
-    yield from _starting_point(exercise, _graded(exercise, root / "exercises" / name))
-
-
-def _graded(exercise: Exercise, folder: Path) -> Report:
-    opened = open_submission(folder) if exercise.package else open_answers(folder)
-    return grade(exercise, opened, Options(in_cell=sandbox.usable())).report
+    else:
+        yield from problems(exercise, report)
 
 
 def _solution(exercise: Exercise, report: Report) -> Iterator[str]:
