@@ -60,6 +60,8 @@ def told(begun: Begun) -> str:
         lines.append(f"Added {', '.join(started.added)}.")
     if started.present:
         lines.append(f"Left as {'it is' if len(started.present) == 1 else 'they are'}: {', '.join(started.present)}.")
+    for path, lacking in started.lacking.items():
+        lines += [f"This step begins with more in {path}; write into yours:", *(f"    {line}" for line in lacking)]
     lesson = begun.exercise.folder / "lesson.md"
     lines += ["", f"The lesson:       {lesson}", "A verdict:        grader check", "After every save: grader watch"]
     return "\n".join(lines)

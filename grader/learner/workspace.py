@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from grader import own_numbers, tree
@@ -18,14 +18,22 @@ if TYPE_CHECKING:
     from grader.exercise import Exercise
 
 
+_PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
+"""These grow from step to step, outside of what a step is about."""
+
+
 @dataclass(frozen=True)
 class Started:
-    """What `start` did: paths relative to the workspace. `kept` is where older work went (with --fresh)."""
+    """What `start` did: paths relative to the workspace. `kept` is where older work went (with --fresh).
+
+    `lacking`: of the package files that were left alone, the lines that the step begins with and they do not have.
+    """
 
     folder: Path
     added: tuple[str, ...]
     present: tuple[str, ...]
     kept: Path | None = None
+    lacking: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def starting_point(exercise: Exercise) -> Path:
@@ -75,13 +83,14 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
     try:
         kept = _put_aside(folder, workspace) if fresh and folder.exists() else None
         added, present = add_missing(source, folder, {own_numbers.FILE: to_toml(draw_numbers(student)).encode()})
+        lacking = {path: _lacking(source / path, folder / path) for path in present if path in _PACKAGE_FILES}
     except (FileExistsError, NotADirectoryError) as error:
         message = f"{error.filename} is a file, where a folder is needed. Name another workspace with --workspace."
         raise UsageError(message) from error
     except OSError as error:
         message = f"{error.filename or folder} could not be written: {error.strerror}."
         raise MachineError(message) from error
-    return Started(folder, added, present, kept)
+    return Started(folder, added, present, kept, {path: lines for path, lines in lacking.items() if lines})
 
 
 def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -108,6 +117,17 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
         target.chmod(0o755 if path in found.executable else 0o644)
         added.append(path)
     return tuple(added), tuple(present)
+
+
+def _lacking(theirs: Path, mine: Path) -> tuple[str, ...]:
+    """The lines of the step's file that the learner's does not have; remarks, blanks, commas, quotes do not count."""
+
+    def plain(text: str) -> str:
+        return "".join(text.replace("'", '"').split()).rstrip(",")
+
+    known = plain(mine.read_text(encoding="utf-8", errors="replace"))
+    lines = (line.strip() for line in theirs.read_text(encoding="utf-8").splitlines())
+    return tuple(line for line in lines if not line.startswith(("#", "<!--")) and plain(line) not in known)
 
 
 def _put_aside(folder: Path, workspace: Path) -> Path:

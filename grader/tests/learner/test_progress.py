@@ -84,6 +84,21 @@ def test_start_adds_what_lacks_and_overwrites_nothing(home: Path) -> None:
     assert (package / "setup.py").read_text() == "mine"
 
 
+def test_start_tells_which_lines_of_package_files_a_later_step_begins_with(home: Path) -> None:
+    steps.start("01", None)
+    package = home / "ros2_ws/src/my_robot_controller"
+    setup = (package / "setup.py").read_text()
+    entry = "'test_node = my_robot_controller.my_first_node:main'"
+    (package / "setup.py").write_text(setup.replace('"console_scripts": [', f'"console_scripts": [{entry},\n{entry}'))
+    begun = steps.start("03", None)
+    assert begun.started.lacking == {
+        "package.xml": ("<depend>geometry_msgs</depend>", "<depend>turtlesim</depend>"),
+        "setup.py": ('"draw_circle = my_robot_controller.draw_circle:main",',),
+    }
+    assert 'This step begins with more in setup.py; write into yours:\n    "draw_circle' in steps.told(begun)
+    assert steps.start("03", None, fresh=True).started.lacking == {}
+
+
 def test_fresh_keeps_the_old_work_aside_where_colcon_does_not_look(home: Path) -> None:
     steps.start("01", None)
     package = home / "ros2_ws/src/my_robot_controller"
