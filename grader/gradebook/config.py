@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from pathlib import Path
+import os
+import sys
+from pathlib import Path
+from typing import Any
 
 CLASS = "class"
 """The folder of a class, which git ignores: submitted/, autograded/, feedback/, reports/, gradebook.db."""
@@ -18,11 +18,12 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     """Set nbgrader up for the course in `root`, the folder that holds solutions/ and exercises/."""
     from nbgrader import preprocessors as steps
 
-    from grader.gradebook.confined import ConfinedExecute
+    from grader.gradebook.confined import CHECK_S, ConfinedExecute
     from grader.gradebook.feedback import GraderReasons, HideHiddenTests
     from grader.gradebook.mend import MendCells
     from grader.gradebook.steps import ReleaseFiles, StripSolutions
 
+    _see_own_commands()
     folders = config.CourseDirectory
     folders.root = str(root)
     folders.course_id = COURSE_ID
@@ -50,6 +51,8 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
         steps.CheckCellMetadata,
         ReleaseFiles,
     ]
+    # `nbgrader validate` runs our notebooks with nbgrader's own limit of 30 s a cell: too little for four trials.
+    config.Execute.timeout = CHECK_S
     config.Autograde.sanitize_preprocessors = [
         steps.ClearOutput,
         MendCells,
@@ -79,6 +82,13 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
         GraderReasons,
         "nbconvert.preprocessors.CSSHTMLHeaderPreprocessor",
     ]
+
+
+def _see_own_commands() -> None:
+    """Put this Python's commands on PATH: nbgrader makes its database with one of them, alembic."""
+    path, ours = os.environ.get("PATH", os.defpath), str(Path(sys.prefix, "bin"))
+    if ours not in path.split(os.pathsep):
+        os.environ["PATH"] = f"{path}{os.pathsep}{ours}"
 
 
 def _files(step: Path) -> list[str]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 import signal
+import subprocess
 import sys
 import tempfile
 from contextlib import suppress
@@ -19,7 +20,7 @@ from jupyter_client.kernelspec import KernelSpec
 from jupyter_client.manager import AsyncKernelManager
 from nbclient.exceptions import DeadKernelError
 from nbgrader.preprocessors import Execute
-from traitlets import Bool, Instance, Unicode
+from traitlets import Bool, Instance, Integer, Unicode
 
 from grader import sandbox, tree, underlay
 from grader.exercise import course_folder
@@ -33,8 +34,6 @@ from grader.watch import Guard
 if TYPE_CHECKING:
     from nbformat import NotebookNode
 
-CELL_S = 20
-"""How long a student's own cell may run."""
 CHECK_S = 300
 """How long a cell of the instructor's may: it builds and runs a package, at wall time if need be."""
 MOST_OUTPUT = 4_000_000
@@ -75,7 +74,8 @@ class ConfinedKernelManager(AsyncKernelManager):
         argv = [word.replace("{submission}", str(copy)) for word in kernel_cmd]
         env, view = _environment(copy, Path(self.connection_file).parent)
         kw.pop("cwd", None)
-        kw["env"] = env
+        # What a student writes to these would act on the instructor's terminal.
+        kw |= {"env": env, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         limits = Limits()
         with call_filter() as filter_fd:
             if confined:
@@ -103,6 +103,8 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         default_value=False,
         help="Run submitted notebooks without a sandbox where there is none: on a machine that you can lose.",
     ).tag(config=True)
+
+    cell_s = Integer(20, help="How long a student's own cell may run, in seconds.").tag(config=True)
 
     def __init__(self, *arguments: Any, **keywords: Any) -> None:  # noqa: ANN401 - as the base class
         keywords.setdefault("kernel_manager_class", ConfinedKernelManager)
@@ -168,7 +170,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
 
     def _get_timeout(self, cell: NotebookNode | None) -> int | None:
         locked = cell is not None and cell.get("metadata", {}).get("nbgrader", {}).get("locked")
-        return CHECK_S if locked or cell is None else CELL_S
+        return CHECK_S if locked or cell is None else self.cell_s
 
     def _end(self, why: str) -> None:
         if not self._ended:

@@ -1,0 +1,125 @@
+"""A class that is played with the real nbgrader: an instructor's commands, and what students hand in."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from grader.exercise import course_folder
+from grader.gradebook.class_folder import make_class
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+STEP = "03-circle-publisher"
+SOLUTION = course_folder().parent / "solutions" / STEP
+NODE = "my_robot_controller/my_robot_controller/draw_circle.py"
+FIRST, LATER = "2027-03-01 10:00:00 UTC", "2027-03-02 10:00:00 UTC"
+
+Notebook = dict[str, Any]
+
+
+class Term:
+    """One class in a folder of its own, with an exchange of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.root = folder / "course-of-2027"
+        self.exchange = folder / "exchange"
+        self.exchange.mkdir()
+        self.exchange.chmod(0o777)
+        make_class(self.root, None)
+        self.course = self.root / "course"
+        with (self.course / "nbgrader_config.py").open("a") as config:
+            config.write(
+                f"get_config().Exchange.root = {str(self.exchange)!r}\n"
+                "get_config().ConfinedExecute.cell_s = 4\n"
+                "get_config().LateSubmissionPlugin.penalty_method = 'zero'\n"
+            )
+
+    def run(self, *command: str, fails: bool = False, cwd: Path | None = None) -> str:
+        """Run a command of nbgrader, or of ours with "grader" first; its output, both streams."""
+        module = command[1:] if command[0] == "grader" else ("nbgrader", *command)
+        argv = [sys.executable, "-m", "grader.cli" if command[0] == "grader" else module[0]]
+        argv += module if command[0] == "grader" else module[1:]
+        env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
+        done = subprocess.run(
+            argv, cwd=cwd or self.course, capture_output=True, text=True, env=env, check=False, timeout=900
+        )
+        said = done.stdout + done.stderr
+        assert (done.returncode != 0) == fails, f"{' '.join(command)}: {done.returncode}\n{said[-6000:]}"
+        return said
+
+    def generate(self) -> None:
+        """Make the assignment, and release it into the exchange."""
+        self.run("generate_assignment", STEP)
+        self.run("release_assignment", STEP)
+
+    def hand_in(self, student: str, change: Callable[[Path], None], at: str = FIRST) -> None:
+        """Put a submission into the exchange as `nbgrader submit` lays it: the released folder, after `change`."""
+        folder = self.exchange / "ros2-topics" / "inbound" / f"{student}+{STEP}+{at}"
+        shutil.copytree(self.root / "exercises" / STEP, folder)
+        change(folder)
+        (folder / "timestamp.txt").write_text(at)
+
+    def grade(self) -> str:
+        """Collect, autograde, sync, feedback; returns what sync said."""
+        self.run("collect", STEP, "--update")
+        self.run("autograde", STEP)
+        said = self.run("grader", "gradebook", "sync", STEP)
+        self.run("generate_feedback", STEP)
+        return said
+
+    def exported(self) -> dict[str, tuple[float, float, float]]:
+        """Student -> raw score, penalty, score, as `nbgrader export` writes them."""
+        file = self.root / "grades.csv"
+        self.run("export", "--to", str(file))
+        with file.open(newline="") as opened:
+            return {
+                row["student_id"]: (float(row["raw_score"]), float(row["late_submission_penalty"]), float(row["score"]))
+                for row in csv.DictReader(opened)
+            }
+
+    def gradebook(self) -> Any:  # noqa: ANN401 - nbgrader's, which has no types
+        """nbgrader's own gradebook; a context manager."""
+        from nbgrader.api import Gradebook
+
+        return Gradebook(f"sqlite:///{self.root}/class/gradebook.db", "ros2-topics")
+
+    def feedback(self, student: str) -> str:
+        """The feedback's HTML."""
+        return (self.root / "class" / "feedback" / student / STEP / f"{STEP}.html").read_text("utf-8")
+
+
+def solve(folder: Path) -> None:
+    """Write our node into the package."""
+    (folder / NODE).write_bytes((SOLUTION / NODE).read_bytes())
+
+
+def too_slow(folder: Path) -> None:
+    """Our node, with half the speed: 55 of 100 points."""
+    text = (SOLUTION / NODE).read_text().replace("linear.x = 2.0", "linear.x = 1.0")
+    (folder / NODE).write_text(text)
+
+
+def unchanged(_: Path) -> None:
+    """Hand in the starting point: 15 of 100 points."""
+
+
+def edit(folder: Path, change: Callable[[list[Notebook]], list[Notebook]]) -> None:
+    """Change the notebook's cells."""
+    file = folder / f"{STEP}.ipynb"
+    notebook = json.loads(file.read_text())
+    notebook["cells"] = change(notebook["cells"])
+    file.write_text(json.dumps(notebook))
+
+
+def with_cell(folder: Path, source: str) -> None:
+    """Put a cell right behind the one that loads everything."""
+    cell = {"cell_type": "code", "id": "mine", "metadata": {}, "source": source, "outputs": [], "execution_count": None}
+    edit(folder, lambda cells: [*cells[:2], cell, *cells[2:]])

@@ -1,0 +1,95 @@
+"""JupyterLab as a student starts it, and the few things that a student does in it, for the browser tests."""
+
+from __future__ import annotations
+
+import os
+import re
+import secrets
+import subprocess
+import sys
+import threading
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from playwright.sync_api import Page
+
+STARTED = re.compile(r"http://127\.0\.0\.1:(\d+)/lab\?token=")
+START_S = 120.0
+
+
+@contextmanager
+def serving(folder: Path, home: Path) -> Iterator[str]:
+    """JupyterLab for the notebooks in `folder`, with its settings below `home`; the address to open."""
+    token = secrets.token_hex(16)
+    env = {
+        **os.environ,
+        "HOME": str(home),
+        "JUPYTER_CONFIG_DIR": str(home / "config"),
+        "JUPYTER_DATA_DIR": str(home / ".local/share/jupyter"),
+        "JUPYTERLAB_SETTINGS_DIR": str(home / "settings"),
+        "JUPYTERLAB_WORKSPACES_DIR": str(home / "workspaces"),
+        "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
+    }
+    argv = [
+        sys.executable,
+        "-m",
+        "jupyterlab",
+        "--no-browser",
+        "--ip=127.0.0.1",
+        "--port=0",
+        f"--IdentityProvider.token={token}",
+    ]
+    argv += [
+        f"--ServerApp.root_dir={folder}",
+        "--LabApp.news_url=",
+        "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
+    ]
+    argv += ["--allow-root"]
+    server = subprocess.Popen(argv, env=env, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    address: list[str] = []
+    said: list[str] = []
+    ready = threading.Event()
+
+    def listen() -> None:
+        assert server.stderr is not None
+        for line in server.stderr:
+            said.append(line)
+            found = STARTED.search(line)
+            if found and not address:
+                address.append(f"http://127.0.0.1:{found[1]}")
+                ready.set()
+        ready.set()
+
+    threading.Thread(target=listen, daemon=True).start()
+    try:
+        ready.wait(START_S)
+        assert address, "".join(said)[-3000:]
+        yield f"{address[0]}/lab/tree/PATH?token={token}"
+    finally:
+        server.terminate()
+        try:
+            server.wait(20)
+        except subprocess.TimeoutExpired:
+            server.kill()
+            server.wait()
+
+
+def type_cell(page: Page, begins: str, text: str) -> None:
+    """Replace the text of the cell that begins so, by typing."""
+    cell = page.locator(".jp-CodeCell", has_text=begins).first
+    cell.scroll_into_view_if_needed()
+    cell.locator(".cm-content").click()
+    page.keyboard.press("Control+a")
+    page.keyboard.press("Delete")
+    # Not key by key: the editor would indent and close brackets on top of what is there.
+    page.keyboard.insert_text(text)
+
+
+def run_all(page: Page) -> None:
+    """Run > Run All Cells."""
+    page.get_by_role("menuitem", name="Run", exact=True).click()
+    page.get_by_role("menuitem", name="Run All Cells", exact=True).click()

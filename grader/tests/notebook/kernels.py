@@ -1,0 +1,69 @@
+"""A kernel of the course, as Jupyter starts one, for tests that run cells in it."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+from jupyter_client.kernelspec import KernelSpec
+from jupyter_client.manager import AsyncKernelManager
+from nbclient import NotebookClient
+
+from grader.notebook.kernel import kernelspec
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+
+class CourseKernel(AsyncKernelManager):
+    """Starts the course's kernel, whether or not it is installed for whoever runs the tests."""
+
+    transport = "ipc"
+
+    @property
+    def kernel_spec(self) -> KernelSpec:
+        spec: dict[str, Any] = kernelspec()
+        return KernelSpec(argv=spec["argv"], display_name=spec["display_name"], language=spec["language"])
+
+
+@dataclass
+class Notebook:
+    """An open notebook."""
+
+    client: NotebookClient
+    outputs: list[Any] = field(default_factory=list)
+
+    def run(self, source: str) -> str:
+        """Run a cell; returns all the text below it, errors included."""
+        cell = nbformat.v4.new_code_cell(source)
+        self.client.nb.cells.append(cell)
+        self.client.execute_cell(cell, len(self.client.nb.cells) - 1)
+        self.outputs = cell.outputs
+        texts = [
+            output.get("text") or output.get("data", {}).get("text/plain") or output.get("evalue") or ""
+            for output in cell.outputs
+        ]
+        return "".join(texts)
+
+    @property
+    def pid(self) -> int:
+        """The kernel's process."""
+        pid: int = self.client.km.provisioner.process.pid  # type: ignore[union-attr]
+        return pid
+
+
+@contextmanager
+def open_notebook(folder: Path) -> Iterator[Notebook]:
+    """A notebook in `folder`, with the course's kernel."""
+    client = NotebookClient(
+        nbformat.v4.new_notebook(),
+        timeout=180,
+        allow_errors=True,
+        kernel_manager_class=CourseKernel,
+        resources={"metadata": {"path": str(folder)}},
+    )
+    with client.setup_kernel():
+        yield Notebook(client)

@@ -1,0 +1,104 @@
+"""The notebooks of the course: honest about what is asked, and without a trace of what is not the student's to see."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from grader.errors import UsageError
+from grader.exercise import catalogue, course_folder, find_exercise
+from grader.notebook.released import released_notebook, without_hidden_tests
+from grader.notebook.source import refreshed
+
+ROOT = course_folder().parent
+STEPS = list(catalogue())
+
+
+def cells_of(step: str, root: str = "solutions") -> list[dict[str, Any]]:
+    cells: list[dict[str, Any]] = json.loads((ROOT / root / step / f"{step}.ipynb").read_text("utf-8"))["cells"]
+    return cells
+
+
+def about(cell: dict[str, Any]) -> dict[str, Any]:
+    found: dict[str, Any] = cell["metadata"].get("nbgrader", {})
+    return found
+
+
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("root", ["solutions", "exercises"])
+def test_each_check_is_a_grade_cell_of_the_same_id_and_points(step: str, root: str) -> None:
+    graded = [
+        (about(cell)["grade_id"], about(cell)["points"]) for cell in cells_of(step, root) if about(cell).get("grade")
+    ]
+    assert graded == [(spec.id, spec.points) for spec in find_exercise(step).checks]
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_every_file_with_something_to_solve_has_a_cell(step: str) -> None:
+    written = "".join(about(cell).get("grade_id", "") for cell in cells_of(step) if about(cell).get("solution"))
+    to_solve = [
+        path.name
+        for path in (ROOT / "solutions" / step).rglob("*")
+        if path.suffix in (".py", ".xml", ".toml") and "BEGIN SOLUTION" in path.read_text("utf-8")
+    ]
+    assert to_solve
+    for name in to_solve:
+        assert name.partition(".")[0].replace("_", "-") in written, name
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_a_notebook_is_read_quickly_and_says_where_the_lesson_is(step: str) -> None:
+    prose = " ".join("".join(cell["source"]) for cell in cells_of(step) if cell["cell_type"] == "markdown")
+    assert 60 <= len(prose.split()) <= 450
+    assert f"(../../course/{step}/lesson.md)" in prose
+
+
+def notebook(*cells: dict[str, Any]) -> bytes:
+    return json.dumps({"cells": list(cells), "metadata": {}, "nbformat": 4, "nbformat_minor": 5}).encode()
+
+
+def code(source: str, **about: object) -> dict[str, Any]:
+    meta = {"nbgrader": {"grade": False, "solution": False, "locked": False, "grade_id": "x", **about}} if about else {}
+    return {"cell_type": "code", "id": "a", "source": source, "metadata": meta, "outputs": [1], "execution_count": 3}
+
+
+def test_hidden_tests_are_not_released() -> None:
+    source = "check()\n### BEGIN HIDDEN TESTS\nassert secret\n### END HIDDEN TESTS\nlast"
+    text = released_notebook(notebook(code(source, grade=True, points=5)), "n").decode()
+    assert json.loads(text)["cells"][0]["source"] == ["check()\n", "last"]
+    assert "secret" not in text
+
+
+@pytest.mark.parametrize(
+    ("cell", "why"),
+    [
+        (code("x = 1", solution=True), "a solution cell without a BEGIN SOLUTION"),
+        (code("### BEGIN HIDDEN TESTS\nx\n### END HIDDEN TESTS"), "hidden tests in a cell that is not graded"),
+        (code("### BEGIN HIDDEN TESTS\nx", grade=True, points=1), "has no END HIDDEN TESTS"),
+        (code("### END HIDDEN TESTS\nx", grade=True, points=1), "where hidden tests are not open"),
+    ],
+)
+def test_what_would_hand_out_too_much_is_an_error(cell: dict[str, Any], why: str) -> None:
+    with pytest.raises(UsageError, match=why):
+        released_notebook(notebook(cell), "n")
+
+
+def test_a_source_without_hidden_tests_stays_as_it_is() -> None:
+    assert without_hidden_tests("a\nb\n", "n") == "a\nb\n"
+
+
+def test_a_cell_for_a_file_that_the_solution_lacks_is_an_error() -> None:
+    with pytest.raises(UsageError, match=r"n, cell 1: %%node other.py writes .*, which the solution does not have"):
+        refreshed(notebook(code("%%node other.py\nx")), find_exercise("03"), {}, "n")
+
+
+def test_a_source_is_brought_up_to_date() -> None:
+    exercise = find_exercise("03")
+    node = "my_robot_controller/my_robot_controller/a.py"
+    text = refreshed(notebook(code("%%node a.py\nold"), code("old", grade=True)), exercise, {node: b"new\n"}, "n")
+    cells = json.loads(text)["cells"]
+    assert cells[0]["source"] == ["%%node a.py\n", "new"]
+    assert [about(cell)["grade_id"] for cell in cells[1:]] == [spec.id for spec in exercise.checks]
+    assert refreshed(text, exercise, {node: b"new\n"}, "n") == text
