@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from grader import bootstrap, machine, sandbox, underlay
+from grader.control_group import control_group
 from grader.errors import MachineError
 from grader.ros import DISTRO, FASTDDS_PROFILE, Ros, environment, find_ros, has_turtlesim
 
@@ -72,6 +73,8 @@ def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] 
     lines += [look_at_disk(underlay.cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
     sandbox_line = look_at_sandbox()
     lines.append(sandbox_line)
+    if sandbox_line.state == "ok":
+        lines.append(look_at_limits())
     try:
         ros = find_ros(env)
     except MachineError as error:
@@ -211,6 +214,16 @@ def look_at_sandbox() -> Line:
     """Make a cell, as every student's process gets one."""
     why = sandbox.why_unavailable()
     return Line("sandbox", why or "bubblewrap makes cells", "broken" if why else "ok")
+
+
+def look_at_limits() -> Line:
+    """Who counts what a cell holds in all."""
+    with control_group(sandbox.NODE_LIMITS) as group:
+        if group:
+            return Line("limits", "memory and processes of a cell are counted by the kernel")
+    return Line(
+        "limits", "memory of a cell is counted ten times a second: the kernel lets nobody else make control groups"
+    )
 
 
 def look_at_node(ros: Ros, ours: Path | None) -> Line:

@@ -58,6 +58,10 @@ class Limits:
     cpu_s: int = 120
 
 
+NODE_LIMITS = Limits()
+"""What the node of a trial may use."""
+
+
 @dataclass(frozen=True)
 class View:
     """What a room or cell sees of the disk, each at its own path; `hidden` folders are empty there.

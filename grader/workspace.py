@@ -12,12 +12,13 @@ import shutil
 import tarfile
 import tempfile
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from grader import process, ros, sandbox
 from grader.build import Build
+from grader.control_group import control_group
 from grader.errors import MachineError
 from grader.system_calls import call_filter
 from grader.tar_stream import Member, read_tar
@@ -73,9 +74,11 @@ def build(submission: Submission, here: ros.Ros, underlay: Path | None, *, in_ce
         argv = ["sh", "-c", _SCRIPT]
         if in_cell:
             view = sandbox.ros_view(here, *([underlay] if underlay else []))
-            with call_filter() as filter_fd:
+            with call_filter() as filter_fd, control_group(LIMITS) as group:
                 command = sandbox.lone_cell(argv, view, env=env, limits=LIMITS, filter_fd=filter_fd)
-                done = _run(command, env, submission, () if filter_fd is None else (filter_fd,))
+                done = _run(group.joined(command), env, submission, () if filter_fd is None else (filter_fd,))
+                if group.out_of_memory():
+                    done = replace(done, out_of="memory")
         else:
             done = _run(sandbox.limited(argv, LIMITS), env, submission, ())
     return _read(done)

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from grader.trial.wall import WallTrial
 
 LAUNCHER = Path(__file__).with_name("launcher.py")
-LIMITS = sandbox.Limits()
 BUSY = 0.5
 BUSY_S = 0.04
 """While the node's processes worked for this share of a stall and this long, they made it, not the machine; so too
@@ -67,7 +66,9 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
         recording = AloneTrial(start, prefixes, inputs).record(order["duration_s"], order["seed"])
         _say(answers, {"recording": to_json(recording)})
         return
-    with NodeProcess(lambda *fds: _command(here, underlay, order, *fds), LIMITS, in_cell=order["in_cell"]) as node:
+    with NodeProcess(
+        lambda *fds: _command(here, underlay, order, *fds), sandbox.NODE_LIMITS, in_cell=order["in_cell"]
+    ) as node:
         # Imported here: while it takes its time, the launcher imports too.
         from grader.trial.simulated import SimulatedTrial
         from grader.trial.wall import WallTrial
@@ -143,10 +144,12 @@ def _command(
             "env",
             "-i",
             *(f"{key}={value}" for key, value in env.items()),
-            *sandbox.limited(launch, LIMITS),
+            *sandbox.limited(launch, sandbox.NODE_LIMITS),
         ]
     view = sandbox.ros_view(here, ros.FASTDDS_PROFILE, LAUNCHER, *([underlay] if underlay else []))
-    return sandbox.cell(launch, view, env=env, limits=LIMITS, network=True, info_fd=info_fd, filter_fd=filter_fd)
+    return sandbox.cell(
+        launch, view, env=env, limits=sandbox.NODE_LIMITS, network=True, info_fd=info_fd, filter_fd=filter_fd
+    )
 
 
 def _say(answers: IO[str], what: dict[str, Any]) -> None:

@@ -9,13 +9,14 @@ import signal
 import subprocess
 import tempfile
 from contextlib import ExitStack, suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from threading import Timer
 from typing import IO, TYPE_CHECKING, Any
 
 import grader
 from grader import ros, sandbox
+from grader.control_group import ControlGroup, control_group
 from grader.errors import MachineError
 from grader.trial.inputs import Inputs
 
@@ -65,6 +66,7 @@ class Trial:
         self._stack = ExitStack()
         self._started = False
         self._domain: int | None = None
+        self._group = ControlGroup()
 
     def __enter__(self) -> Trial:  # noqa: PYI034 - typing.Self is Python 3.11's
         self.start()
@@ -116,7 +118,10 @@ class Trial:
         self._answer("ready")
         self._send(json.dumps(order).encode() + b"\n" + tree)
         self._node_runs = True
-        return from_json(self._answer("recording"))
+        recording = from_json(self._answer("recording"))
+        if self._group.out_of_memory() and recording.end.by == "itself":
+            return replace(recording, end=replace(recording.end, out_of="memory"))
+        return recording
 
     def run_alone(self) -> Recording:
         """Return what the simulator did by itself, where the plan says `alone`.
@@ -147,7 +152,8 @@ class Trial:
             view = sandbox.ros_view(self._here, _FOLDER, *more)
             # What a node sends fills the memory of whoever listens; the conductor itself needs 1 GiB of addresses.
             argv = ["prlimit", f"--as={MOST_MEMORY}:", "--", *argv]
-            argv = sandbox.room(argv, sandbox.View(view.read_only), env=env)
+            self._group = self._stack.enter_context(control_group(sandbox.NODE_LIMITS))
+            argv = self._group.joined(sandbox.room(argv, sandbox.View(view.read_only), env=env))
         self._process = subprocess.Popen(
             argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, env=env, start_new_session=True
         )
