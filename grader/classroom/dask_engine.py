@@ -10,6 +10,7 @@ another's.
 
 from __future__ import annotations
 
+import pickle
 import queue
 import time
 import uuid
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
     from grader.classroom.task import Done, Task
 
-CONNECT_S = 20.0
+CONNECT_S = 10.0
 WORKERS_S = 60.0
 """How long to wait for the first worker, or for another one when all have gone."""
 LOOK_S = 1.0
@@ -37,11 +38,12 @@ _idle: list[Worker] = []
 _lock = Lock()
 
 
-def perform_here(task: Task) -> tuple[str, object]:
-    """Grade a task in a process of its own; runs in a thread of a Dask worker.
+def perform_here(packed: bytes) -> tuple[str, object]:
+    """Grade a pickled task in a process of its own; runs in a thread of a Dask worker.
 
     Returns ("done", Done), ("fails", text): this machine cannot grade, or ("died", text): the process is gone.
     """
+    task = pickle.loads(packed)  # (from the instructor's own command)
     with _lock:
         worker = _idle.pop() if _idle else Worker()
     worker.send(task)
@@ -107,8 +109,10 @@ class DaskEngine:
         where = self._free()
         assert where is not None
         key = f"grade-{uuid.uuid4().hex}"
+        # As bytes, which the scheduler passes on without unpacking them.
+        packed = pickle.dumps(task)
         future = self._client.submit(
-            perform_here, task, key=key, workers=[where], allow_other_workers=False, pure=False, retries=0
+            perform_here, packed, key=key, workers=[where], allow_other_workers=False, pure=False, retries=0
         )
         self._running[key] = _Running(future, task, where)
         future.add_done_callback(lambda ended: self._ended.put(ended.key))

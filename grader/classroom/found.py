@@ -84,8 +84,8 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
 
 
 def _is_one(folder: Path) -> bool:
-    """Whether a folder is one submission by itself: a package, or a clone."""
-    return any((folder / name).exists() for name in (*PACKAGE_FILES, ".git"))
+    """Whether a folder is one submission by itself: a package, or a clone of the course."""
+    return any((folder / name).exists() for name in (*PACKAGE_FILES, OWN))
 
 
 def _student(entry: Path) -> str | None:

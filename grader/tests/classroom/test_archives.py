@@ -1,0 +1,201 @@
+"""Archives as students hand them in, and as attackers make them."""
+
+from __future__ import annotations
+
+import io
+import os
+import stat
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from grader.classroom import archives, unpack
+from grader.classroom.archives import NotUnpackedError, stem, unpacked
+
+MANY = b"0" * 1024 * 1024
+
+
+def tar(file: Path, *members: tuple[tarfile.TarInfo, bytes], how: str = "w:gz") -> Path:
+    with tarfile.open(file, how) as archive:  # type: ignore[call-overload]
+        for info, content in members:
+            info.size = len(content)
+            archive.addfile(info, io.BytesIO(content))
+    return file
+
+
+def member(name: str, kind: bytes = tarfile.REGTYPE, link: str = "", mode: int = 0o644) -> tarfile.TarInfo:
+    info = tarfile.TarInfo(name)
+    info.type, info.linkname, info.mode = kind, link, mode
+    return info
+
+
+def zipped(file: Path, *members: tuple[str | zipfile.ZipInfo, bytes]) -> Path:
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in members:
+            archive.writestr(name, content)
+    return file
+
+
+def files(archive: Path) -> dict[str, bytes]:
+    with unpacked(archive) as folder:
+        found = {str(path.relative_to(folder)): path for path in folder.rglob("*") if not path.is_dir()}
+        assert all(stat.S_ISREG(path.lstat().st_mode) for path in found.values())
+        return {name: path.read_bytes() for name, path in found.items()}
+
+
+def why_not(archive: Path) -> str:
+    with pytest.raises(NotUnpackedError) as error, unpacked(archive):
+        pass
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "how"), [("a.tar.gz", "w:gz"), ("a.tgz", "w:gz"), ("a.tar", "w"), ("A.TAR.GZ", "w:gz")]
+)
+def test_tar_archives_are_unpacked(tmp_path: Path, name: str, how: str) -> None:
+    archive = tar(tmp_path / name, (member("p/package.xml"), b"<package/>"), (member("p/é.py"), b"1"), how=how)
+    assert files(archive) == {"p/package.xml": b"<package/>", "p/é.py": b"1"}
+
+
+def test_zip_archives_are_unpacked_those_of_windows_too(tmp_path: Path) -> None:
+    archive = zipped(tmp_path / "a.zip", ("p/", b""), ("p/package.xml", b"<package/>"), ("p\\p\\node.py", b"1"))
+    assert files(archive) == {"p/package.xml": b"<package/>", "p/p/node.py": b"1"}
+
+
+def test_the_executable_bit_is_kept_and_no_other(tmp_path: Path) -> None:
+    info = zipfile.ZipInfo("run.py")
+    info.external_attr = (stat.S_IFREG | 0o6777) << 16
+    for archive in (
+        zipped(tmp_path / "a.zip", (info, b"1")),
+        tar(tmp_path / "a.tar.gz", (member("run.py", mode=0o6777), b"1")),
+    ):
+        with unpacked(archive) as folder:
+            assert stat.S_IMODE((folder / "run.py").stat().st_mode) == 0o755
+
+
+def test_what_was_unpacked_is_gone_afterwards(tmp_path: Path) -> None:
+    with unpacked(zipped(tmp_path / "a.zip", ("a", b"1"))) as folder:
+        assert folder.is_dir()
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("name", ["../out", "a/../../out", "/tmp/out", "..\\out"])
+def test_a_path_that_leads_out_is_refused(tmp_path: Path, name: str) -> None:
+    assert "leads out of it" in why_not(zipped(tmp_path / "a.zip", (name, b"1")))
+    if "\\" not in name:
+        assert "leads out of it" in why_not(tar(tmp_path / "a.tar.gz", (member(name), b"1")))
+    assert not (tmp_path / "out").exists()
+
+
+def test_links_and_devices_are_not_made_and_nothing_is_written_through_them(tmp_path: Path) -> None:
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    archive = tar(
+        tmp_path / "a.tar.gz",
+        (member("way", tarfile.SYMTYPE, str(outside)), b""),
+        (member("way/file"), b"1"),
+        (member("hard", tarfile.LNKTYPE, "/etc/passwd"), b""),
+        (member("null", tarfile.CHRTYPE), b""),
+        (member("pipe", tarfile.FIFOTYPE), b""),
+    )
+    assert files(archive) == {"way/file": b"1"}
+    assert list(outside.iterdir()) == []
+    link = zipfile.ZipInfo("link")
+    link.external_attr = (stat.S_IFLNK | 0o777) << 16
+    assert files(zipped(tmp_path / "a.zip", (link, b"/etc/passwd"), ("a", b"1"))) == {"a": b"1"}
+
+
+def test_a_bomb_is_refused_before_it_has_gone_off(tmp_path: Path) -> None:
+    archive = zipped(tmp_path / "a.zip", *((f"f{number}", MANY) for number in range(100)))
+    assert archive.stat().st_size < 1024 * 1024
+    assert "unpacks to more than the 96 MiB" in why_not(archive)
+
+
+@pytest.mark.parametrize("kind", ["files", "header"])
+def test_a_bomb_in_a_tar_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str) -> None:
+    monkeypatch.setattr(unpack, "MOST_BYTES", 2 * len(MANY))
+    monkeypatch.setattr(unpack, "MOST_ENTRIES", 100)
+    archive = tmp_path / "a.tar.gz"
+    if kind == "files":
+        tar(archive, *((member(f"f{number}"), MANY) for number in range(4)))
+    else:  # a name that is read whole before anybody asks how long it is
+        info = member("long")
+        info.pax_headers = {"path": "a" * 4 * len(MANY)}
+        with tarfile.open(archive, "w:gz", format=tarfile.PAX_FORMAT) as packed:
+            packed.addfile(info)
+    with pytest.raises(unpack.RefusedError, match="unpacks to more than the 2 MiB"):
+        unpack.unpack(archive, tmp_path)
+
+
+def test_a_zip_that_understates_its_sizes_is_refused(tmp_path: Path) -> None:
+    archive = zipped(tmp_path / "a.zip", ("f", MANY * 120))
+    data = archive.read_bytes()
+    size = (120 * 1024 * 1024).to_bytes(4, "little")
+    archive.write_bytes(data.replace(size, (100).to_bytes(4, "little")))
+    assert why_not(archive)
+
+
+def test_too_many_files_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(unpack, "MOST_ENTRIES", 10)
+    archive = zipped(tmp_path / "a.zip", *((f"f{number}", b"") for number in range(11)))
+    with pytest.raises(unpack.RefusedError, match="holds more than 10 entries"):
+        unpack.unpack(archive, tmp_path)
+
+
+def test_a_file_and_a_folder_of_one_name_are_refused(tmp_path: Path) -> None:
+    assert "both as a file and as a folder" in why_not(zipped(tmp_path / "a.zip", ("a", b"1"), ("a/b", b"2")))
+    assert "both as a file and as a folder" in why_not(zipped(tmp_path / "b.zip", ("a/b", b"1"), ("a", b"2")))
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("a.zip", b"PK\x03\x04 and no more", "is no .zip or .tar.gz"),
+        ("a.tar.gz", b"\x1f\x8b\x08\x00 broken", "is no .zip or .tar.gz"),
+        ("a.zip", b"", "is no .zip or .tar.gz"),
+        ("a.rar", b"Rar!", "hand in a .zip or a .tar.gz"),
+        ("a.7z", b"7z", "hand in a .zip or a .tar.gz"),
+    ],
+)
+def test_what_is_no_archive_is_told(tmp_path: Path, name: str, content: bytes, said: str) -> None:
+    (tmp_path / name).write_bytes(content)
+    assert said in why_not(tmp_path / name)
+
+
+def test_a_locked_zip_is_told(tmp_path: Path) -> None:
+    archive = zipped(tmp_path / "a.zip", ("a", b"1"))
+    data = bytearray(archive.read_bytes())
+    for head, flags in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
+        data[data.index(head) + flags] |= 1
+    archive.write_bytes(data)
+    assert "password" in why_not(archive)
+
+
+def test_what_takes_too_long_takes_its_own_process_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    endless = tmp_path / "endless.py"
+    endless.write_text("while True: pass\n")
+    monkeypatch.setattr(archives, "_SCRIPT", endless)
+    monkeypatch.setattr(archives, "_LIMITS", ("prlimit", "--cpu=1", "--"))
+    assert "could not be unpacked within" in why_not(zipped(tmp_path / "a.zip", ("a", b"1")))
+
+
+def test_the_unpacker_needs_nothing_but_python(tmp_path: Path) -> None:
+    script = Path(unpack.__file__)
+    archive = zipped(tmp_path / "a.zip", ("a", b"1"))
+    (tmp_path / "to").mkdir()
+    done = subprocess.run(
+        [sys.executable, "-I", "-S", script, archive, tmp_path / "to"], capture_output=True, check=True, env={}
+    )
+    assert (done.stdout, done.stderr, os.listdir(tmp_path / "to")) == (b'{"why": null}\n', b"", ["a"])  # noqa: PTH208
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("ann.zip", "ann"), ("ann.b.TAR.GZ", "ann.b"), ("ann.rar", "ann"), ("ann.txt", None), (".zip", None)],
+)
+def test_an_archive_is_called_after_the_student(name: str, expected: str | None) -> None:
+    assert stem(name) == expected

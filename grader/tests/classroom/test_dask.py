@@ -1,0 +1,110 @@
+"""Dask's workers: real ones, that are killed, and that something kills."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader import sandbox
+from grader.classroom import dask_engine
+from grader.classroom.dask_engine import DaskEngine
+from grader.errors import UsageError
+from grader.tests.case import copy_solution
+from grader.tests.classroom.a_class import STEP, environment, grade, judged
+from grader.tests.classroom.test_run import assert_set_aside, graded, make_four, order_of, waited
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.classroom.engine import Event
+    from grader.tests.classroom.conftest import Run
+
+DASK = str(Path(sys.executable).with_name("dask"))
+
+
+class Cluster:
+    """A scheduler, and workers that are started and killed."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self.processes: list[subprocess.Popen[bytes]] = []
+        file = folder / "scheduler.json"
+        self._start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-show", "--scheduler-file", file)
+        waited(lambda: file.exists() and file.read_text().endswith("}"))
+        self.address = json.loads(file.read_text())["address"].removeprefix("tcp://")
+
+    def worker(self, *options: str) -> subprocess.Popen[bytes]:
+        """A worker of one thread. With a nanny, as it is by default, another takes the place of one that died."""
+        return self._start("worker", f"tcp://{self.address}", "--nthreads", "1", *options)
+
+    def _start(self, *arguments: object) -> subprocess.Popen[bytes]:
+        argv = [DASK, *map(str, arguments), "--no-dashboard"]
+        log = (self._folder / f"{len(self.processes)}.log").open("wb")
+        with log:
+            child = subprocess.Popen(argv, cwd=self._folder, stdout=log, stderr=log, env=environment())
+        self.processes.append(child)
+        return child
+
+    def close(self) -> None:
+        for process in reversed(self.processes):
+            process.send_signal(signal.SIGTERM)
+        for process in self.processes:
+            process.wait(60)
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[Cluster]:
+    if not sandbox.usable():
+        pytest.skip("there is no sandbox here")
+    (tmp_path / "dask").mkdir()
+    made = Cluster(tmp_path / "dask")
+    yield made
+    made.close()
+
+
+def test_what_kills_workers_is_set_aside_and_the_others_go_on(cluster: Cluster, tmp_path: Path) -> None:
+    cluster.worker()
+    order = order_of(make_four(tmp_path / "class"))
+    done = graded(order, DaskEngine(cluster.address, None), tmp_path / "grades")
+    assert_set_aside(done)
+
+
+def test_what_a_lost_worker_had_is_graded_by_another(cluster: Cluster, tmp_path: Path) -> None:
+    lost = cluster.worker("--no-nanny")
+    copy_solution(STEP, tmp_path / "class" / "anna")
+
+    class Striking(DaskEngine):
+        """Loses its only worker while that has the submission; another one joins."""
+
+        def events(self, timeout_s: float) -> list[Event]:
+            if self._running and lost.poll() is None:
+                lost.kill()
+                lost.wait()
+                cluster.worker("--no-nanny")
+            return super().events(timeout_s)
+
+    done = graded(order_of(tmp_path / "class"), Striking(cluster.address, None), tmp_path / "grades")
+    assert lost.returncode == -signal.SIGKILL
+    assert done["anna"].report.points == 100.0
+
+
+def test_no_scheduler_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dask_engine, "CONNECT_S", 0.2)
+    with pytest.raises(UsageError, match=r"No Dask scheduler answers at 127\.0\.0\.1:1"):
+        DaskEngine("127.0.0.1:1", None)
+
+
+@pytest.mark.exhaustive
+def test_a_class_by_dask_is_the_same_class(cluster: Cluster, undisturbed: Run, tmp_path: Path) -> None:
+    for _ in range(2):
+        cluster.worker()
+    arguments = ("--exercise", STEP, "--out", tmp_path / "grades", "--engine", f"dask://{cluster.address}")
+    done = grade(undisturbed.submitted, *arguments)
+    assert done.returncode == 0, done.stderr
+    assert judged(tmp_path / "grades") == judged(undisturbed.out)

@@ -1,0 +1,151 @@
+"""A run that is killed, or that cannot write, goes on by the same command; nothing is lost, nothing is there twice."""
+
+from __future__ import annotations
+
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import pytest
+
+from grader.tests.classroom.a_class import POINTS, STEP, command, environment, grade, judged, rows
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from grader.tests.classroom.conftest import Run
+
+Blow = Literal["grader", "worker", "disk"]
+LONGEST_S = 600.0
+NO_ROOM = 4096
+"""Bytes: no report is as small."""
+
+
+class Killer:
+    """Runs the command, strikes at instants drawn from a seed, and starts it again until it comes through."""
+
+    def __init__(self, run: Run, out: Path, seed: int) -> None:
+        self._arguments = (run.submitted, "--exercise", STEP, "--out", out)
+        self._out = out
+        self._draw = random.Random(seed)
+        self.struck: list[Blow] = []
+
+    def until_struck(self, blows: list[Blow], within_s: float) -> None:
+        """Strike once each; a run that was through before is one more."""
+        for blow in blows:
+            with subprocess.Popen(
+                command(*self._arguments),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                env=environment(),
+            ) as child:
+                until(child, lambda pid=child.pid: bool(list(children(pid))), LONGEST_S)
+                until(child, lambda: False, self._draw.uniform(0.0, within_s))
+                if child.poll() is None and self._strike(child.pid, blow):
+                    self.struck.append(blow)
+                assert child.stderr is not None
+                child.stderr.read()
+                child.wait(LONGEST_S)
+
+    def finish(self) -> None:
+        done = grade(*self._arguments)
+        assert done.returncode == 0, done.stderr
+
+    def _strike(self, pid: int, blow: Blow) -> bool:
+        try:
+            if blow == "grader":
+                os.kill(pid, signal.SIGKILL)
+            elif blow == "disk":
+                # As if it were full from now on, for the grader alone.
+                resource.prlimit(pid, resource.RLIMIT_FSIZE, (NO_ROOM, resource.RLIM_INFINITY))
+            else:
+                workers = list(children(pid))
+                if not workers:
+                    return False
+                os.kill(self._draw.choice(workers), signal.SIGKILL)
+        except ProcessLookupError:
+            return False
+        return True
+
+
+def until(child: subprocess.Popen[bytes], seen: Callable[[], bool], seconds: float) -> None:
+    """Wait until something is seen, the child has ended, or the time is over."""
+    end = time.monotonic() + seconds
+    while child.poll() is None and time.monotonic() < end and not seen():
+        time.sleep(0.01)
+
+
+def children(pid: int) -> Iterator[int]:
+    with suppress(OSError):  # it has ended
+        for task in Path(f"/proc/{pid}/task").iterdir():
+            yield from map(int, (task / "children").read_text().split())
+
+
+def assert_nothing_lost(run: Run, out: Path) -> None:
+    assert judged(out) == judged(run.out)
+    assert sorted(row["submission"] for row in rows(out)) == sorted(POINTS)
+    files = sorted(file.name for file in (out / "reports").iterdir())
+    assert files == sorted(file.name for file in (run.out / "reports").iterdir())
+
+
+def test_killed_three_times_and_started_again_nothing_is_lost(undisturbed: Run, tmp_path: Path) -> None:
+    out = tmp_path / "grades"
+    killer = Killer(undisturbed, out, seed=8)
+    killer.until_struck(["grader", "disk", "worker"], within_s=2.0)
+    killer.finish()
+    assert killer.struck == ["grader", "disk", "worker"]
+    assert_nothing_lost(undisturbed, out)
+
+
+@pytest.mark.exhaustive
+@pytest.mark.timeout(7200)
+def test_killed_fifty_times_at_random_instants_nothing_is_lost(undisturbed: Run, tmp_path: Path) -> None:
+    struck: list[Blow] = []
+    seed = 0
+    while len(struck) < 50:
+        out = tmp_path / f"grades-{seed}"
+        killer = Killer(undisturbed, out, seed)
+        # A run whose worker was killed comes through by itself: that one is the last.
+        blows: list[Blow] = ["grader", "disk", "grader"]
+        random.Random(seed).shuffle(blows)
+        killer.until_struck([*blows, "worker"], within_s=6.0)
+        killer.finish()
+        struck += killer.struck
+        assert_nothing_lost(undisturbed, out)
+        seed += 1
+    assert {"grader", "worker", "disk"} <= set(struck)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root makes a small disk")
+def test_on_a_full_disk_it_stops_with_a_sentence_and_goes_on_when_there_is_room(
+    undisturbed: Run, tmp_path: Path
+) -> None:
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mounted = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk], capture_output=True, check=False
+    )
+    if mounted.returncode != 0:
+        pytest.skip("no small disk can be made here")
+    try:
+        two = tmp_path / "two"
+        for student in ("anna", "gina"):
+            shutil.copytree(undisturbed.submitted / student, two / student)
+        arguments = (two, "--exercise", STEP, "--out", disk / "grades")
+        full = grade(*arguments)
+        assert (full.returncode, "No space left on device" in full.stderr) == (3, True), full.stderr
+        assert not list((disk / "grades").rglob("*.partial"))
+        subprocess.run(["mount", "-o", "remount,size=16m", disk], check=True)
+        assert grade(*arguments).returncode == 0
+        whole = judged(undisturbed.out)
+        assert judged(disk / "grades") == {student: whole[student] for student in ("anna", "gina")}
+    finally:
+        subprocess.run(["umount", disk], check=True)

@@ -1,0 +1,90 @@
+"""Results on the disk: whole or not at all, one a submission."""
+
+from __future__ import annotations
+
+import errno
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.classroom.key import Key, changed, grader_key
+from grader.classroom.results import Results, file_name, opened
+from grader.errors import MachineError, UsageError
+from grader.tests.report.reports import report
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+KEY = Key("submission", "anna", "exercise", "grader", "ros", "options")
+
+
+def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
+    with opened(tmp_path / "grades") as results:
+        saved = results.save("anna", report("failed"), KEY, b"<p>page")
+        assert results.load("anna", saved.report.exercise) == saved
+        assert results.load("ben", saved.report.exercise) is None
+
+
+def test_without_its_page_a_result_is_not_finished(tmp_path: Path) -> None:
+    with opened(tmp_path / "grades") as results:
+        saved = results.save("anna", report("failed"), KEY, b"<p>page")
+        (tmp_path / "grades" / "reports" / saved.page).unlink()
+        assert results.load("anna", saved.report.exercise) is None
+
+
+def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with opened(tmp_path / "grades") as results:
+        saved = results.save("anna", report("failed"), KEY, b"<p>page")
+
+        def full(_: int) -> None:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        monkeypatch.setattr("os.fsync", full)
+        with pytest.raises(MachineError, match=r"No space left on device.*the same command goes on"):
+            results.save("anna", report("passed"), KEY, b"<p>new")
+        assert results.load("anna", saved.report.exercise) == saved
+        assert not list((tmp_path / "grades").rglob("*.partial"))
+
+
+def test_a_folder_of_somebody_else_is_not_touched(tmp_path: Path) -> None:
+    (tmp_path / "index.html").write_text("mine")
+    with pytest.raises(UsageError, match="holds something else"), opened(tmp_path):
+        pass
+    assert [file.name for file in tmp_path.iterdir()] == ["index.html"]
+
+
+def test_the_key_tells_what_changed() -> None:
+    assert changed(KEY.to_data(), KEY) == ()
+    assert changed({**KEY.to_data(), "grader": "older"}, KEY) == ("grader",)
+    assert changed({}, KEY) == ("submission", "student", "exercise", "grader", "ros", "options")
+
+
+def test_the_key_of_the_grader_has_its_version_and_sources() -> None:
+    version, sources = grader_key().split()
+    assert version.count(".") == 2
+    assert len(sources) == 16
+
+
+@given(st.text(min_size=1, max_size=300).filter(lambda text: "/" not in text and "\0" not in text))
+def test_every_name_becomes_a_file_name(student: str) -> None:
+    name = file_name(student, "03-circle-publisher")
+    assert "/" not in name
+    assert not name.startswith(".")
+    assert len(name.encode()) < 200
+
+
+@given(st.lists(st.text(min_size=1, max_size=300), min_size=2, max_size=2, unique=True))
+def test_no_two_students_share_a_file(students: list[str]) -> None:
+    first, second = (file_name(student, "x") for student in students)
+    assert first != second
+
+
+def test_a_name_that_is_not_utf8_can_be_saved(tmp_path: Path) -> None:
+    with opened(tmp_path / "grades") as results:
+        saved = results.save("ann\udce4", report("failed"), KEY, b"")
+        found = results.load("ann\udce4", saved.report.exercise)
+        assert isinstance(results, Results)
+        assert found is not None
+        assert found.page == saved.page
