@@ -79,6 +79,11 @@ class Teleop(Node):
         if self._goal is not None:
             await self._goal.cancel_goal_async()
 
+    def destroy_node(self) -> None:
+        """Leave the graph; an action client that is kept would keep the node in it."""
+        self._rotate.destroy()
+        super().destroy_node()
+
     def _see_that(self, somebody: Callable[[], bool], name: str) -> bool:
         """Whether somebody is there; if not in the first two seconds either, say so."""
         while not somebody() and time.monotonic() < self._begun + _DISCOVERY_S:

@@ -6,6 +6,7 @@ subscribed to only while somebody looks, and only if its rate is not known from 
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from contextlib import suppress
@@ -35,6 +36,8 @@ LOOKED_EVERY_S = 0.4
 MOST_HZ = 500.0
 """A topic that speaks more often is not listened to: counting it would cost more than it tells."""
 _SPARED_S = 10.0
+_LAST_WORD_S = 1.0
+"""A last command has arrived by then."""
 DRIVER = "view_keys"
 """The node that the graph shows once somebody drives."""
 
@@ -64,6 +67,7 @@ class Ears:
         self._known = known
         self._counters: dict[str, _Counter] = {}
         self._driver: tuple[str, Teleop] | None = None
+        self._leave_s = math.inf
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(node)
         node.create_timer(LOOKED_EVERY_S, self._look)
@@ -91,6 +95,8 @@ class Ears:
     def _look(self) -> None:
         seen = heard(self._node)
         now = time.monotonic()
+        if now >= self._leave_s:
+            self._leave()
         wanted = self._wanted(seen) if self.looking else {}
         for topic in [topic for topic in self._counters if topic not in wanted]:
             self._counters.pop(topic).close(self._node)
@@ -116,11 +122,12 @@ class Ears:
 
     def drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
         """Do what a key of turtle_teleop_key does, for the turtle of this full name, as "/turtle1"."""
+        self._leave_s = math.inf
         self._executor.create_task(self._drive, turtle, key)
 
     def leave(self) -> None:
-        """Nobody drives any more: the node leaves the graph."""
-        self._executor.create_task(self._leave)
+        """Nobody drives any more: the node leaves the graph, once its last command has arrived."""
+        self._leave_s = time.monotonic() + _LAST_WORD_S
 
     async def _drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
         if self._driver is None or self._driver[0] != turtle:
@@ -144,6 +151,7 @@ class Ears:
             self._executor.remove_node(self._driver[1])
             self._driver[1].destroy_node()
             self._driver = None
+            self._leave_s = math.inf
 
 
 class _Counter:
