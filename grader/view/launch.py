@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 Kind = Literal["page", "terminal"]
 _SERVED_WITH = ("starlette", "uvicorn", "websockets")
+_WITHOUT_COLOURS = ("", "dumb", "unknown")
+"""Values of TERM."""
 _ENDS_S = 5.0
 """A view that has not ended by then, after its simulator, is killed."""
 
@@ -122,6 +124,10 @@ def _terminal(feed: socket.socket) -> Iterator[subprocess.Popen[bytes]]:
             "--view terminal draws in a terminal and reads its keys, and here standard input or output is none (a "
             "pipe, a file, or it was started in the background)."
         )
+        raise UsageError(message)
+    name = os.environ.get("TERM", "")
+    if name in _WITHOUT_COLOURS:
+        message = f"--view terminal draws in colours, and this terminal (TERM={name}) has none."
         raise UsageError(message)
     before = termios.tcgetattr(sys.stdin.fileno())
     reading, writing = os.pipe()

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.live import Live
 
-from grader.errors import UsageError
 from grader.ros2.discovery import cli_node
 from grader.turtles.keys import Drive, Quit, keys
 from grader.turtles.terminal import keyboard
@@ -112,9 +111,6 @@ class Terminal:
 def watch(feed: socket.socket, said: int) -> int:
     """Draw until the simulator ends, Q or Ctrl-C; returns the exit code."""
     console = Console(highlight=False, no_color=False)
-    if console.color_system is None:
-        message = f"--view terminal draws in colours, and this terminal (TERM={os.environ.get('TERM', '')}) has none."
-        raise UsageError(message)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     feed.settimeout(0.0)
     os.set_blocking(said, False)

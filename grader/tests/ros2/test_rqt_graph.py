@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import io
+import json
 import os
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from PIL import Image
+from websockets.sync.client import connect
 
-from grader.tests.ros2.world import SOLUTION, World, world
+from grader.tests.ros2.world import HANG_S, SOLUTION, World, world
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -73,23 +76,47 @@ def test_without_grader_env_it_finds_ros_by_itself(tutorial: World) -> None:
     assert (done.code, done.stdout, done.stderr) == (0, (GOLDEN / "tutorial.unicode.txt").read_text(), "")
 
 
-@pytest.mark.parametrize(("viewer", "opened"), [("exit 0", True), ("exit 3", False)])
-def test_where_there_is_a_screen_the_picture_is_opened(
-    tutorial: World, tmp_path: Path, viewer: str, opened: bool
-) -> None:
+@pytest.fixture
+def before_a_screen(tutorial: World, tmp_path: Path) -> World:
+    """A desktop whose browser notes the address, and fails where BROKEN is set."""
     program = tmp_path / "xdg-open"
-    program.write_text(f'#!/bin/sh\ncp "$1" {tmp_path}/seen.png\n{viewer}\n')
+    program.write_text(f'#!/bin/sh\necho "$1" > {tmp_path}/opened\nexit ${{BROKEN:-0}}\n')
     program.chmod(0o755)
-    screen = {"PATH": f"{tmp_path}:{tutorial.env['PATH']}", "DISPLAY": ":0", "TMPDIR": str(tmp_path)}
-    before_it = World(tutorial.home, {**tutorial.env, **screen})
-    done = before_it.run("rqt_graph")
+    return World(tutorial.home, {**tutorial.env, "PATH": f"{tmp_path}:{tutorial.env['PATH']}", "DISPLAY": ":0"})
+
+
+def test_where_there_is_a_browser_the_graph_is_shown_live_until_ctrl_c(before_a_screen: World, tmp_path: Path) -> None:
+    graph = before_a_screen.start("rqt_graph", "http://127.0.0.1:")
+    until_opened(tmp_path / "opened")
+    address = (tmp_path / "opened").read_text().strip()
+    assert graph.lines == [f"The graph, live until Ctrl-C: {address}"]
+    host, _, token = address.removeprefix("http://").partition("/#")
+    with connect(f"ws://{host}/live?token={token}", origin=f"http://{host}") as page:  # type: ignore[arg-type]
+        shown = next(news for news in map(json.loads, page) if news["kind"] == "graph")["graph"]
+    labels = {node["label"] for node in shown["nodes"]}
+    assert {"/draw_circle", "/turtle1/cmd_vel", "/turtlesim"} <= labels
+    assert not any("rqt_graph" in label or "view" in label for label in labels)
+    assert {"from": "/draw_circle", "to": "/turtle1/cmd_vel"}.items() <= shown["arrows"][0].items()
+    assert graph.stop() == 0
+    assert not any("Traceback" in line for line in graph.lines)
+
+
+def until_opened(file: Path) -> None:
+    deadline = time.monotonic() + HANG_S
+    while not file.exists() or not file.read_text():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def test_where_the_browser_cannot_be_started_it_is_text(before_a_screen: World) -> None:
+    done = before_a_screen.run("rqt_graph", BROKEN="3")
     assert done.code == 0
-    assert Image.open(tmp_path / "seen.png").format == "PNG"
-    assert done.stdout.startswith("Opened ") == opened
-    assert ("[/turtle1/cmd_vel]" in done.stdout) != opened
-    (tmp_path / "seen.png").unlink()
-    assert "[/turtle1/cmd_vel]" in before_it.run("rqt_graph --text").stdout
-    assert not (tmp_path / "seen.png").exists()
+    assert "[/turtle1/cmd_vel]" in done.stdout
+
+
+def test_text_is_printed_also_where_there_is_a_browser(before_a_screen: World, tmp_path: Path) -> None:
+    assert "[/turtle1/cmd_vel]" in before_a_screen.run("rqt_graph --text").stdout
+    assert not (tmp_path / "opened").exists()
 
 
 # --- wrong use ------------------------------------------------------------------------------------------------------

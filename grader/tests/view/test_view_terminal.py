@@ -1,0 +1,124 @@
+"""turtlesim_node --view terminal in a terminal of its own: drawn, driven, and left as it was found."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pexpect
+import pytest
+
+from grader.tests.ros2.world import HANG_S, World, world
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+UP = "\x1b[A"
+VIEW = "ros2 run turtlesim turtlesim_node --view terminal"
+COLOURS = {"TERM": "xterm-256color", "COLORTERM": "truecolor"}
+SEA = "48;2;69;86;255"
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    yield from world(tmp_path_factory.mktemp("terminal"))
+
+
+def shell(of: World, **env: str) -> pexpect.spawn:
+    made = pexpect.spawn(
+        "bash",
+        ["--norc", "--noprofile"],
+        env={**of.env, **COLOURS, **env},
+        cwd=of.home,
+        encoding="utf-8",
+        timeout=HANG_S,
+        dimensions=(36, 120),
+    )
+    made.sendline("PS1=ready''; echo $$; stty -a > before")
+    made.expect("ready")
+    return made
+
+
+def see_it_restored(terminal: pexpect.spawn, of: World) -> None:
+    # The other screen is left, the cursor seen again.
+    terminal.expect(re.escape("\x1b[?1049l"))
+    terminal.expect("ready")
+    terminal.sendline("stty -a > after; exit")
+    terminal.expect(pexpect.EOF)
+    terminal.close()
+    assert (of.home / "after").read_text() == (of.home / "before").read_text()
+
+
+def test_the_turtle_is_drawn_and_driven_and_the_terminal_left_as_it_was(system: World) -> None:
+    terminal = shell(system)
+    terminal.sendline(VIEW)
+    terminal.expect("live")
+    terminal.expect(SEA)
+    # What the simulator says does not run through the picture.
+    terminal.expect("Spawning turtle")
+    terminal.expect(r"x +5\.54 m")
+    terminal.expect("/turtle1/pose")
+    terminal.send(UP)
+    terminal.expect(r"linear\.x +2\.00 m/s")
+    terminal.expect(r"x +(?!5\.54)\d\.\d\d m")
+    # The key comes no more: it was let go.
+    terminal.expect(r"linear\.x +0\.00 m/s")
+    terminal.send(" ")
+    terminal.expect("paused")
+    terminal.send(" ")
+    terminal.expect("live")
+    terminal.send("z")
+    terminal.expect(r"x +5\.54 m")
+    terminal.sendintr()
+    see_it_restored(terminal, system)
+
+
+@pytest.mark.parametrize("how", ["q", pytest.param("killed", marks=pytest.mark.exhaustive)])
+def test_it_ends_and_leaves_the_terminal_as_it_was(system: World, how: str) -> None:
+    terminal = shell(system)
+    terminal.sendline(VIEW)
+    terminal.expect("Q quit")
+    terminal.expect(r"x +5\.54 m")
+    if how == "q":
+        terminal.send("q")
+    else:
+        # The view alone; its simulator puts things right.
+        done = system.run("pkill -KILL -f 'grader.view terminal'")
+        assert done.code == 0
+        terminal.expect("ready")
+        terminal.sendline("stty -a > after; exit")
+        terminal.expect(pexpect.EOF)
+        assert (system.home / "after").read_text() == (system.home / "before").read_text()
+        return
+    see_it_restored(terminal, system)
+
+
+@pytest.mark.parametrize("stdin", ["", "echo | "])
+def test_it_says_that_it_needs_a_terminal(system: World, stdin: str) -> None:
+    done = system.run(f"{stdin}{VIEW}")
+    assert done.code == 2
+    assert "standard input or output is none" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_a_terminal_without_colours_is_told(system: World) -> None:
+    terminal = shell(system, TERM="dumb", COLORTERM="")
+    terminal.sendline(f"{VIEW}; echo code=$?")
+    terminal.expect(r"this terminal \(TERM=dumb\) has none")
+    terminal.expect("code=2")
+    terminal.close()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ("--view window", "invalid choice: 'window'"),
+        ("--port 8000", "--port is for --view"),
+        ("--view --port 70000", "0 to 65535"),
+    ],
+)
+def test_wrong_use_is_told(system: World, arguments: str, said: str) -> None:
+    done = system.run(f"ros2 run turtlesim turtlesim_node {arguments}")
+    assert done.code == 2
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
