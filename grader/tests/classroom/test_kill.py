@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import random
 import resource
@@ -16,9 +17,10 @@ from typing import TYPE_CHECKING, Literal
 import pytest
 
 from grader.tests.classroom.a_class import POINTS, STEP, command, environment, grade, judged, rows
+from grader.tests.classroom.test_run import command_line
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from grader.tests.classroom.conftest import Run
 
@@ -47,7 +49,7 @@ class Killer:
                 stderr=subprocess.PIPE,
                 env=environment(),
             ) as child:
-                until(child, lambda pid=child.pid: bool(list(children(pid))), LONGEST_S)
+                until(child, functools.partial(has_workers, child.pid), LONGEST_S)
                 until(child, lambda: False, self._draw.uniform(0.0, within_s))
                 if child.poll() is None and self._strike(child.pid, blow):
                     self.struck.append(blow)
@@ -67,7 +69,7 @@ class Killer:
                 # As if it were full from now on, for the grader alone.
                 resource.prlimit(pid, resource.RLIMIT_FSIZE, (NO_ROOM, resource.RLIM_INFINITY))
             else:
-                workers = list(children(pid))
+                workers = workers_of(pid)
                 if not workers:
                     return False
                 os.kill(self._draw.choice(workers), signal.SIGKILL)
@@ -83,10 +85,17 @@ def until(child: subprocess.Popen[bytes], seen: Callable[[], bool], seconds: flo
         time.sleep(0.01)
 
 
-def children(pid: int) -> Iterator[int]:
+def has_workers(pid: int) -> bool:
+    return bool(workers_of(pid))
+
+
+def workers_of(pid: int) -> list[int]:
+    """The grader's workers; it has other children too, for a moment."""
+    found: list[int] = []
     with suppress(OSError):  # it has ended
         for task in Path(f"/proc/{pid}/task").iterdir():
-            yield from map(int, (task / "children").read_text().split())
+            found += map(int, (task / "children").read_text().split())
+    return [child for child in found if b"grader.classroom.worker" in command_line(child)]
 
 
 def assert_nothing_lost(run: Run, out: Path) -> None:

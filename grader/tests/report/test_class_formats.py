@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from html.parser import HTMLParser
 from typing import TYPE_CHECKING, Any
 
-import jsonschema
+import jsonschema  # type: ignore[import-untyped]
 import pytest
 from junitparser import Error, Failure, JUnitXml, Skipped, TestCase
 from markdown_it import MarkdownIt
@@ -99,7 +99,7 @@ def test_junit_has_a_suite_a_submission_and_a_case_a_check() -> None:
         for case, outcome in zip(suite, checks, strict=True):
             assert [type(each) for each in case.result] == [kinds[s] for s in kinds if s is outcome.status]
         counted = (suite.tests, suite.failures, suite.skipped, suite.errors)
-        suite.update_statistics()
+        suite.update_statistics()  # type: ignore[no-untyped-call]
         assert counted == (suite.tests, suite.failures, suite.skipped, suite.errors)
 
 

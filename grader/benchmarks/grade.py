@@ -1,0 +1,245 @@
+"""What a class costs, a submission, in F: on this machine for several sizes, and by Dask's workers.
+
+    python -m grader.benchmarks.grade [--sizes 25,50,100,200] [--workers 1,2,4] [--dask-size 50] [--jobs N]
+                                      [--mix right|all] [--times N]
+
+F (see grader.benchmarks.check) is measured before and after, in the same run. The class is mixed: of eight submissions
+four are right, three are wrong each in its own way, and one is hostile (`--mix right`: all are right). Every submission
+differs from every other by a comment, so none is graded for another. Memory is that of all processes of the run
+together, the cells' included, looked at several times a second: what they share is counted once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Event, Thread
+from typing import TYPE_CHECKING
+
+from grader.benchmarks.bare import bare_costs
+from grader.benchmarks.measure import cost
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_ROOT = Path(__file__).resolve().parents[2]
+_STEP = "03-circle-publisher"
+_GRADER = str(Path(sys.executable).with_name("grader"))
+_DASK = str(Path(sys.executable).with_name("dask"))
+_LOOK_S = 0.25
+AIM_F = 1.0
+"""Wall time a submission, with two processors."""
+
+
+@dataclass(frozen=True)
+class ClassCost:
+    """Seconds a submission, and the peak of the run's memory (MB)."""
+
+    size: int
+    wall_s: float
+    cpu_s: float
+    peak_mb: float
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--sizes", default="25,50,100,200", help="submissions in a class (25,50,100,200)")
+    parser.add_argument("--workers", default="1,2,4", help="Dask workers of one thread each (1,2,4); empty for none")
+    parser.add_argument("--dask-size", type=int, default=50, help="submissions in a class by Dask (50)")
+    parser.add_argument("--jobs", type=int, help="submissions at once; as `grader grade` has it when left out")
+    parser.add_argument("--mix", choices=("all", "right"), default="all", help="what the class is made of")
+    parser.add_argument("--times", type=int, default=3, help="repetitions of F before, and after (3)")
+    asked = parser.parse_args()
+    sizes = [int(size) for size in asked.sizes.split(",") if size]
+    workers = [int(amount) for amount in asked.workers.split(",") if amount]
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        bare = _bare(folder, asked.times)
+        rows = []
+        for size in sizes:
+            rows.append((f"{size} here", _local(folder, size, asked.jobs, asked.mix)))
+            _say(rows[-1])
+        for amount in workers:
+            rows.append((f"{asked.dask_size}, {amount} Dask", _dask(folder, asked.dask_size, amount, asked.mix)))
+            _say(rows[-1])
+        bare += _bare(folder, asked.times)
+    _print(statistics.median(bare), len(bare), rows)
+
+
+def _bare(folder: Path, times: int) -> list[float]:
+    found = []
+    for _ in range(times):
+        with tempfile.TemporaryDirectory(dir=folder) as home:
+            costs = bare_costs(_ROOT / "solutions" / _STEP, Path(home))
+            found.append(sum(each.wall_s for each in costs.values()))
+    return found
+
+
+def _local(folder: Path, size: int, jobs: int | None, mix: str) -> ClassCost:
+    submitted = _class(folder / f"class-{size}", size, mix)
+    options = ["--jobs", str(jobs)] if jobs else []
+    return _graded(submitted, size, folder / f"grades-{size}", options)
+
+
+def _dask(folder: Path, size: int, workers: int, mix: str) -> ClassCost:
+    submitted = _class(folder / f"dask-class-{workers}", size, mix)
+    with _cluster(folder / f"cluster-{workers}", workers) as (address, processes):
+        out = folder / f"dask-grades-{workers}"
+        before = sum(map(_cpu_s, processes))
+        graded = _graded(submitted, size, out, ["--engine", f"dask://{address}"], processes)
+        worked = sum(map(_cpu_s, processes)) - before
+    return ClassCost(size, graded.wall_s, graded.cpu_s + worked / size, graded.peak_mb)
+
+
+def _class(folder: Path, size: int, mix: str) -> Path:
+    """Write the class; submissions alike in kind differ by a comment."""
+    from grader.tests.attack import make_attack, read_attacks
+    from grader.tests.case import copy_solution
+
+    attack = next(attack for attack in read_attacks() if attack.name.startswith("301"))
+    for number in range(size):
+        student = folder / f"student{number:03}"
+        kind = number % 8 if mix == "all" else 0
+        if kind == 7:
+            make_attack(attack, student)
+            node = student / "my_robot_controller" / "my_robot_controller" / "draw_circle.py"
+        else:
+            copy_solution(_STEP, student)
+            node = student / "my_robot_controller" / "draw_circle.py"
+        text = node.read_text("utf-8")
+        changes = {
+            4: ("create_timer(0.5", "create_timer(1.0"),
+            5: ("angular.z = 1.0", "angular.z = 2.0"),
+            6: ("(self)", "(self"),
+        }
+        text = text.replace(*changes.get(kind, ("", "")), 1) if kind in changes else text
+        node.write_text(f"{text}\n# {student.name}\n", "utf-8")
+    return folder
+
+
+def _graded(submitted: Path, size: int, out: Path, options: list[str], also: list[int] | None = None) -> ClassCost:
+    command = [_GRADER, "grade", str(submitted), "--exercise", _STEP, "--out", str(out), *options]
+    with _watched(also or []) as peak:
+        measured = cost(command)
+    found = len(list((out / "reports").glob("*.json")))
+    if found != size:
+        message = f"{size} submissions, and {found} results"
+        raise RuntimeError(message)
+    return ClassCost(size, measured.wall_s / size, measured.cpu_s / size, max(peak, default=0.0))
+
+
+@contextmanager
+def _cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
+    """A scheduler and workers of one thread each: the address, and the ids of their processes."""
+    folder.mkdir()
+    file = folder / "scheduler.json"
+    started: list[subprocess.Popen[bytes]] = []
+
+    def start(*arguments: str) -> None:
+        argv = [_DASK, *arguments, "--no-dashboard"]
+        with (folder / f"{len(started)}.log").open("wb") as log:
+            started.append(subprocess.Popen(argv, cwd=folder, stdout=log, stderr=log))
+
+    try:
+        start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-show", "--scheduler-file", str(file))
+        while not (file.exists() and file.read_text().endswith("}")):
+            time.sleep(0.05)
+        address = json.loads(file.read_text())["address"]
+        for _ in range(workers):
+            start("worker", address, "--nthreads", "1", "--no-nanny")
+        _wait_for_workers(address, workers)
+        yield address.removeprefix("tcp://"), [process.pid for process in started]
+    finally:
+        for process in reversed(started):
+            process.terminate()
+        for process in started:
+            process.wait()
+
+
+def _wait_for_workers(address: str, workers: int) -> None:
+    from distributed import Client
+
+    with Client(address) as client:  # type: ignore[no-untyped-call]
+        client.wait_for_workers(workers)
+
+
+@contextmanager
+def _watched(also: list[int]) -> Iterator[list[float]]:
+    """The memory of this process's descendants and of `also` with theirs, from time to time (MB)."""
+    seen: list[float] = []
+    stopped = Event()
+
+    def look() -> None:
+        while not stopped.wait(_LOOK_S):
+            own = [pid for pid in _family([os.getpid(), *also]) if pid != os.getpid()]
+            seen.append(sum(_own_mb(pid) for pid in own))
+
+    thread = Thread(target=look, daemon=True)
+    thread.start()
+    try:
+        yield seen
+    finally:
+        stopped.set()
+        thread.join()
+
+
+def _family(pids: list[int]) -> set[int]:
+    found: set[int] = set()
+    waiting = list(pids)
+    while waiting:
+        pid = waiting.pop()
+        if pid in found:
+            continue
+        found.add(pid)
+        for file in Path(f"/proc/{pid}/task").glob("*/children"):
+            with suppress(OSError):
+                waiting += map(int, file.read_text().split())
+    return found
+
+
+def _own_mb(pid: int) -> float:
+    """A process's share of memory: what several use is divided among them (PSS)."""
+    with suppress(OSError):
+        for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines():
+            if line.startswith("Pss:"):
+                return int(line.split()[1]) / 1024
+    return 0.0
+
+
+def _cpu_s(pid: int) -> float:
+    """CPU seconds of a process, of its children that have ended, and of those that it has now."""
+    total = 0.0
+    for each in _family([pid]):
+        try:
+            fields = Path(f"/proc/{each}/stat").read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        total += sum(int(field) for field in fields[11:15]) / os.sysconf("SC_CLK_TCK")
+    return total
+
+
+def _say(row: tuple[str, ClassCost]) -> None:
+    print(f"{row[0]}: {row[1].wall_s:.2f} s wall a submission", file=sys.stderr, flush=True)
+
+
+def _print(f_s: float, times: int, rows: list[tuple[str, ClassCost]]) -> None:
+    print(f"F = {f_s:.2f} s wall (median of {times})\n")
+    print(f"{'a submission':18}{'wall s':>8}{'wall F':>8}{'CPU s':>8}{'CPU F':>8}{'peak MB':>9}")
+    for name, one in rows:
+        figures = (one.wall_s, one.wall_s / f_s, one.cpu_s, one.cpu_s / f_s)
+        print(f"{name:18}" + "".join(f"{figure:8.2f}" for figure in figures) + f"{one.peak_mb:9.0f}")
+    print(f"\naim: at most {AIM_F:.1f} F wall a submission with two processors, whatever the size of the class")
+
+
+if __name__ == "__main__":
+    main()
