@@ -1,7 +1,7 @@
 # What there is to type; `make help` lists it. Every target sets up what it needs first, and is quick when that is done.
 
 .DEFAULT_GOAL := help
-.PHONY: help demo cluster test test-all lint lock clean
+.PHONY: help demo cluster notebooks test test-all lint lock clean
 
 # Exported, so that it also holds where the caller has no PATH at all (`env -i make demo`).
 export PATH := $(if $(PATH),$(PATH):)/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
@@ -19,6 +19,9 @@ demo: python3 ## set up, grade the solution of step 03, say what to type next
 
 cluster: python3 ## set up a machine that is to grade for another one, with Dask
 	@$(SET_UP) cluster $(CHOSEN)
+
+notebooks: python3 ## set up JupyterLab and nbgrader, with the course's kernel
+	@$(SET_UP) notebooks $(CHOSEN) && $(BIN)/grader kernel install
 
 test: lint ## set up, lint, and run the tests but the exhaustive ones
 	@$(BIN)/python -m pytest

@@ -27,7 +27,8 @@ MACHINE_BROKEN = 3
 PARTS = {
     "learner": ["setup", "grader", "ros"],
     "cluster": ["setup", "grader", "ros", "cluster"],
-    "tests": ["setup", "grader", "ros", "cluster", "tests"],
+    "notebooks": ["setup", "grader", "ros", "notebooks"],
+    "tests": ["setup", "grader", "ros", "cluster", "notebooks", "tests"],
 }
 
 
@@ -183,7 +184,8 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     if STAMP.exists():
         STAMP.unlink()  # From here to the end .venv is unfinished.
     if stamp and made:
-        parts = parts if set(parts) > set(stamp.parts) else stamp.parts
+        # What was set up for something else stays: a machine may both grade for another one and have notebooks.
+        parts = [part for part in PARTS["tests"] if part in parts or part in stamp.parts]
         stamp = stamp._replace(digest=digest(), parts=parts, seconds={})
     elif python:
         begin = time.monotonic()

@@ -29,7 +29,8 @@ PARTS = {
     "grader": "what the grader runs on",
     "ros": "ROS 2 Jazzy as wheels; left out where a ROS 2 is sourced",
     "cluster": "grading on many machines",
-    "tests": "tests and notebooks",
+    "notebooks": "JupyterLab and nbgrader",
+    "tests": "tests",
 }
 """Name of each part and what it is for, in the file's order; an entry stands in the first part that needs it."""
 
@@ -112,6 +113,7 @@ def make(uv: str, *, upgrade: bool = False) -> str:
             ("grader", None, ["--extra", "view"]),
             ("ros", None, ["--extra", "ros"]),
             ("cluster", None, ["--extra", "cluster"]),
+            ("notebooks", None, ["--extra", "notebooks"]),
         ]:
             # Compiling a part keeps to the versions that stand in its output file: the whole's.
             path = shutil.copyfile(whole, Path(folder, f"{part}.txt"))

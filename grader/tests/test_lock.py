@@ -150,13 +150,15 @@ def test_select_leaves_out_and_picks() -> None:
 
 
 def test_split_puts_an_entry_below_the_first_part_that_needs_it() -> None:
-    entries = [lock.Entry(name, "1", f"{name}==1\n") for name in ("a", "b", "c", "d", "e")]
-    text = lock.split(entries, {"setup": {"b"}, "grader": {"a", "b"}, "ros": {"a", "c"}, "cluster": {"a", "e"}})
+    entries = [lock.Entry(name, "1", f"{name}==1\n") for name in ("a", "b", "c", "d", "e", "f")]
+    needs = {"setup": {"b"}, "grader": {"a", "b"}, "ros": {"a", "c"}, "cluster": {"a", "e"}, "notebooks": {"e", "f"}}
+    text = lock.split(entries, needs)
     assert {part: [entry.name for entry in found] for part, found in lock.parse(text).items()} == {
         "setup": ["b"],
         "grader": ["a"],
         "ros": ["c"],
         "cluster": ["e"],
+        "notebooks": ["f"],
         "tests": ["d"],
     }
 
