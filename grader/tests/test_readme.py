@@ -52,7 +52,7 @@ def test_commands_do_what_the_readme_shows(number: int, checkout: Path) -> None:
     block = without_set_up(CONSOLE[number])
     if number:  # a reader has done what stands above
         for earlier in CONSOLE[:number]:
-            copies = [f"$ {step.command}" for step in earlier.steps() if step.command.startswith("cp ")]
+            copies = [f"$ {step.command}" for step in earlier.steps() if step.command.startswith(("cp ", "mkdir "))]
             run(Block("console", "", "\n".join(copies)), checkout, environment, 60.0)
     for step, printed, exit_code in run(block, checkout, environment, 300.0):
         assert exit_code == bool(FAILS.match(step.command)), f"{step.command}\n{printed}"
