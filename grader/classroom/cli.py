@@ -84,10 +84,7 @@ def grade(
 ) -> None:
     """Grade a class: every submission, several at once; stopped and started again it goes on where it was."""
     from grader.classroom.grade_class import Asked, exit_code, grade_class
-    from grader.report.progress import progress
 
-    with progress() as tell:
-        tell("Reading the submissions")
     asked = Asked(
         submissions,
         out,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -77,15 +78,13 @@ def perform(
     Raises:
         MachineError: this grader is another one than the one that asks, or has no sandbox.
     """
-    from grader import sandbox
-
     if task.grader != grader_key():
         message = (
             f"A worker has another version of the grader ({grader_key()}; this one is {task.grader}): bring it up to "
             "date and start it again."
         )
         raise MachineError(message)
-    in_cell = sandbox.require(trusted=task.trusted)
+    in_cell = _confined(trusted=task.trusted)
     exercise = task.sources.exercise(lesson_folder(task.sources))
     if isinstance(task.content, str):
         return _with_page(_refused(task, exercise, task.content))
@@ -104,6 +103,13 @@ def perform(
 
     options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed)
     return _with_page(grade(exercise, _submission(task), options, tell, trial=Waiting))
+
+
+@cache
+def _confined(*, trusted: bool) -> bool:
+    from grader import sandbox
+
+    return sandbox.require(trusted=trusted)  # tried once a process: the answer does not change
 
 
 def set_aside(task: Task, why: str) -> Done:
