@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -14,10 +15,13 @@ from grader.tests.case import make_submission, read_cases
 from grader.tests.classroom.a_class import STEP, grade, judged
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
+    from collections.abc import Iterator, Sequence
+
+    from grader.tests.case import Case
 
 CLASS, ROUNDS = 50, 20
+TESTS = Path(__file__).parents[1]
+AMONG = {"mistakes": 22, "unusual": 11, "cases": 11}
 ATTACKS = ("301", "304", "501", "504", "602", "613")
 
 
@@ -33,16 +37,19 @@ def load(loops: int) -> Iterator[None]:
 
 
 def make_mixed(folder: Path) -> Path:
-    """Cases of step 03, every kind of mistake, with hostile submissions among them."""
-    attacks = [attack for attack in read_attacks() if attack.name[:3] in ATTACKS]
-    cases = [case for case in read_cases() if case.base == STEP and case.give == "." and case.result != "usage"]
-    wanted = CLASS - len(attacks)
-    step = len(cases) / wanted
-    for case in {cases[int(number * step)].name: cases[int(number * step)] for number in range(wanted)}.values():
-        make_submission(case, folder / case.name)
-    for attack in attacks:
-        make_attack(attack, folder / f"hostile-{attack.name}")
+    """Wrong, right and odd submissions of step 03, from all over the catalogues, with hostile ones among them."""
+    for name, amount in AMONG.items():
+        for case in spread(read_cases(TESTS / name), amount):
+            make_submission(case, folder / f"{name}-{case.name}")
+    for attack in read_attacks():
+        if attack.name[:3] in ATTACKS:
+            make_attack(attack, folder / f"hostile-{attack.name}")
     return folder
+
+
+def spread(cases: Sequence[Case], amount: int) -> list[Case]:
+    fit = [case for case in cases if (case.exercise or case.base) == STEP and case.result != "usage"]
+    return [fit[number * len(fit) // amount] for number in range(amount)]
 
 
 @pytest.mark.exhaustive
