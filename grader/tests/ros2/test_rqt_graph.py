@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 from PIL import Image
 from websockets.sync.client import connect
+from websockets.typing import Origin
 
 from grader.tests.ros2.world import HANG_S, SOLUTION, World, world
 
@@ -91,7 +92,7 @@ def test_where_there_is_a_browser_the_graph_is_shown_live_until_ctrl_c(before_a_
     address = (tmp_path / "opened").read_text().strip()
     assert graph.lines == [f"The graph, live until Ctrl-C: {address}"]
     host, _, token = address.removeprefix("http://").partition("/#")
-    with connect(f"ws://{host}/live?token={token}", origin=f"http://{host}") as page:  # type: ignore[arg-type]
+    with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as page:
         shown = next(news for news in map(json.loads, page) if news["kind"] == "graph")["graph"]
     labels = {node["label"] for node in shown["nodes"]}
     assert {"/draw_circle", "/turtle1/cmd_vel", "/turtlesim"} <= labels

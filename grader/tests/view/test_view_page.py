@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
+from websockets.typing import Origin
 
 from grader.tests.browser import browser_or_reason, launched, violations
 from grader.tests.ros2.world import HANG_S, SOLUTION, World, world
@@ -282,7 +283,7 @@ def live(of: World) -> tuple[str, str, str]:
 
 def test_with_the_right_host_origin_and_token_one_comes_in(system: World) -> None:
     host, _, way = live(system)
-    with connect(way, origin=f"http://{host}") as link:  # type: ignore[arg-type]
+    with connect(way, origin=Origin(f"http://{host}")) as link:
         assert '"kind":"all"' in str(link.recv())
 
 

@@ -122,4 +122,4 @@ def test_pictures_are_painted_in_the_pen_s_colour() -> None:
     trail = Trail()
     trail.draw([(1, 5, 9, 5, *INK)])
     x, y = place(5, 5)
-    assert trail.painted(1000).getpixel((x / 5, y / 5)) == pytest.approx((*INK[:3], 255))
+    assert trail.painted(1000).getpixel((x // 5, y // 5)) == pytest.approx((*INK[:3], 255))
