@@ -241,10 +241,21 @@ def _disk(view: View) -> list[str]:
     named = [*shown, *view.writable]
     parents = dict.fromkeys(parent for path in named for parent in reversed(path.parents[:-1]))
     command += [word for parent in parents for word in ("--dir", str(parent))]
-    command += [word for path in shown for word in ("--ro-bind", str(path), str(path))]
+    # What is to be seen of a hidden folder goes in once it is empty.
+    within = {path: folder for path in shown for folder in view.hidden if path.is_relative_to(folder)}
+    command += [word for path in shown if path not in within for word in _seen(path)]
     command += [word for folder in view.writable for word in ("--bind", str(folder), str(folder))]
-    command += [word for folder in view.hidden for word in ("--tmpfs", str(folder), "--remount-ro", str(folder))]
+    command += [word for folder in view.hidden for word in ("--tmpfs", str(folder))]
+    for path, folder in within.items():
+        inner = [parent for parent in reversed(path.parents) if parent.is_relative_to(folder) and parent != folder]
+        command += [word for parent in inner for word in ("--dir", str(parent))]
+        command += _seen(path)
+    command += [word for folder in view.hidden for word in ("--remount-ro", str(folder))]
     return [*command, "--dev", "/dev"]
+
+
+def _seen(path: Path) -> tuple[str, str, str]:
+    return "--ro-bind", str(path), str(path)
 
 
 def _environment(env: Mapping[str, str]) -> list[str]:

@@ -15,9 +15,15 @@ pytestmark = pytest.mark.skipif(not sandbox.usable(), reason="there is no sandbo
 ENV = {"PATH": "/usr/bin:/bin", "HOME": str(sandbox.HOME)}
 
 
-def run(code: str, limits: sandbox.Limits = sandbox.Limits()) -> process.Finished:  # noqa: B008
+SEEN = sandbox.View((Path(sys.base_prefix), Path(sys.prefix)))
+
+
+def run(
+    code: str,
+    limits: sandbox.Limits = sandbox.Limits(),  # noqa: B008
+    view: sandbox.View = SEEN,
+) -> process.Finished:
     """Python code in a cell of its own."""
-    view = sandbox.View((Path(sys.base_prefix), Path(sys.prefix)))
     with call_filter() as filter_fd:
         command = sandbox.lone_cell([sys.executable, "-c", code], view, env=ENV, limits=limits, filter_fd=filter_fd)
         return process.run(
@@ -49,6 +55,24 @@ print(json.dumps([sorted(name for name in os.listdir("/proc") if name.isdigit())
     assert processes == ["1", "2"]
     expected = {"bin", "dev", "etc", "lib", "lib32", "lib64", "proc", "sbin", "tmp", "usr", "ws"}
     assert set(top) <= expected | {Path(path).parts[1] for path in (sys.prefix, sys.base_prefix)}
+
+
+def test_of_a_hidden_folder_a_cell_sees_only_what_is_named(tmp_path: Path) -> None:
+    """An installed grader lies beside the libraries that a node needs, and of it a cell needs the launcher."""
+    package = tmp_path / "site-packages" / "grader"
+    for name in ("trial/launcher.py", "trial/rest.py", "solutions/a.py", "fastdds.xml"):
+        (package / name).parent.mkdir(parents=True, exist_ok=True)
+        (package / name).write_text(name)
+    seen = (*SEEN.read_only, tmp_path / "site-packages", package / "trial/launcher.py", package / "fastdds.xml")
+    code = f"""
+import pathlib
+below = pathlib.Path({str(package)!r})
+print(sorted(str(path.relative_to(below)) for path in below.rglob("*")), (below / "fastdds.xml").read_text())
+(below / "more").mkdir()
+"""
+    done = run(code, view=sandbox.View(seen, hidden=(package,)))
+    assert done.stdout.decode() == "['fastdds.xml', 'trial', 'trial/launcher.py'] fastdds.xml\n"
+    assert b"Read-only file system" in done.stderr
 
 
 def test_a_cell_inherits_no_descriptor() -> None:
