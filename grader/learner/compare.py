@@ -9,7 +9,7 @@ from grader import tree
 from grader.errors import UsageError
 from grader.exercise import find_exercise
 from grader.learner import progress, workspace
-from grader.markers import solved, syntax_of
+from grader.markers import MEANT, solved, syntax_of
 from grader.words import printable
 
 if TYPE_CHECKING:
@@ -35,7 +35,8 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
         )
         raise UsageError(message)
     ideal = workspace.solution(exercise)
-    ours = _texts(ideal / exercise.package if exercise.package else ideal)
+    # The rest of the package grows with later steps: only what was to be written is compared.
+    ours = _texts(ideal / exercise.package if exercise.package else ideal, marked=True)
     theirs = _texts(workspace.work_folder(exercise, root))
     same = [path for path in ours if theirs.get(path) == ours[path]]
     for path in ours:
@@ -45,7 +46,8 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
         console.print(f"The same in both: {', '.join(same)}", soft_wrap=True, markup=False)
 
 
-def _texts(folder: Path) -> dict[str, str]:
+def _texts(folder: Path, *, marked: bool = False) -> dict[str, str]:
+    """The text of each file, by path; when `marked`, only of those with a region that is the student's to write."""
     with tree.open_folder(str(folder)) as opened:
         files = tree.read_tree(opened).files
     texts = {}
@@ -55,7 +57,8 @@ def _texts(folder: Path) -> dict[str, str]:
         except UnicodeDecodeError:
             continue
         syntax = syntax_of(path)
-        texts[path] = solved(text, syntax, path) if syntax else text
+        if not marked or (syntax and MEANT.search(text)):
+            texts[path] = solved(text, syntax, path) if syntax else text
     return texts
 
 

@@ -20,7 +20,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.exercise import Exercise
+    from grader.outcome import Report
 
+BELOW = 5
+"""Lines below a report: where it watches, the keys, what a key answers."""
 KEYS = "h hint · l list · n next · r rerun · q quit"
 
 
@@ -36,14 +39,15 @@ def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
     console = Console(highlight=False)
     options = Options(in_cell=sandbox.usable())
     with single_keys() as read_key, closing(Events(read_key)) as events:
+        told = ""
         while True:
             screen = _Screen(exercise, folder, workspace, options, console)
             events.watch(folder)
             with closing(screen.watched):
-                chosen = screen.show(events)
-            if chosen is None:
+                begun = screen.show(events, told)
+            if begun is None:
                 return
-            exercise, folder = chosen
+            exercise, folder, told = begun.exercise, begun.started.folder, steps.told(begun)
 
 
 class _Screen:
@@ -57,9 +61,12 @@ class _Screen:
         self._workspace = workspace
         self._console = console
 
-    def show(self, events: Events) -> tuple[Exercise, Path] | None:
-        """Show verdicts until the learner leaves; the step and folder to go on with, None for the end."""
-        self._grade()
+    def show(self, events: Events, told: str) -> steps.Begun | None:
+        """Show verdicts until the learner leaves; the step to go on with, None for the end.
+
+        `told` stands below the first verdict, which clears the screen.
+        """
+        self._grade(told)
         for happened in events:
             if happened.kind == "saved":
                 if self.watched.changed():
@@ -78,7 +85,7 @@ class _Screen:
                 return None
         return None
 
-    def _grade(self) -> None:
+    def _grade(self, told: str = "") -> None:
         if self._console.is_terminal:
             self._console.clear()
         try:
@@ -87,18 +94,25 @@ class _Screen:
         except GraderError as error:
             self._say(str(error))
         else:
-            terminal.render(graded.report, self._console)
+            self._render(graded.report, len(told.splitlines()))
             steps.note(self._exercise, self.watched.folder, graded.report, self._workspace)
+        if told:
+            self._say(f"\n{told}")
         self._say(f"\nWatching {self.watched.folder}   {KEYS if self._console.is_terminal else ''}".rstrip())
 
-    def _next(self) -> tuple[Exercise, Path] | None:
+    def _render(self, report: Report, more: int) -> None:
+        """Print all of the report where the window holds it and so many lines more, else what is to be mended."""
+        with self._console.capture() as whole:
+            terminal.render(report, self._console)
+        fits = whole.get().count("\n") + more + BELOW <= self._console.height
+        terminal.render(report, self._console, brief=self._console.is_terminal and not fits)
+
+    def _next(self) -> steps.Begun | None:
         try:
-            begun = steps.start("next", self._workspace)
+            return steps.start("next", self._workspace)
         except GraderError as error:
             self._say(str(error))
             return None
-        self._say(steps.told(begun))
-        return begun.exercise, begun.started.folder
 
     @contextmanager
     def _working(self) -> Iterator[Callable[[str], None]]:

@@ -135,6 +135,8 @@ def print_status(folder: Path | None, console: Console) -> None:
     console.print(f"\n{passed} of {count(len(catalogue()), 'step')} passed, in {root}", soft_wrap=True)
     if known.current is None:
         console.print("Begin with: grader start 01")
+    elif passed == len(catalogue()):
+        console.print("You are through.")
     elif known.step(known.current).passed:
         console.print("Go on with: grader start next")
 

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from grader.outcome import Outcome, Report, Status
 from grader.report.verdict import tone, verdict
-from grader.words import printable
+from grader.words import count, printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,14 +28,20 @@ ASCII_SIGNS = {"passed": "ok", "failed": "FAIL", "skipped": "skip", "error": "ER
 STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "error": "bold magenta", "advice": "cyan"}
 
 
-def render(report: Report, console: Console) -> None:
-    """Print the report."""
+def render(report: Report, console: Console, *, brief: bool = False) -> None:
+    """Print the report; when `brief`, of the checks only those with something to mend."""
     _line(console, Text(printable(f"{report.exercise_title}: {report.submission}"), style="bold"))
     told = ""
     for outcome in report.outcomes:
-        _check(outcome, console, told)
+        if not (brief and _look(outcome) in ("passed", "skipped")):
+            _check(outcome, console, told)
         told = outcome.finding.seen
     console.print()
+    if brief:
+        amount = count(len(report.with_status(Status.PASSED)), "check")
+        _line(
+            console, Text(f"{amount} passed. In a higher window, or with `grader check`, all are listed.", style="dim")
+        )
     _line(console, _verdict(report))
     for text in _footnotes(report):
         _line(console, Text(text, style="dim"))

@@ -1,14 +1,18 @@
 from __future__ import annotations
 
+import io
 import json
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
+from rich.console import Console
 
 from grader.errors import MachineError, UsageError
+from grader.exercise import catalogue
 from grader.learner import progress, steps, workspace
+from grader.learner.compare import print_solution
 from grader.learner.progress import Progress, StepProgress
 from grader.own_numbers import draw_numbers, from_toml
 
@@ -157,3 +161,30 @@ def test_the_last_step_begins_with_numbers_of_the_students_own(home: Path) -> No
     file = home / "ros2_ws/src/my_robot_controller/my_numbers.toml"
     assert from_toml(file.read_bytes()) == draw_numbers("4711")
     assert steps.start("07", None).started.added == ()
+
+
+def test_who_is_through_is_not_sent_on() -> None:
+    steps.start("07", None)
+    for name in catalogue():
+        passed(name)
+    said = Console(width=100, record=True, file=io.StringIO())
+    steps.print_status(None, said)
+    text = said.export_text()
+    assert "7 of 7 steps passed" in text
+    assert "You are through." in text
+    assert "start next" not in text
+
+
+def test_the_solution_beside_ones_own_shows_what_was_to_be_written(home: Path) -> None:
+    steps.start("01", None)
+    said = Console(width=100, record=True, file=io.StringIO())
+    with pytest.raises(UsageError, match="once yours has passed"):
+        print_solution("01", None, said)
+    passed(FIRST)
+    (home / "ros2_ws/src/my_robot_controller/package.xml").write_text("grown in later steps")
+    print_solution("01", None, said)
+    text = said.export_text()
+    assert '+            "test_node = my_robot_controller.my_first_node:main",' in text
+    assert "-            # TODO 5" in text
+    assert "package.xml" not in text
+    assert "BEGIN SOLUTION" not in text

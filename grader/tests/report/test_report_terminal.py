@@ -70,6 +70,17 @@ def test_a_failure_says_what_why_and_where() -> None:
     ]
 
 
+def test_brief_is_what_is_to_be_mended() -> None:
+    console = Console(file=io.StringIO(), width=200)
+    made = report("skipped")
+    render(made, console, brief=True)
+    assert isinstance(console.file, io.StringIO)
+    signs = [line[0] for line in console.file.getvalue().splitlines()[1:] if line and line[0] in "✓✗-"]
+    assert signs == ["✗"]
+    amount = len(made.with_status(Status.PASSED))
+    assert f"{amount} checks passed. In a higher window" in console.file.getvalue()
+
+
 def test_an_error_is_not_counted_and_says_what_to_do() -> None:
     text = told(report("error"))
     assert "! The turtle drives a circle  not counted\n" in text
