@@ -1,0 +1,125 @@
+"""python -m grader.tests.mutation [FILE...]: what the cases do not notice, and how much that is."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.tests.case import ROOT
+from grader.tests.mutation import equivalent, judging, unit
+from grader.tests.mutation.mutants import mutants_of
+from grader.tests.mutation.recordings import all_cases, recordings
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from grader.tests.mutation.mutants import Mutant
+
+CHECKS = ROOT / "grader" / "checks"
+MAKES_DIAGNOSES = re.compile(r"\bfailed\(|diagnosis")
+NOT_THESE = frozenset({"judge.py", "kind.py", "kinds.py"})
+"""They carry diagnoses from one place to another, and make none."""
+WORST = 0.10
+"""More survivors than this share fail the run."""
+
+
+def diagnosis_files() -> list[Path]:
+    """The files of the checks that make diagnoses."""
+    return [
+        file
+        for file in sorted(CHECKS.glob("*.py"))
+        if file.name not in NOT_THESE and MAKES_DIAGNOSES.search(file.read_text("utf-8"))
+    ]
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run it; the exit code is 1 where more than a tenth survives."""
+    asked = _arguments(argv)
+    begun = time.monotonic()
+    files = [path.resolve() for path in asked.files] or diagnosis_files()
+    materials = _materials(make=not asked.recorded)
+    _tell(f"{len(materials)} cases, {len(files)} files")
+    mutants = [mutant for file in files for mutant in mutants_of(file)]
+    equal = equivalent.read()
+    counted = [mutant for mutant in mutants if not equivalent.is_known(mutant, equal)]
+    by_case = _unnoticed(counted, judging.touched(materials.values(), files), _by_cases(materials), asked.jobs)
+    _tell(f"{len(by_case)} of {len(counted)} are noticed by no case; now the tests of single checks")
+    survivors = by_case if asked.cases else _unnoticed(by_case, unit.touched(files), unit.fail, asked.jobs)
+    _print(files, counted, by_case, survivors, len(mutants) - len(counted))
+    _tell(f"{time.monotonic() - begun:.0f} s")
+    return 1 if len(survivors) > WORST * len(counted) else 0
+
+
+def _materials(*, make: bool) -> dict[str, judging.Material]:
+    """The cases by name, without those that do not get from their recording what they expect."""
+    materials = {each.name: each for each in judging.load(recordings(all_cases(), _tell, make=make))}
+    stale = [name for name, material in materials.items() if judging.fails(material)]
+    judging.forget()
+    for name in stale:
+        _tell(f"{name} does not get from its recording what it expects: left out")
+        del materials[name]
+    return materials
+
+
+def _by_cases(materials: Mapping[str, judging.Material]) -> Callable[[Iterable[str]], bool]:
+    return lambda names: any(judging.fails(materials[name]) for name in sorted(names))
+
+
+def _unnoticed(
+    mutants: Sequence[Mutant], lines: judging.Lines, notice: Callable[[Iterable[str]], bool], at_once: int
+) -> list[Mutant]:
+    """The mutants that nobody who runs their lines notices."""
+
+    def job(mutant: Mutant) -> judging.Job:
+        names = judging.who_runs(mutant, lines)
+        return judging.Job(mutant, lambda: notice(names))
+
+    survived: list[Mutant] = []
+    for number, (mutant, noticed) in enumerate(judging.in_children(map(job, mutants), at_once), 1):
+        if not noticed:
+            survived.append(mutant)
+        if number % 200 == 0:
+            _tell(f"{number} of {len(mutants)}: {len(survived)} survived")
+    return survived
+
+
+def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="python -m grader.tests.mutation",
+        description="Change the code that makes diagnoses, one place at a time, and see whether some case notices.",
+        epilog="example: python -m grader.tests.mutation grader/checks/rate.py",
+    )
+    parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help="only these (all that make diagnoses)")
+    parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count() or 1, help="at once (one a processor)")
+    parser.add_argument("--recorded", action="store_true", help="judge by the recordings that are there, make none")
+    parser.add_argument("--cases", action="store_true", help="leave the tests of single checks out, which take longest")
+    return parser.parse_args(argv)
+
+
+def _print(
+    files: list[Path], mutants: list[Mutant], by_case: list[Mutant], survivors: list[Mutant], known: int
+) -> None:
+    for mutant in sorted(survivors, key=lambda each: (each.file, each.line)):
+        print(mutant)
+    print(f"\n{'file':<20} mutants  no case  survived")
+    for file in files:
+        of_file = [sum(mutant.file == file for mutant in each) for each in (mutants, by_case, survivors)]
+        print(f"{file.name:<20} {of_file[0]:>7}  {of_file[1]:>7}  {of_file[2]:>8}")
+    share, cases = (len(each) / len(mutants) if mutants else 0.0 for each in (survivors, by_case))
+    print(
+        f"\n{len(mutants)} mutants, {len(mutants) - len(survivors)} killed, {len(survivors)} survived: {share:.1%}\n"
+        f"By the cases alone {cases:.1%} would survive; {known} more are known to change nothing."
+    )
+
+
+def _tell(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,50 @@
+"""Mutants that are known to change nothing: equivalent.toml lists them, each with its reason."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from grader.tests.mutation.mutants import Mutant
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+FILE = Path(__file__).with_name("equivalent.toml")
+
+
+@dataclass(frozen=True)
+class Known:
+    """Changes of a line: `code` is a part of the line, `change` a part of the change; `why` they change nothing."""
+
+    file: str
+    code: str
+    change: str
+    why: str
+
+
+def read(file: Path = FILE) -> tuple[Known, ...]:
+    """The list. Raises TypeError where an entry lacks something, or has a reason of no words."""
+    table = tomllib.loads(file.read_text("utf-8")).get("mutant", [])
+    known = tuple(Known(**entry) for entry in table)
+    for each in known:
+        if not each.why.strip():
+            message = f"{each.file}: {each.code}: why does this change nothing?"
+            raise TypeError(message)
+    return known
+
+
+def is_known(mutant: Mutant, known: Iterable[Known]) -> bool:
+    """Whether the mutant is on the list."""
+    code = mutant.file.read_text("utf-8").splitlines()[mutant.line - 1 : mutant.end_line]
+    return any(
+        each.file == mutant.file.name and any(each.code in line for line in code) and each.change in mutant.change
+        for each in known
+    )

@@ -1,0 +1,169 @@
+"""Mutants: one file of the grader, changed in one place; by the operators of mutmut and two of our own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import TYPE_CHECKING
+
+import libcst as cst
+from libcst.metadata import (
+    MetadataWrapper,
+    ParentNodeProvider,
+    PositionProvider,
+    WhitespaceInclusivePositionProvider,
+)
+from mutmut.mutation import mutators
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from libcst.metadata import CodeRange
+
+LEFT_OUT = {
+    mutators.operator_string,
+    mutators.operator_dict_arguments,
+    mutators.operator_arg_removal,
+    mutators.operator_match,
+}
+"""What a finding says in words is not what it diagnoses, and is tested elsewhere; a match goes over several lines."""
+WORDS = frozenset({"shorten", "a_list", "count", "shown"})
+"""Functions that make words: numbers in their arguments change no diagnosis."""
+STRINGS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A file with one change: `line` and `end_line` are those of the statement, from 1; `change` is told to people.
+
+    `at_import`: the statement is run when the file is imported, so that nobody runs its lines later.
+    """
+
+    file: Path
+    line: int
+    end_line: int
+    change: str
+    source: str
+    at_import: bool = False
+
+    def __str__(self) -> str:
+        return f"{self.file.name}:{self.line}: {self.change}"
+
+
+def mutants_of(file: Path) -> list[Mutant]:
+    """Every mutant of a file, in the order of its lines; what does nothing when it is run is left alone."""
+    text = file.read_text("utf-8")
+    wrapper = MetadataWrapper(cst.parse_module(text), unsafe_skip_copy=True)
+    positions, parents = wrapper.resolve(PositionProvider), wrapper.resolve(ParentNodeProvider)
+    spans = wrapper.resolve(WhitespaceInclusivePositionProvider)
+    starts = [0, *accumulate(len(line) for line in text.splitlines(keepends=True))]
+
+    def spliced(old: cst.CSTNode, new: cst.CSTNode) -> str:
+        begin, end = (starts[each.line - 1] + each.column for each in (spans[old].start, spans[old].end))
+        return text[:begin] + wrapper.module.code_for_node(new) + text[end:]
+
+    found: dict[str, Mutant] = {}
+    for node in positions:
+        statement = _statement(node, parents)
+        if statement is None or _idle(node, parents):
+            continue
+        place = _lines(statement, positions)
+        for old, new in _changes(node):
+            lead = "if " if isinstance(node, cst.If) else ""
+            change = f"{lead}{_told(wrapper.module, old)} -> {lead}{_told(wrapper.module, new)}"
+            source = spliced(old, new)
+            found.setdefault(source, Mutant(file, *place, change, source, _at_import(statement, parents)))
+    found.pop(text, None)
+    return sorted(found.values(), key=lambda mutant: mutant.line)
+
+
+def _changes(node: cst.CSTNode) -> Iterator[tuple[cst.CSTNode, cst.CSTNode]]:
+    """What of this node may become what."""
+    for kind, operator in mutators.mutation_operators:
+        if (
+            isinstance(node, kind)
+            and operator not in LEFT_OUT
+            and not (isinstance(node, cst.Assign) and _is_words(node))
+        ):
+            yield from ((node, changed) for changed in operator(node))
+    if isinstance(node, cst.If) and not (isinstance(node.test, cst.Name) and node.test.value == "TYPE_CHECKING"):
+        yield from ((node.test, cst.Name(value)) for value in ("False", "True"))
+    if isinstance(node, cst.Return | cst.Expr | cst.AugAssign | cst.Continue | cst.Break):
+        yield node, cst.Pass()
+    if isinstance(node, cst.Call) and isinstance(node.func, cst.Name) and node.func.value == "failed":
+        yield from _diagnosis_changes(node)
+
+
+def _diagnosis_changes(call: cst.Call) -> Iterator[tuple[cst.CSTNode, cst.CSTNode]]:
+    """Another diagnosis; no place to look at."""
+    yield call.args[0].value, cst.SimpleString('"another"')
+    for argument in call.args:
+        if argument.keyword is not None and argument.keyword.value == "where":
+            yield argument.value, cst.Name("None")
+
+
+def _is_words(assignment: cst.Assign) -> bool:
+    """Whether a name gets a text, or nearness to an edge, which decides about the clock and not what is diagnosed."""
+    value, target = assignment.value, assignment.targets[0].target
+    if isinstance(target, cst.Name) and target.value.startswith("near"):
+        return True
+    if isinstance(value, cst.IfExp):
+        return isinstance(value.body, STRINGS) and isinstance(value.orelse, STRINGS)
+    return isinstance(value, STRINGS)
+
+
+def _statement(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> cst.CSTNode | None:
+    """The statement that the node belongs to."""
+    here: cst.CSTNode | None = node
+    while here is not None and not isinstance(here, cst.SimpleStatementLine | cst.BaseCompoundStatement):
+        here = parents.get(here)
+    return here
+
+
+def _idle(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool:
+    """Whether the node only declares something, or only says it in words."""
+    if _is_docstring(node, parents):
+        return True
+    before, here = node, parents.get(node)
+    while here is not None:
+        if isinstance(here, cst.FunctionDef):
+            return isinstance(before, cst.Parameters)
+        if isinstance(here, cst.Annotation | cst.Decorator | cst.FormattedString | cst.ImportFrom | cst.ClassDef):
+            return True
+        if isinstance(here, cst.Call) and isinstance(here.func, cst.Name) and here.func.value in (*WORDS, "Kind"):
+            return True
+        if isinstance(here, cst.Arg) and here.keyword is not None and here.keyword.value == "near_edge":
+            return True
+        before, here = here, parents.get(here)
+    return False
+
+
+def _at_import(statement: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool:
+    here: cst.CSTNode | None = statement
+    while here is not None and not isinstance(here, cst.FunctionDef):
+        here = parents.get(here)
+    return here is None
+
+
+def _is_docstring(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool:
+    line = node if isinstance(node, cst.SimpleStatementLine) else parents.get(node)
+    if not isinstance(line, cst.SimpleStatementLine):
+        return False
+    first = line.body[0]
+    return isinstance(first, cst.Expr) and isinstance(first.value, cst.SimpleString | cst.ConcatenatedString)
+
+
+def _lines(statement: cst.CSTNode, positions: Mapping[cst.CSTNode, CodeRange]) -> tuple[int, int]:
+    """The lines of a statement; of a compound one, those of its head."""
+    where = positions[statement]
+    body = getattr(statement, "body", None)
+    if isinstance(statement, cst.BaseCompoundStatement) and isinstance(body, cst.IndentedBlock):
+        return where.start.line, max(where.start.line, positions[body].start.line - 1)
+    return where.start.line, where.end.line
+
+
+def _told(module: cst.Module, node: cst.CSTNode) -> str:
+    """A node's code on one line, so short that two fit on it."""
+    text = " ".join(module.code_for_node(node).split())
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,114 @@
+"""The machinery on one real case: what takes its diagnosis out is noticed, what no case runs is not."""
+
+from __future__ import annotations
+
+import multiprocessing
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests.case import CASES, ROOT, read_case
+from grader.tests.mutation import equivalent, judging
+from grader.tests.mutation.mutants import Mutant, mutants_of
+from grader.tests.mutation.recordings import Recorded, recordings
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+ANSWERS = ROOT / "grader" / "checks" / "answers.py"
+CASE = CASES.parent / "mistakes" / "201-no-slash"
+
+SOURCE = '''
+"""A text."""
+from typing import TYPE_CHECKING
+if TYPE_CHECKING:
+    from a import b
+LIMIT: float = 1.5
+class Params:
+    width: float = number(2.0)
+def check(value, where: int = 3) -> "A | B":
+    """What it is."""
+    seen = f"It is {value + 1}."
+    if value > LIMIT:
+        return failed("too-large", seen, where=where)
+    return passed("1")
+'''
+
+
+def changes(tmp_path: Path, source: str) -> list[tuple[int, str]]:
+    (tmp_path / "a.py").write_text(source, "utf-8")
+    return [(mutant.line, mutant.change) for mutant in mutants_of(tmp_path / "a.py")]
+
+
+def test_what_decides_is_changed_and_words_and_declarations_are_not(tmp_path: Path) -> None:
+    found = changes(tmp_path, SOURCE)
+    assert sorted({line for line, _ in found}) == [6, 12, 13, 14]
+    assert (12, "> LIMIT -> >= LIMIT") in found
+    assert (12, "if value > LIMIT -> if False") in found
+    assert (13, '"too-large" -> "another"') in found
+    assert (13, 'return failed("too-large", seen, where=where) -> pass') in found
+
+
+def test_a_mutant_is_python_with_one_change(tmp_path: Path) -> None:
+    (tmp_path / "a.py").write_text(SOURCE, "utf-8")
+    for mutant in mutants_of(tmp_path / "a.py"):
+        compile(mutant.source, "a.py", "exec")
+        before, after = SOURCE.splitlines(), mutant.source.splitlines()
+        changed = [number for number, pair in enumerate(zip(before, after, strict=False), 1) if pair[0] != pair[1]]
+        assert changed[0] == mutant.line, str(mutant)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("recordings")
+
+
+@pytest.fixture(scope="module")
+def recorded(folder: Path) -> list[Recorded]:
+    return recordings([read_case(CASE)], lambda _: None, folder)
+
+
+def test_a_case_is_recorded_once(recorded: list[Recorded], folder: Path) -> None:
+    told: list[str] = []
+    assert (recordings([read_case(CASE)], told.append, folder), told) == (recorded, [])
+    assert [each.name for each in recorded] == ["mistakes/201-no-slash"]
+
+
+def noticed(recorded: list[Recorded], change: str) -> dict[str, bool]:
+    """Whether each mutant with this in its change is noticed by the case; in a child, since checks are forgotten."""
+    wanted = [mutant for mutant in mutants_of(ANSWERS) if mutant.change.startswith(change)]
+    assert wanted
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        return pool.apply(_noticed, (recorded, wanted))
+
+
+def _noticed(recorded: list[Recorded], mutants: Sequence[Mutant]) -> dict[str, bool]:
+    materials = judging.load(recorded)
+    assert not any(judging.fails(material) for material in materials)
+    judging.forget()
+    lines = judging.touched(materials, [ANSWERS])
+
+    def job(mutant: Mutant) -> judging.Job:
+        names = judging.who_runs(mutant, lines)
+        return judging.Job(mutant, lambda: any(judging.fails(each) for each in materials if each.name in names))
+
+    return {mutant.change: seen for mutant, seen in judging.in_children(map(job, mutants), at_once=2)}
+
+
+def test_a_case_notices_that_its_diagnosis_was_taken_out(recorded: list[Recorded]) -> None:
+    found = noticed(recorded, 'return "no-slash"')
+    assert all(found.values()), found
+
+
+def test_what_no_case_runs_survives(recorded: list[Recorded]) -> None:
+    found = noticed(recorded, 'return failed("no-answers"')
+    assert not any(found.values()), found
+
+
+@pytest.mark.exhaustive
+def test_every_known_mutant_is_there() -> None:
+    known = equivalent.read()
+    files = {ROOT / "grader" / "checks" / each.file for each in known}
+    mutants = [mutant for file in files for mutant in mutants_of(file)]
+    assert [each for each in known if not any(equivalent.is_known(mutant, [each]) for mutant in mutants)] == []

@@ -1,0 +1,56 @@
+"""What the tests of single checks notice: those in grader/tests/checks that run a mutant's lines."""
+
+from __future__ import annotations
+
+import multiprocessing
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests.case import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator
+    from pathlib import Path
+
+    from grader.tests.mutation.judging import Lines
+
+TESTS = ROOT / "grader" / "tests" / "checks"
+QUIET = ("-q", "-p", "no:cacheprovider", "--rootdir", str(ROOT))
+
+
+def touched(files: Collection[Path]) -> Lines:
+    """The tests that run each line (from 1) of these files, as far as any does."""
+    # In a child: whatever the tests import must be imported anew for each mutant.
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        return pool.apply(_measured, (sorted(files),))
+
+
+def fail(tests: Iterable[str]) -> bool:
+    """Whether one of these tests fails, or cannot even be collected."""
+    names = [f"{ROOT / test}" for test in sorted(tests)]
+    return bool(names) and pytest.main([*QUIET, "-x", *names]) != pytest.ExitCode.OK
+
+
+def _measured(files: Iterable[Path]) -> Lines:
+    from coverage import Coverage
+
+    from grader.tests.mutation.judging import lines_of
+
+    measured = Coverage(data_file=None, include=[str(file) for file in files], config_file=False)
+    measured.start()
+    pytest.main([*QUIET, str(TESTS)], plugins=[_Contexts(measured)])
+    measured.stop()
+    return lines_of(measured, files)
+
+
+class _Contexts:
+    """Tells the measurement which test runs."""
+
+    def __init__(self, measured: object) -> None:
+        self._measured = measured
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
+        self._measured.switch_context(item.nodeid)  # type: ignore[attr-defined]
+        return (yield)
