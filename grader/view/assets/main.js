@@ -28,7 +28,7 @@ function tell(text) {
 function choose(names) {
   const shown = [...chosen.options].map((option) => option.value);
   if (JSON.stringify(shown) === JSON.stringify(names)) return;
-  const before = chosen.value;
+  const before = chosen.value || "turtle1";
   chosen.replaceChildren(...names.map((name) => new Option(name, name, false, name === before)));
 }
 

@@ -81,7 +81,8 @@ export class Stage {
     for (const [name, [x, y, theta]] of Object.entries(all)) {
       let group = this.shown.get(name);
       if (!group) {
-        const number = Number(/\d+$/.exec(name)?.[0] ?? this.shown.size + 1) - 1;
+        // turtle1 is green, turtle2 brown, ...; another name has a colour of its own, too, the same one each time.
+        const number = Number(/^turtle(\d+)$/.exec(name)?.[1] ?? [...name].reduce((sum, char) => sum + char.codePointAt(0), 0)) - 1;
         const label = element("text", { y: 34, "text-anchor": "middle", class: "turtle-name" }, name);
         group = element("g", { class: "turtle", "data-name": name }, shape(Math.max(number, 0)), label);
         this.svg.append(group);

@@ -1,0 +1,53 @@
+"""Takes the picture of the live view that README and lessons show: `python -m grader.tests.view.pictures`.
+
+A real turtlesim, the solution of step 03, and the system's Chromium; needs what the tests need.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+from grader.tests.browser import find_browser, launched
+from grader.tests.ros2.world import SOLUTION, World, environment
+
+FILE = Path(__file__).parents[3] / "course/images/view.png"
+SIZE = {"width": 1240, "height": 780}
+
+
+def main() -> int:
+    """Write the picture; returns the exit code."""
+    browser = find_browser()
+    if browser is None:
+        print("There is no Chromium here: apt-get install chromium", file=sys.stderr)
+        return 3
+    with tempfile.TemporaryDirectory() as folder:
+        # The domain of a user with id 0, so that the picture is the same wherever it is taken.
+        made = World(Path(folder), environment(Path(folder), domain=1))
+        try:
+            take(made, browser)
+        finally:
+            made.end()
+    print(f"Written: {FILE}")
+    return 0
+
+
+def take(world: World, browser: str) -> None:
+    """Let the turtle drive most of its circle, then take the picture."""
+    simulator = world.start("ros2 run turtlesim turtlesim_node --view", "Spawning turtle")
+    url = next(word for line in simulator.lines for word in line.split() if word.startswith("http://"))
+    world.start(f"python3 {SOLUTION}/my_robot_controller/draw_circle.py", "Draw")
+    with launched(browser) as started:
+        page = started.new_page(viewport=SIZE, color_scheme="light")
+        page.goto(url)
+        page.locator(".arrow.flows[data-from='/draw_circle']").wait_for()
+        page.locator("[data-topic='/turtle1/cmd_vel'] .rate", has_text="2 Hz").wait_for()
+        # Once round, and on to where the turtle looks to the upper left.
+        page.get_by_text("heading -2.").wait_for()
+        page.get_by_text("heading 2.").wait_for()
+        page.screenshot(path=FILE)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
