@@ -53,26 +53,26 @@ def estimate(done: int, of: int, seconds: float) -> str:
 
 
 @contextmanager
-def screen(amount: int, several: bool) -> Iterator[Screen]:
+def screen(amount: int, *, several: bool) -> Iterator[Screen]:
     """The screen for so many submissions; `several` exercises among them."""
     if not amount:
-        yield Lines(amount, several)
+        yield Lines(amount, several=several)
     elif sys.stderr.isatty() and not os.environ.get("CI"):
         from rich.console import Console
         from rich.live import Live
 
         console = Console(stderr=True, highlight=False)
-        table = Table(amount, several, console)
+        table = Table(amount, console, several=several)
         with Live(get_renderable=table.render, console=console, refresh_per_second=4, transient=True):
             yield table
     else:
-        yield Lines(amount, several)
+        yield Lines(amount, several=several)
 
 
 class Lines:
     """A line when a submission is finished, and no other."""
 
-    def __init__(self, amount: int, several: bool) -> None:
+    def __init__(self, amount: int, *, several: bool) -> None:
         self._amount, self._several, self._done = amount, several, 0
         self._begun = time.monotonic()
 
@@ -90,7 +90,7 @@ class Lines:
 class Table:
     """What is being worked on, one below the other, with a bar; finished submissions go up and stay."""
 
-    def __init__(self, amount: int, several: bool, console: Console) -> None:
+    def __init__(self, amount: int, console: Console, *, several: bool) -> None:
         self._amount, self._several, self._console = amount, several, console
         self._now: dict[Name, tuple[str, float]] = {}
         self._tones: list[str] = []
