@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.code import import_path
 from grader.checks.crash import read_tracebacks
 from grader.checks.kind import Kind, NoParams
-from grader.checks.syntax import why_unreadable
+from grader.checks.syntax import unreadable_seen, why_unreadable
 from grader.outcome import Finding, Where, failed, passed
 from grader.words import a_list, shorten
 
@@ -69,7 +69,7 @@ def early(evidence: Evidence, _: NoParams) -> Finding | None:
     if setup.unreadable is None:
         return None
     why = why_unreadable(setup.unreadable, evidence.submission.files["setup.py"])
-    seen = f"Python cannot read setup.py: {shorten(setup.unreadable.message, 120)}."
+    seen = unreadable_seen("setup.py", setup.unreadable)
     return failed("setup-py-syntax", seen, EXPECTED, why.text, where=Where("setup.py", setup.unreadable.line))
 
 
@@ -108,7 +108,15 @@ def _broken(evidence: Evidence) -> Finding:
     if words and NO_FILE.search(words[-1]):
         cause = "setup.py names a file in data_files that the package does not have."
         return failed("data-file-missing", f"`colcon build` failed{said}.", EXPECTED, cause, where=where)
-    return failed("build-failed", f"`colcon build` failed{said}.", EXPECTED, where=where)
+    return failed("build-failed", f"`colcon build` failed{said}.", EXPECTED, _other_type(evidence), where=where)
+
+
+def _other_type(evidence: Evidence) -> str:
+    """A cause in words where package.xml makes colcon take the package for one of another kind; else empty."""
+    manifest = evidence.manifest
+    if manifest is None or manifest.problem is not None or manifest.build_type == "ament_python":
+        return ""
+    return "colcon goes by package.xml, which is not that of an ament_python package."
 
 
 def _modules(evidence: Evidence) -> Finding:
@@ -126,7 +134,7 @@ def _modules(evidence: Evidence) -> Finding:
         return failed("missing-init", seen, expected, cause, where=Where("setup.py", _setup_line(evidence)))
     if missing:
         seen = "`colcon build` said that it was done, and installed none of the Python files."
-        cause = "The argument packages of setup() says which folders to install."
+        cause = _other_type(evidence) or "The argument packages of setup() says which folders to install."
         return failed("nothing-installed", seen, EXPECTED, cause, where=Where("setup.py", _setup_line(evidence)))
     return passed("`colcon build` built and installed the package.")
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 START = "Traceback (most recent call last):"
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
 ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
+GUESS = re.compile(r"\.? Did you mean: .*| The following argument types are supported:.*")
+"""What Python's versions add to an error in different words; a diagnosis names the nearest name itself."""
 STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
 """How a node in the tutorial's shape is told of Ctrl-C."""
 
@@ -141,7 +143,8 @@ def _crash(lines: list[str], files: Mapping[str, bytes]) -> Crash | None:
             error = ERROR.fullmatch(line)
             if error is None:
                 return None
-            return Crash(error["type"].rpartition(".")[2], (error["message"] or "").strip(), where)
+            message = GUESS.sub("", error["message"] or "").strip()
+            return Crash(error["type"].rpartition(".")[2], message, where)
     return None
 
 

@@ -100,9 +100,8 @@ def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
     name = attribute.partition(".")[0]
     if not name:
         seen = f"The entry point {executable} leads to {module.file}, and names no function in it."
-        return failed(
-            "entry-point-function", seen, f"{FORM}.", "The part with the colon is missing.", where=line(evidence)
-        )
+        cause = "After the module come a colon and the function's name."
+        return failed("entry-point-no-function", seen, f"{FORM}.", cause, where=line(evidence))
     bound = list(_bindings(module, name))
     if not bound:
         return _no_function(evidence, module, name)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import dataclass
+from xml.parsers.expat import ExpatError, ParserCreate
 
 from grader.words import shorten
 
@@ -49,6 +51,17 @@ def read_manifest(data: bytes) -> Manifest:
         run_depends=tuple(sorted(running)),
         other_depends=tuple(sorted({each.name for each in every} - running)),
     )
+
+
+def open_tag(data: bytes) -> tuple[str, int]:
+    """The innermost tag that is open where an XML file breaks off, and its line: for a mismatched tag, the culprit."""
+    parser = ParserCreate()
+    opened: list[tuple[str, int]] = []
+    parser.StartElementHandler = lambda name, _: opened.append((name, parser.CurrentLineNumber))
+    parser.EndElementHandler = lambda _: opened.pop()
+    with suppress(ExpatError):
+        parser.Parse(data, True)  # noqa: FBT003 (the module's own way to say: this is all)
+    return opened[-1] if opened else ("", 1)
 
 
 def line_of(data: bytes, *patterns: str) -> int | None:

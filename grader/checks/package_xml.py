@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.code import import_path
 from grader.checks.kind import Kind, NoParams, texts
-from grader.checks.manifest import line_of
+from grader.checks.manifest import line_of, open_tag
 from grader.outcome import Finding, Where, failed, passed
 from grader.words import a_list, nearest, shorten
 
@@ -76,7 +76,13 @@ def _unreadable(evidence: Evidence, manifest: Manifest, expected: str) -> Findin
         return failed("package-xml-old-tag", seen, expected, cause, where=_line(evidence, f"<{tag['tag']}"))
     if XML.search(problem):
         cause = "Each <tag> ends with a </tag> of the same name, the inner one before the outer one."
-        return failed("xml-malformed", seen, expected, cause, where=Where(FILE, manifest.line))
+        line = manifest.line
+        if "mismatched tag" in problem:
+            tag_, line = open_tag(evidence.submission.files[FILE])
+            cause = f"<{shorten(tag_, 30)}> in line {line} is not closed by a tag of the same name with a slash."
+        elif "junk after" in problem:
+            cause = "After the last tag, </package>, nothing may follow."
+        return failed("xml-malformed", seen, expected, cause, where=Where(FILE, line))
     return failed(
         "package-xml-invalid", seen, expected, where=Where(FILE, manifest.line or _line(evidence, "<package").line)
     )

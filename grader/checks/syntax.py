@@ -63,8 +63,14 @@ def why_unreadable(unreadable: Unreadable, data: bytes) -> Cause:
     return Cause("syntax-error", OTHERWISE)
 
 
+def unreadable_seen(file: str, unreadable: Unreadable) -> str:
+    """What was seen of a file that Python cannot read."""
+    said = shorten(unreadable.message, 120)
+    return f"Python cannot read {file}: {said}{'' if said.endswith(('.', '?', '!')) else '.'}"
+
+
 def unreadable_finding(file: str, unreadable: Unreadable, data: bytes) -> Finding:
     """A failed finding about a file that Python cannot read."""
     cause = why_unreadable(unreadable, data)
-    seen = f"Python cannot read {file}: {shorten(unreadable.message, 120)}."
+    seen = unreadable_seen(file, unreadable)
     return failed(cause.diagnosis, seen, EXPECTED, cause.text, where=Where(file, unreadable.line))

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from grader.checks.scene import Scene
 
+UNBOUND = re.compile(r"local variable '(?P<name>\w+)'")
 NO_NAME = re.compile(r"name '(?P<name>\w+)' is not defined")
 NO_ATTRIBUTE = re.compile(
     r"(?:'(?P<object>\w+)' object|type object '(?P<type>\w+)'|module '(?P<module>[\w.]+)')"
@@ -60,8 +61,13 @@ def _bound(scene: Scene) -> set[str]:
     return names | {name for name in dir(builtins) if name.islower()} | set(ros_names.LIVES_IN)
 
 
-def why_unbound(_: Scene) -> Cause:
-    """A name that is assigned further down in the same function."""
+def why_unbound(scene: Scene) -> Cause:
+    """A name that is assigned further down in the same function, or an attribute of that name."""
+    match = UNBOUND.search(scene.crash.message)
+    own = scene.own_class
+    if match is not None and own is not None and match["name"] in {name for name, _ in attributes_set(own)}:
+        text = f"{match['name']} belongs to the object: inside of a method it is reached through self."
+        return Cause("missing-self", text)
     return Cause(
         "local-name",
         "What a function assigns to is its own, even above that line. What lives from call to call is kept in self.",

@@ -3,36 +3,159 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TYPE_CHECKING
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader.tests.case import CASES, Case, read_cases
-from grader.tests.grading import Graded, check_report, each
+from grader.checks.diagnoses import DIAGNOSES
+from grader.checks.evidence import Evidence
+from grader.checks.judge import judge_early
+from grader.exercise import find_exercise
+from grader.submission import open_submission
+from grader.tests.case import ROOT, Case, make_submission, read_cases
+from grader.tests.catalogue import MISTAKES, PAGE, cases, page
+from grader.tests.grading import Graded, check_report, each, place_of
 from grader.tests.grading_here import Builds, grade_here
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
 
-MISTAKES = read_cases(CASES.parent / "mistakes")
+    from grader.grade import ClockChoice
+
+    Grade = Callable[[Case, ClockChoice], Graded]
+
+CASES = read_cases(MISTAKES)
+JUDGED = [case for case in CASES if case.result != "usage"]
+MOST_WORDS = 60
+LONG = 12
+"""Characters: a shorter line of a solution, such as `pass`, gives nothing away."""
+NOWHERE = frozenset({"node-name", "no-answers", "no-numbers", "rejected-file"})
+"""What may be about no file at all."""
 
 
 @pytest.fixture(scope="module")
-def graded(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[dict[str, Future[Graded]]]:
-    """Every case that is asked for, graded side by side: name -> what was said."""
+def graded(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grade]:
+    """What is said of a case under a clock; all that this session asks for is graded side by side."""
     folder, builds = tmp_path_factory.mktemp("mistakes"), Builds()
-    items = [item for item in request.session.items if item.path == request.path]
-    cases = {
-        item.callspec.params["case"].name: item.callspec.params["case"] for item in items if hasattr(item, "callspec")
-    }
+    futures: dict[tuple[str, str], Future[Graded]] = {}
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        yield {name: pool.submit(grade_here, case, "auto", folder / name, builds) for name, case in cases.items()}
+
+        def ask(case: Case, clock: ClockChoice) -> Future[Graded]:
+            if (case.name, clock) not in futures:
+                place = folder / f"{case.name}.{clock}"
+                futures[case.name, clock] = pool.submit(grade_here, case, clock, place, builds)
+            return futures[case.name, clock]
+
+        for item in request.session.items:
+            if item.path == request.path and hasattr(item, "callspec"):
+                for mark in item.iter_markers("clocks"):
+                    for clock in mark.args:
+                        ask(item.callspec.params["case"], clock)
+        yield lambda case, clock: ask(case, clock).result()
         pool.shutdown(cancel_futures=True)
 
 
-@each(MISTAKES, always=True)
-def test_a_mistake_is_named(case: Case, graded: dict[str, Future[Graded]]) -> None:
-    check_report(case, graded[case.name].result())
+@pytest.mark.clocks("auto")
+@each(CASES, always=True)
+def test_a_mistake_is_named(case: Case, graded: Grade) -> None:
+    check_report(case, graded(case, "auto"))
+
+
+@pytest.mark.clocks("auto")
+@each(JUDGED, always=True)
+def test_what_is_said_is_short_and_whole(case: Case, graded: Grade) -> None:
+    for outcome in failures(graded(case, "auto")):
+        assert outcome["seen"], outcome
+        assert outcome["expected"], outcome
+        assert place_of(outcome) or outcome["diagnosis"] in NOWHERE, outcome
+        assert len(text_of(outcome).split()) <= MOST_WORDS, outcome
+        assert outcome["diagnosis"] in DIAGNOSES, outcome
+
+
+@pytest.mark.clocks("auto")
+@each(JUDGED, always=True)
+def test_what_is_said_gives_nothing_away(case: Case, graded: Grade, tmp_path: Path) -> None:
+    given = make_submission(case, tmp_path / "given")
+    own = "\n".join(path.read_text("utf-8", "replace") for path in given.rglob("*") if path.is_file())
+    for outcome in failures(graded(case, "auto")):
+        text = text_of(outcome)
+        assert [line for line in solution_lines() if line in text and line not in own] == []
+
+
+@pytest.mark.exhaustive
+@pytest.mark.clocks("auto", "wall")
+@each(JUDGED, always=True)
+def test_both_clocks_name_the_same_mistake(case: Case, graded: Grade) -> None:
+    keys = ("status", "points", "diagnosis", "cause")
+    simulated, wall = (
+        {id_: tuple(outcome[key] for key in keys) for id_, outcome in graded(case, clock).outcomes().items()}
+        for clock in ("auto", "wall")
+    )
+    assert simulated == wall
+
+
+def test_a_diagnosis_is_not_shown_over_and_over() -> None:
+    """The first diagnosis that a case names is what it is about."""
+    about = Counter(next(iter(case.diagnosis.values())) for case in CASES if case.diagnosis)
+    assert [id_ for id_, amount in about.items() if amount > 3] == []
+
+
+def test_there_is_enough_to_learn_from() -> None:
+    assert len(CASES) >= 120
+    assert len([case for case in CASES if not case.base]) >= 40
+    assert {(case.exercise or case.base)[:2] for case in CASES} == {f"0{step}" for step in range(1, 8)}
+
+
+def test_every_diagnosis_is_shown_by_a_case() -> None:
+    shown = {id_ for case in cases() for id_ in case.diagnosis.values()}
+    assert sorted(DIAGNOSES.keys() - shown) == []
+    assert sorted(shown - DIAGNOSES.keys()) == []
+
+
+def test_the_authors_page_is_up_to_date() -> None:
+    assert PAGE.read_text("utf-8") == page(), "python -m grader.tests.catalogue makes it anew"
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("122", ["entry-point"]),
+        ("305", ["build"]),
+        ("306", ["dependencies"]),
+        ("403", ["depends-geometry-msgs"]),
+        ("101", []),
+    ],
+)
+def test_what_the_files_alone_tell_is_known_before_anything_runs(name: str, told: list[str], tmp_path: Path) -> None:
+    case = next(case for case in CASES if case.name.startswith(name))
+    submission = open_submission(make_submission(case, tmp_path / "in"))
+    early = judge_early(Evidence(find_exercise(case.exercise or case.base), submission))
+    assert [outcome.id for outcome in early.failed] == told
+
+
+def failures(of: Graded) -> list[dict[str, Any]]:
+    return [outcome for outcome in of.outcomes().values() if outcome["status"] == "failed"]
+
+
+def text_of(outcome: dict[str, Any]) -> str:
+    return " ".join(str(outcome[key]) for key in ("seen", "expected", "cause"))
+
+
+@cache
+def solution_lines() -> frozenset[str]:
+    """The lines that a student is to write, in all solutions."""
+    found: set[str] = set()
+    for path in sorted((ROOT / "solutions").rglob("*")):
+        if path.is_file() and path.suffix in (".py", ".xml", ".toml", ".cfg"):
+            inside = False
+            for line in path.read_text("utf-8").splitlines():
+                if "BEGIN SOLUTION" in line or "END SOLUTION" in line:
+                    inside = "BEGIN" in line
+                elif inside and len(line.strip()) >= LONG:
+                    found.add(line.strip())
+    assert found
+    return frozenset(found)

@@ -1,0 +1,66 @@
+"""The author's page: every diagnosis, what it means, and the cases that show it.
+
+    python -m grader.tests.catalogue
+
+writes grader/checks/README.md anew.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.checks.diagnoses import GROUPS
+from grader.tests.case import CASES, read_cases
+
+if TYPE_CHECKING:
+    from grader.tests.case import Case
+
+PAGE = Path(__file__).parent.parent / "checks" / "README.md"
+MISTAKES = CASES.parent / "mistakes"
+HEAD = """\
+# The catalogue of mistakes
+
+A check that fails names its cause by a stable id. This page lists them all, with the cases that show each:
+folders in `grader/tests/mistakes/` and `grader/tests/cases/`, a submission with what must be said about it. The
+ids and meanings stand in [diagnoses.py](diagnoses.py); this page is made from them and from the cases by
+`python -m grader.tests.catalogue`, and a test fails when it is stale.
+
+A new mistake is a folder `grader/tests/mistakes/NNN-name/` with the submission and an expected.toml (its keys
+are the fields of `Case` in [case.py](../tests/case.py)), and, where none of the ids fits, a new one: the code
+that recognises it, in the module of its subject, and its line in diagnoses.py. What it says has at most 60
+words, tells what was seen, what was expected and where, and never has a line of the solution in it; tests hold
+that, too. One that the evidence does not support is worse than none: `never` in expected.toml lists what must
+not be said.
+
+```text
+python -m pytest grader/tests/test_mistakes.py -k NNN
+```
+"""
+
+
+def cases() -> tuple[Case, ...]:
+    """All cases that name diagnoses."""
+    return (*read_cases(CASES), *read_cases(MISTAKES))
+
+
+def page() -> str:
+    """The whole page."""
+    shown: dict[str, list[str]] = {}
+    for case in cases():
+        for id_ in dict.fromkeys(case.diagnosis.values()):
+            shown.setdefault(id_, []).append(case.name.partition("-")[0])
+    parts = [HEAD]
+    for group, diagnoses in GROUPS.items():
+        rows = [f"| `{id_}` | {meaning} | {_some(shown.get(id_, []))} |" for id_, meaning in diagnoses.items()]
+        title = group[0].upper() + group[1:]
+        parts.append("\n".join([f"## {title}", "", "| id | what it means | cases |", "| --- | --- | --- |", *rows, ""]))
+    return "\n".join(parts)
+
+
+def _some(names: list[str]) -> str:
+    return ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), "utf-8")
