@@ -65,6 +65,19 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
     return tuple(sorted(found, key=lambda each: (sort_key(each.student), each.exercise)))
 
 
+def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
+    """The names of what lies beside submissions and is none: files, links. What is hidden is not named."""
+    folders = [path for path in given if path.is_dir() and not _is_one(path)]
+    return tuple(
+        shown(entry.name)
+        for folder in folders
+        for entry in sorted(folder.iterdir(), key=lambda each: sort_key(each.name))
+        if not entry.name.startswith((".", "__MACOSX"))
+        and _student(entry) is None
+        and entry.resolve() != leave_out.resolve()
+    )
+
+
 def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
     if not path.exists():
         message = f"There is no {shown(str(path))}. Give the folder that holds a folder or an archive of each student."
@@ -90,7 +103,7 @@ def _is_one(folder: Path) -> bool:
 
 def _student(entry: Path) -> str | None:
     """Whose it is; None for what lies about beside submissions: hidden files, lists, notes."""
-    if entry.name.startswith((".", "__")):
+    if entry.name.startswith(".") or entry.name == "__MACOSX":
         return None
     mode = entry.lstat().st_mode
     if stat.S_ISDIR(mode):

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 from grader import sandbox, underlay
 from grader.classroom import outputs, results
-from grader.classroom.found import find_submissions
+from grader.classroom.found import find_submissions, passed_over
 from grader.classroom.order import Order, read_roster, sort_out, sources_for
 from grader.classroom.run import run
 from grader.classroom.show import screen, summary
 from grader.errors import MachineError, UsageError
 from grader.outcome import Status
 from grader.ros import find_ros
-from grader.words import count
+from grader.words import a_list, count
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -64,6 +64,7 @@ def grade_found(
     """The same for submissions that were found already; raises as `grade_class`."""
     local = _engine_is_known(asked)
     roster = read_roster(asked.roster)
+    beside = passed_over(asked.submissions, asked.out)
     sources = sources_for(found, asked.checks)
     order = Order(
         found=found,
@@ -81,6 +82,8 @@ def grade_found(
         tell(f"Reading {count(len(found), 'submission')}")
         kept, todo = sort_out(order, folder)
         say(_told(kept, todo))
+        if beside:
+            say(f"Passed over, since it is neither a folder nor an archive: {a_list(beside)}.")
         graded: list[Result] = []
         if todo:
             engine = _engine(asked, local=local)

@@ -37,7 +37,9 @@ def write_all(results: Results, graded: Sequence[Result], folder: str = "") -> N
     from urllib.parse import quote
 
     rows = [(result.student, result.report) for result in graded]
-    table = [(result.student, result.report, f"{REPORTS}/{_json(result)}") for result in graded]
+    table = [
+        (result.student, result.report, str(result.key["grader"]), f"{REPORTS}/{_json(result)}") for result in graded
+    ]
     entries = [Entry(result.report, result.student, f"./{REPORTS}/{quote(result.page)}") for result in graded]
     results.write(SUMMARY, to_csv(table).encode("utf-8", "replace"))
     results.write(JUNIT, to_junit(rows))

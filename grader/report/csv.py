@@ -9,7 +9,9 @@
     failed      ids of the checks that failed, in the order of the exercise, blanks between
     diagnoses   the stable ids of their causes
     first       what was seen by the first of them, in words
-    clock, seed, graded_by, report
+    clock, seed
+    graded_by   the grader's version and the beginning of its sources' sha256
+    report      the file of the whole report
 
 No cell is a formula, whatever a student wrote.
 """
@@ -46,17 +48,17 @@ COLUMNS = (
 )
 
 
-def to_csv(rows: Iterable[tuple[str, Report, str]]) -> str:
-    """The table of these students, reports and names of JSON files; with a mark that tells Excel of UTF-8."""
+def to_csv(rows: Iterable[tuple[str, Report, str, str]]) -> str:
+    """The table of these students, reports, graders and names of JSON files; with a mark that tells Excel of UTF-8."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\r\n")  # as RFC 4180 has it
     writer.writerow(COLUMNS)
-    for student, report, file in rows:
-        writer.writerow([_safe(str(value)) for value in _row(student, report, file)])
+    for row in rows:
+        writer.writerow([_safe(str(value)) for value in _row(*row)])
     return "\ufeff" + text.getvalue()
 
 
-def _row(student: str, report: Report, file: str) -> tuple[object, ...]:
+def _row(student: str, report: Report, grader: str, file: str) -> tuple[object, ...]:
     failed = report.with_status(Status.FAILED) or report.with_status(Status.ERROR)
     return (
         student,
@@ -70,7 +72,7 @@ def _row(student: str, report: Report, file: str) -> tuple[object, ...]:
         failed[0].finding.seen if failed else "",
         report.clock,
         "" if report.seed is None else report.seed,
-        report.grader,
+        grader,
         file,
     )
 

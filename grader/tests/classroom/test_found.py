@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.classroom.content import Refused, fingerprint, read
-from grader.classroom.found import Found, find_submissions
+from grader.classroom.found import Found, find_submissions, passed_over
 from grader.errors import UsageError
 from grader.exercise import find_exercise
 from grader.tests.case import copy_solution
@@ -30,6 +30,7 @@ def test_a_folder_of_folders_and_archives(tmp_path: Path) -> None:
     for name in ("ben.zip", "clara.tar.gz", "roster.csv", ".DS_Store"):
         (tmp_path / name).touch()
     (tmp_path / "link").symlink_to("/etc")
+    assert passed_over([tmp_path], tmp_path / "grades") == ("link", "roster.csv")
     assert names(tmp_path) == [
         ("Zoe", STEP, "Zoe"),
         ("anna", STEP, "anna"),
