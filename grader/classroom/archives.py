@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -46,6 +47,9 @@ def unpacked(archive: Path) -> Iterator[Path]:
     """
     if not archive.name.lower().endswith(ENDINGS):
         message = "is no archive that is unpacked here: hand in a .zip or a .tar.gz"
+        raise NotUnpackedError(message)
+    if not os.access(archive, os.R_OK):
+        message = "may not be read (its permissions forbid it)"
         raise NotUnpackedError(message)
     if archive.stat().st_size > MOST_PACKED:
         message = f"has more than {MOST_PACKED // _MIB} MiB"

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from grader.classroom import archives
-from grader.errors import UsageError
+from grader.errors import MachineError, UsageError
 from grader.submission import ANSWERS, Submission, open_answers, open_submission
 from grader.tree import shown
 
@@ -56,16 +56,26 @@ def fingerprint(found: Found, exercise: Exercise) -> str:
     """
     archive = _archive(found.path)
     if archive is not None:
-        with archive.open("rb") as file:
-            whole = hashlib.sha256(archive.name.encode("utf-8", "surrogateescape") + b"\0")
-            while data := file.read(1024 * 1024):
-                whole.update(data)
-        return whole.hexdigest()
+        return _of_archive(archive)
     content = read(found, exercise, "")
     if isinstance(content, Refused):
         return hashlib.sha256(f"refused {content.reason}".encode("utf-8", "surrogateescape")).hexdigest()
     parts = (content.digest, content.package_dir.name, *content.rejected, *sorted(content.executable))
     return hashlib.sha256("\0".join(parts).encode("utf-8", "surrogateescape")).hexdigest()
+
+
+def _of_archive(archive: Path) -> str:
+    whole = hashlib.sha256(archive.name.encode("utf-8", "surrogateescape") + b"\0")
+    try:
+        with archive.open("rb") as file:
+            while data := file.read(1024 * 1024):
+                whole.update(data)
+    except PermissionError:
+        whole.update(b"may not be read")  # `read` tells it
+    except OSError as error:
+        message = f"{shown(str(archive))} cannot be read: {error.strerror}. This is a fault of the machine; try again."
+        raise MachineError(message) from error
+    return whole.hexdigest()
 
 
 @contextmanager

@@ -19,6 +19,7 @@ from grader.classroom.private_checks import sources_of
 from grader.submission import open_submission
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import ACTS, POINTS, STEP, grade, judged, make_class, reports, rows
+from grader.tests.test_grade import busy
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -199,16 +200,11 @@ def test_nbgraders_tree_says_student_and_exercise(undisturbed: Run, tmp_path: Pa
 
 
 @pytest.mark.exhaustive
-def test_a_class_of_clones_graded_twice_idle_and_under_load_is_one(tmp_path: Path) -> None:
+def test_a_class_graded_alone_and_four_at_once_under_load_is_one(tmp_path: Path) -> None:
     submitted = make_class(tmp_path / "submitted")
     first = grade(submitted, "--exercise", STEP, "--out", tmp_path / "idle", "--jobs", "1")
     assert first.returncode == 0, first.stderr
-    loops = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(4)]
-    try:
+    with busy(4):
         loaded = grade(submitted, "--exercise", STEP, "--out", tmp_path / "loaded", "--jobs", "4")
-    finally:
-        for loop in loops:
-            loop.kill()
-            loop.wait()
     assert loaded.returncode == 0, loaded.stderr
     assert judged(tmp_path / "idle") == judged(tmp_path / "loaded")

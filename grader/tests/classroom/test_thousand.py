@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,9 +10,10 @@ import pytest
 from grader.tests.attack import make_attack, read_attacks
 from grader.tests.case import make_submission, read_cases
 from grader.tests.classroom.a_class import STEP, grade, judged
+from grader.tests.test_grade import busy
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from grader.tests.case import Case
 
@@ -23,17 +21,6 @@ CLASS, ROUNDS = 50, 20
 TESTS = Path(__file__).parents[1]
 AMONG = {"mistakes": 22, "unusual": 11, "cases": 11}
 ATTACKS = ("301", "304", "501", "504", "602", "613")
-
-
-@contextmanager
-def load(loops: int) -> Iterator[None]:
-    children = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(loops)]
-    try:
-        yield
-    finally:
-        for child in children:
-            child.kill()
-            child.wait()
 
 
 def make_mixed(folder: Path) -> Path:
@@ -61,7 +48,7 @@ def test_a_thousand_gradings_idle_and_under_load_are_one(tmp_path: Path) -> None
     first = None
     for number in range(ROUNDS):
         out = tmp_path / f"grades-{number}"
-        with load(4 if number % 2 else 0):
+        with busy(4 if number % 2 else 0):
             done = grade(submitted, "--exercise", STEP, "--out", out)
         assert done.returncode == 0, done.stderr
         found = judged(out)
