@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from grader.tests.case import ROOT
 from grader.tests.mutation import equivalent, judging, unit
-from grader.tests.mutation.mutants import mutants_of
+from grader.tests.mutation.mutants import KINDS, mutants_of
 from grader.tests.mutation.recordings import all_cases, recordings
 
 if TYPE_CHECKING:
@@ -110,6 +110,10 @@ def _print(
     for file in files:
         of_file = [sum(mutant.file == file for mutant in each) for each in (mutants, by_case, survivors)]
         print(f"{file.name:<20} {of_file[0]:>7}  {of_file[1]:>7}  {of_file[2]:>8}")
+    print(f"\n{'change':<20} mutants  no case  survived")
+    for kind in KINDS:
+        of_kind = [sum(mutant.kind == kind for mutant in each) for each in (mutants, by_case, survivors)]
+        print(f"{kind:<20} {of_kind[0]:>7}  {of_kind[1]:>7}  {of_kind[2]:>8}")
     share, cases = (len(each) / len(mutants) if mutants else 0.0 for each in (survivors, by_case))
     print(
         f"\n{len(mutants)} mutants, {len(mutants) - len(survivors)} killed, {len(survivors)} survived: {share:.1%}\n"

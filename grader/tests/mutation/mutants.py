@@ -31,18 +31,23 @@ LEFT_OUT = {
 WORDS = frozenset({"shorten", "a_list", "count", "shown"})
 """Functions that make words: numbers in their arguments change no diagnosis."""
 STRINGS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
+KINDS = OUT, ALWAYS, NAME, PLACE, DETAIL = ("taken out", "always", "other name", "no place", "detail")
+"""What a change does to the code of a diagnosis; a detail is what mutmut's operators change."""
+Change = tuple[str, cst.CSTNode, cst.CSTNode]
+"""Its kind, what is there, and what comes instead."""
 
 
 @dataclass(frozen=True)
 class Mutant:
     """A file with one change: `line` and `end_line` are those of the statement, from 1; `change` is told to people.
 
-    `at_import`: the statement is run when the file is imported, so that nobody runs its lines later.
+    `kind` is one of KINDS. `at_import`: the statement is run when the file is imported, and by nobody later.
     """
 
     file: Path
     line: int
     end_line: int
+    kind: str
     change: str
     source: str
     at_import: bool = False
@@ -69,16 +74,16 @@ def mutants_of(file: Path) -> list[Mutant]:
         if statement is None or _idle(node, parents):
             continue
         place = _lines(statement, positions)
-        for old, new in _changes(node):
+        for kind, old, new in _changes(node):
             lead = "if " if isinstance(node, cst.If) else ""
             change = f"{lead}{_told(wrapper.module, old)} -> {lead}{_told(wrapper.module, new)}"
             source = spliced(old, new)
-            found.setdefault(source, Mutant(file, *place, change, source, _at_import(statement, parents)))
+            found.setdefault(source, Mutant(file, *place, kind, change, source, _at_import(statement, parents)))
     found.pop(text, None)
     return sorted(found.values(), key=lambda mutant: mutant.line)
 
 
-def _changes(node: cst.CSTNode) -> Iterator[tuple[cst.CSTNode, cst.CSTNode]]:
+def _changes(node: cst.CSTNode) -> Iterator[Change]:
     """What of this node may become what."""
     for kind, operator in mutators.mutation_operators:
         if (
@@ -86,21 +91,22 @@ def _changes(node: cst.CSTNode) -> Iterator[tuple[cst.CSTNode, cst.CSTNode]]:
             and operator not in LEFT_OUT
             and not (isinstance(node, cst.Assign) and _is_words(node))
         ):
-            yield from ((node, changed) for changed in operator(node))
+            yield from ((DETAIL, node, changed) for changed in operator(node))
     if isinstance(node, cst.If) and not (isinstance(node.test, cst.Name) and node.test.value == "TYPE_CHECKING"):
-        yield from ((node.test, cst.Name(value)) for value in ("False", "True"))
+        yield OUT, node.test, cst.Name("False")
+        yield ALWAYS, node.test, cst.Name("True")
     if isinstance(node, cst.Return | cst.Expr | cst.AugAssign | cst.Continue | cst.Break):
-        yield node, cst.Pass()
+        yield OUT, node, cst.Pass()
     if isinstance(node, cst.Call) and isinstance(node.func, cst.Name) and node.func.value == "failed":
         yield from _diagnosis_changes(node)
 
 
-def _diagnosis_changes(call: cst.Call) -> Iterator[tuple[cst.CSTNode, cst.CSTNode]]:
+def _diagnosis_changes(call: cst.Call) -> Iterator[Change]:
     """Another diagnosis; no place to look at."""
-    yield call.args[0].value, cst.SimpleString('"another"')
+    yield NAME, call.args[0].value, cst.SimpleString('"another"')
     for argument in call.args:
         if argument.keyword is not None and argument.keyword.value == "where":
-            yield argument.value, cst.Name("None")
+            yield PLACE, argument.value, cst.Name("None")
 
 
 def _is_words(assignment: cst.Assign) -> bool:
