@@ -134,7 +134,8 @@ def _refused(task: Task, exercise: Exercise, reason: str) -> Graded:
     """No package: no points, with the reason first."""
     what = "a package" if exercise.package else "answers.toml"
     title = f"The submission holds {what}"
-    first = failed("no-package" if exercise.package else "no-answers-file", reason, "")
+    expected = f"One folder with {what} in it, or a .zip or .tar.gz of that."
+    first = failed("no-package" if exercise.package else "no-answers-file", reason, expected)
     skipped = Finding(Status.SKIPPED, f'Not judged, since "{title}" did not pass.')
     return _unjudged(task, exercise, skipped, Outcome("submission", "submission", title, 0.0, 0.0, first))
 
