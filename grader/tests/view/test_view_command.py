@@ -1,0 +1,85 @@
+"""The other ways in: `grader sim --view`, and a view that is killed while its simulator goes on."""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from websockets.sync.client import connect
+from websockets.typing import Origin
+
+from grader.tests.ros2.world import World, world
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.tests.ros2.world import Running
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    yield from world(tmp_path_factory.mktemp("command"))
+
+
+def whole(of: Running) -> dict[str, Any]:
+    """What a page is told first."""
+    url = next(word for line in of.lines for word in line.split() if word.startswith("http://"))
+    host, _, token = url.removeprefix("http://").partition("/#")
+    with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as page:
+        told: dict[str, Any] = json.loads(page.recv())
+        return told
+
+
+def test_grader_sim_shows_its_turtle_and_takes_parameters(alone: World) -> None:
+    # What is built once is.
+    cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    simulator = alone.start("grader sim --view --ros-args -p background_r:=7", "Spawning turtle", XDG_CACHE_HOME=cache)
+    while not (told := whole(simulator))["turtles"]:
+        pass
+    assert list(told["turtles"]) == ["turtle1"]
+    assert told["background"] == [7, 86, 255]
+    assert simulator.stop() == 0
+    assert simulator.lines[0].startswith("See it move: http://127.0.0.1:")
+    assert not any("Traceback" in line for line in simulator.lines)
+
+
+def test_grader_sim_can_draw_in_the_terminal_and_says_when_there_is_none(alone: World) -> None:
+    cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    done = alone.run("grader sim --view terminal", XDG_CACHE_HOME=cache)
+    assert done.code == 2
+    assert "--view terminal draws in a terminal" in done.stderr
+
+
+def test_a_simulator_outlives_its_view(alone: World) -> None:
+    simulator = alone.start("ros2 run turtlesim turtlesim_node --view", "Spawning turtle")
+    pid = simulator.process.pid
+    view = int(Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0])
+    os.kill(view, signal.SIGKILL)
+    simulator.wait_for("The view has ended; turtlesim goes on without it.")
+    assert alone.run("ros2 topic echo /turtle1/pose --once").code == 0
+    assert simulator.stop() == 0
+
+
+def test_a_view_does_not_outlive_its_simulator(alone: World) -> None:
+    simulator = alone.start("ros2 run turtlesim turtlesim_node --view", "Spawning turtle")
+    whole(simulator)
+    pid = simulator.process.pid
+    view = int(Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0])
+    os.kill(pid, signal.SIGKILL)
+    simulator.process.wait()
+    ended = os.pidfd_open(view)
+    try:
+        assert select.select([ended], [], [], 60.0)[0]
+    finally:
+        os.close(ended)
+
+
+def test_nothing_of_the_view_is_imported_without_it(alone: World) -> None:
+    listed = "[name for name in sys.modules if 'starlette' in name or 'grader.view' in name]"
+    code = f"import sys, grader.simulator.alone; print({listed})"
+    assert alone.run(f'python3 -c "{code}"').stdout == "[]\n"
