@@ -10,6 +10,7 @@ from __future__ import annotations
 import importlib
 import json
 import os
+import signal
 import sys
 import tarfile
 import types
@@ -59,6 +60,10 @@ def main() -> None:
         sys.path_importer_cache.pop(path, None)
     importlib.invalidate_caches()
     sys.argv = [str(script), *order["argv"]]
+    # Whoever grades in the background (`grader grade ... &`) has Ctrl-C ignored, and all that it starts inherits that.
+    signal.pthread_sigmask(signal.SIG_SETMASK, ())
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     # A group of its own: Ctrl-C in a terminal reaches the node and its children alike.
     os.setpgid(0, 0)
     source = script.read_bytes()
