@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import pexpect
 import pytest
 
 from grader.checks.answers_file import read_answers
@@ -60,6 +61,7 @@ def test_every_block_says_what_it_is(lesson: Path) -> None:
         ("console", "solved"),
         ("console", "ros2"),
         ("console", "kitchen"),
+        ("console", "running"),
         ("python", ""),
         ("python", "part"),
         ("python", "example"),
@@ -86,6 +88,45 @@ def test_answers_of_ros2_are_those_that_were_recorded(block: Block) -> None:
         # The same question may have been asked several times, in different situations.
         answers = [ENDS.sub("", text).splitlines() for text in recorded if text.startswith(f"$ {step.command}\n")]
         assert [f"$ {step.command}", *step.printed] in answers
+
+
+def test_no_command_stands_outside_of_a_block(lesson: Path) -> None:
+    """It would be run by no test."""
+    assert re.findall(r"^ +\$ .*", lesson.read_text("utf-8"), re.MULTILINE) == []
+
+
+def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
+    """Build, run, Ctrl-C; another speed without another build; the graph of what runs."""
+    shutil.copytree(ROOT / "exercises", tmp_path / "exercises")
+    shown = blocks((ROOT / "course/05-build-and-run/lesson.md").read_text("utf-8"))
+    build = next(block for block in shown if block.language == "console")
+    start, said = next((s.command, s.printed[0]) for b in shown if b.about == "running" for s in b.steps())
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    env = {**os.environ, "PATH": path, "HOME": str(tmp_path), "ROS_DOMAIN_ID": "93", "PS1": "", "TERM": "dumb"}
+    env["XDG_CACHE_HOME"] = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    shell = pexpect.spawn(
+        "bash", ["--norc", "--noprofile"], env=env, cwd=tmp_path, encoding="utf-8", timeout=120, echo=False
+    )
+    for command in (step.command for step in build.steps()):
+        shell.sendline(f"{command}; echo done''with")
+        shell.expect_exact("donewith")
+    shell.sendline(start)
+    shell.expect_exact(said.rpartition("]: ")[2])
+    shell.sendintr()
+    shell.sendline("echo stopped''here")
+    shell.expect_exact("stoppedhere")
+
+    node = tmp_path / "ros2_ws/src/my_robot_controller/my_robot_controller/draw_circle.py"
+    text = node.read_text()
+    assert "linear.x = 2.0" in text
+    node.write_text(text.replace("linear.x = 2.0", "linear.x = 1.5"))
+    shell.sendline(f"{start} &")
+    shell.sendline("ros2 topic echo /turtle1/cmd_vel geometry_msgs/msg/Twist --once")
+    shell.expect_exact("x: 1.5")
+    shell.sendline("until rqt_graph --text | grep '(/draw_circle) .*cmd_vel'; do :; done; kill -INT $!; exit")
+    shell.expect_exact("(/draw_circle) ───▶ [/turtle1/cmd_vel]")
+    shell.expect(pexpect.EOF)
+    shell.close()
 
 
 @pytest.fixture
