@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-import webbrowser
+import sys
 
 _OPENED_S = 3.0
 """A program that has not failed by then has opened the page."""
@@ -27,10 +27,8 @@ def open_page(url: str) -> bool:
     opener = shutil.which("xdg-open")
     if _screen() and opener is not None and not os.environ.get("BROWSER"):
         return _started([opener, url])
-    try:
-        return webbrowser.get().open(url)
-    except webbrowser.Error:
-        return False
+    # In a process of its own: some browsers only come back when they are closed.
+    return _started([sys.executable, "-m", "webbrowser", url])
 
 
 def _started(command: list[str]) -> bool:

@@ -31,6 +31,8 @@ MOST_LINES = 1500
 """Waiting to be sent; 60 bytes each, so that a message fits into what a socket takes at once."""
 LARGEST = 1 << 20
 """Bytes of a message, more than any has."""
+LARGEST_PICTURE = 100_000
+"""Bytes: with the rest it must fit into what a socket takes at once (212,992 where nobody has set it otherwise)."""
 
 Line = tuple[float, float, float, float, int, int, int, int]
 """From x, y to x, y (m), in red, green, blue, so many pixels wide."""
@@ -160,6 +162,11 @@ def _told(turtle: Turtle) -> tuple[object, ...]:
 
 def _picture(canvas: Canvas) -> str:
     """The trail as PNG, transparent where nothing was drawn."""
-    file = io.BytesIO()
-    canvas.trail().save(file, format="PNG")
-    return base64.b64encode(file.getvalue()).decode()
+    trail = canvas.trail()
+    while True:
+        file = io.BytesIO()
+        trail.save(file, format="PNG")
+        if file.tell() <= LARGEST_PICTURE:
+            return base64.b64encode(file.getvalue()).decode()
+        # Whoever draws noise sees it less sharp.
+        trail = trail.resize((trail.width // 2, trail.height // 2))

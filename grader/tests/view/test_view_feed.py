@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 import math
+import random
 import socket
 from contextlib import suppress
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import pytest
+from PIL import Image
 
-from grader.simulator.turtle import FRAME_S, Start
+from grader.simulator.turtle import FRAME_S, SIDE_PX, Start
 from grader.simulator.world import World
 from grader.view.feed import LARGEST, MOST_LINES, Feed
 from grader.view.state import State
@@ -144,3 +146,22 @@ def test_commands_are_heard_by_the_view_until_it_is_gone(simulator: Simulator) -
         simulator.feed.asked()
     # And what is told to nobody is no error.
     simulator.run(4)
+
+
+def test_a_picture_of_noise_fits_into_a_message_too(simulator: Simulator) -> None:
+    noise = Image.frombytes("RGBA", (SIDE_PX, SIDE_PX), random.Random(1).randbytes(4 * SIDE_PX * SIDE_PX))
+    simulator.feed.canvas.trail().paste(noise)
+    simulator.feed.canvas.lines = [(0.0, 0.0, 1.0, 1.0, 1, 2, 3, 4)] * (MOST_LINES + 1)
+    simulator.run(2)
+    (message,) = simulator.told()
+    assert message["picture"]
+
+
+def test_the_most_lines_fit_into_a_message(simulator: Simulator) -> None:
+    line = (1 / 3, 10 / 3, 20 / 3, 32 / 3, 255, 255, 255, 255)
+    simulator.feed.canvas.lines = [line] * MOST_LINES
+    simulator.run(2)
+    (message,) = simulator.told()
+    lines = message["lines"]
+    assert isinstance(lines, list)
+    assert len(lines) == MOST_LINES
