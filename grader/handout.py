@@ -64,5 +64,7 @@ Then, step by step:
     grader watch         # a verdict after every save; h is for a hint
     grader start next    # when the step has passed
 
+Or in notebooks: `make notebooks`, then `jupyter lab exercises`.
+
 {steps}
 """

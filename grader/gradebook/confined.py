@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from jupyter_client.kernelspec import KernelSpec
 from jupyter_client.manager import AsyncKernelManager
-from nbclient.exceptions import DeadKernelError
+from nbclient.exceptions import CellTimeoutError, DeadKernelError
 from nbgrader.preprocessors import Execute
 from traitlets import Bool, Instance, Integer, Unicode
 
@@ -111,11 +111,10 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         super().__init__(*arguments, **keywords)
         self._ended = ""
         self._printed = 0
-        self._late = 0
 
     def preprocess(self, nb: NotebookNode, resources: Any = None, km: Any = None) -> tuple[NotebookNode, Any]:  # noqa: ANN401
         """Run all cells."""
-        self._ended, self._printed, self._late = "", 0, 0
+        self._ended, self._printed = "", 0
         course, about = self.parent.parent.coursedir, resources["nbgrader"]
         folder = course.format_path(course.submitted_directory, about["student"], about["assignment"])
         self._submission = folder
@@ -145,19 +144,13 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
             return cell, resources
         try:
             return super().preprocess_cell(cell, resources, index)  # type: ignore[no-any-return, unused-ignore]
-        except DeadKernelError:
+        except (DeadKernelError, CellTimeoutError) as error:
+            if isinstance(error, CellTimeoutError):
+                self._end("A cell did not end in time, and did not stop when it was interrupted.")
             self._ended = self._ended or "The kernel died."
             if cell.cell_type == "code":
                 _mark(cell, self._ended)
             return cell, resources
-
-    def on_cell_executed(self, **keywords: Any) -> None:  # noqa: ANN401 - as the base class
-        """Give up a kernel that does not stop when it is interrupted."""
-        super().on_cell_executed(**keywords)
-        timed_out = keywords["execute_reply"]["content"].get("ename") == "CellTimeoutError"
-        self._late = self._late + 1 if timed_out else 0
-        if self._late == 2:
-            self._end("Two cells in a row did not end in time, so the rest was not run.")
 
     def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> NotebookNode | None:
         """Take a message of the kernel's, as long as all of them together are not too long."""

@@ -102,7 +102,7 @@ def test_ros_is_a_part_of_its_own() -> None:
         "setup",
         "grader",
         "grader",
-        "tests",
+        "notebooks",
         "tests",
     ]
 

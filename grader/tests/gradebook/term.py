@@ -121,5 +121,12 @@ def edit(folder: Path, change: Callable[[list[Notebook]], list[Notebook]]) -> No
 
 def with_cell(folder: Path, source: str) -> None:
     """Put a cell right behind the one that loads everything."""
-    cell = {"cell_type": "code", "id": "mine", "metadata": {}, "source": source, "outputs": [], "execution_count": None}
+    cell: Notebook = {
+        "cell_type": "code",
+        "id": "mine",
+        "metadata": {},
+        "source": source,
+        "outputs": [],
+        "execution_count": None,
+    }
     edit(folder, lambda cells: [*cells[:2], cell, *cells[2:]])

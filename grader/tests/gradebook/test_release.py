@@ -8,7 +8,7 @@ import os
 import shutil
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 ROOT = course_folder().parent
-HIDDEN = {
+HIDDEN: dict[str, Any] = {
     "cell_type": "code",
     "execution_count": None,
     "id": "private",
@@ -108,9 +108,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_validate_tells_right_from_unfinished(home: Path) -> None:
     assert "Success! Your notebook passes all the tests." in validated("02-discover-topics", "solutions", home)
-    assert (
-        "VALIDATION FAILED" in (said := validated("02-discover-topics", "exercises", home)).upper() or "failed" in said
-    )
+    assert "VALIDATION FAILED" in validated("02-discover-topics", "exercises", home)
 
 
 @pytest.mark.exhaustive

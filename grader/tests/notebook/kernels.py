@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 class CourseKernel(AsyncKernelManager):
     """Starts the course's kernel, whether or not it is installed for whoever runs the tests."""
 
-    transport = "ipc"
-
     @property
     def kernel_spec(self) -> KernelSpec:
         spec: dict[str, Any] = kernelspec()
@@ -38,7 +36,7 @@ class Notebook:
 
     def run(self, source: str) -> str:
         """Run a cell; returns all the text below it, errors included."""
-        cell = nbformat.v4.new_code_cell(source)
+        cell = nbformat.v4.new_code_cell(source)  # type: ignore[no-untyped-call]
         self.client.nb.cells.append(cell)
         self.client.execute_cell(cell, len(self.client.nb.cells) - 1)
         self.outputs = cell.outputs
@@ -59,7 +57,7 @@ class Notebook:
 def open_notebook(folder: Path) -> Iterator[Notebook]:
     """A notebook in `folder`, with the course's kernel."""
     client = NotebookClient(
-        nbformat.v4.new_notebook(),
+        nbformat.v4.new_notebook(),  # type: ignore[no-untyped-call]
         timeout=180,
         allow_errors=True,
         kernel_manager_class=CourseKernel,

@@ -32,7 +32,7 @@ def test_the_released_notebook_is_solved(tmp_path: Path, monkeypatch: pytest.Mon
         page = browser.new_page(viewport={"width": 1280, "height": 1000})
         page.set_default_timeout(DEADLINE_MS)
         page.goto(address.replace("PATH", f"{STEP}/{STEP}.ipynb"))
-        page.get_by_text("Step 03: draw a circle").first.wait_for()
+        page.get_by_role("heading", name="Step 03: draw a circle").first.wait_for()
         # The kernel that the notebook names is there: nobody has to choose one.
         page.get_by_text(DISPLAY_NAME).first.wait_for()
         page.screenshot(path=pictures / "lab-1-opened.png")
@@ -46,8 +46,7 @@ def test_the_released_notebook_is_solved(tmp_path: Path, monkeypatch: pytest.Mon
         canvas.wait_for()
         before = canvas.get_attribute("src")
         page.wait_for_function(
-            "before => [...document.querySelectorAll('.jp-OutputArea img')].some(each => each.src !== before)",
-            arg=before,
+            "before => [...document.querySelectorAll('.jp-OutputArea img')].at(-1).src !== before", arg=before
         )
         canvas.scroll_into_view_if_needed()
         page.screenshot(path=pictures / "lab-2-simulator.png")

@@ -1,0 +1,128 @@
+"""What autograde of a notebook costs, against its parts; and a class, against nbgrader alone.
+
+    python -m grader.benchmarks.notebooks [--repeat N] [--class N]
+
+In one run, on the same machine: `nbgrader autograde` of step 03's solved notebook; of the same notebook with an empty
+check (nbgrader's own cost: its imports, a kernel, the database); one `grader check` of the package. The first should
+cost at most 1.5 times the other two together. Then a class, autograded by nbgrader, one after the other, and graded by
+`grader gradebook sync`, side by side.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+from grader.exercise import course_folder
+from grader.gradebook.class_folder import make_class
+
+STEP = "03-circle-publisher"
+AT_MOST = 1.5
+
+
+def seconds(argv: list[str], cwd: Path) -> float:
+    """How long a command takes; its output is shown only where it fails."""
+    env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
+    begun = time.monotonic()
+    done = subprocess.run(argv, cwd=cwd, env=env, capture_output=True, text=True, check=False)
+    took = time.monotonic() - begun
+    if done.returncode != 0:
+        message = f"{' '.join(argv)}\n{done.stdout[-3000:]}{done.stderr[-3000:]}"
+        raise SystemExit(message)
+    return took
+
+
+def nbgrader(root: Path, *words: str) -> float:
+    """Seconds of one command of nbgrader."""
+    return seconds([sys.executable, "-m", "nbgrader", *words], root / "course")
+
+
+PLAIN = """\
+c = get_config()
+c.CourseDirectory.root = {root!r}
+c.CourseDirectory.source_directory = "solutions"
+c.CourseDirectory.release_directory = "exercises"
+c.CourseDirectory.submitted_directory = "class/submitted"
+c.GenerateAssignment.force = True
+"""
+"""nbgrader without anything of ours."""
+
+
+def make_empty(root: Path) -> None:
+    """The same notebook with cells that do nothing, for nbgrader as it comes."""
+    make_class(root, None)
+    (root / "course" / "nbgrader_config.py").write_text(PLAIN.format(root=str(root)))
+    file = root / "solutions" / STEP / f"{STEP}.ipynb"
+    notebook = json.loads(file.read_text())
+    notebook["metadata"]["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    for cell in notebook["cells"]:
+        _empty(cell)
+    file.write_text(json.dumps(notebook))
+
+
+def _empty(cell: dict[str, Any]) -> None:
+    about = cell["metadata"].pop("nbgrader", {})
+    if cell["cell_type"] == "code":
+        cell["source"] = f"{float(about['points'])}" if about.get("grade") else "pass"
+    if about.get("grade"):
+        cell["metadata"]["nbgrader"] = about
+
+
+def hand_in(root: Path, students: int) -> None:
+    """The solution, handed in by so many; each differs a little, so that none is known already."""
+    node = f"{STEP}/my_robot_controller/my_robot_controller/draw_circle.py"
+    solution = (course_folder().parent / "solutions" / node).read_text()
+    for number in range(students):
+        folder = root / "class" / "submitted" / f"student-{number:02d}" / STEP
+        shutil.copytree(root / "exercises" / STEP, folder)
+        (folder.parent / node).write_text(f"# {number}\n{solution}")
+
+
+def main() -> None:
+    """Measure, and print a table."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--class", dest="students", type=int, default=20)
+    options = parser.parse_args()
+    grader = str(Path(sys.prefix, "bin", "grader"))
+    with tempfile.TemporaryDirectory() as folder:
+        whole, bare, many = (Path(folder, name) for name in ("whole", "bare", "many"))
+        make_class(whole, None)
+        make_empty(bare)
+        for root in (whole, bare):
+            nbgrader(root, "generate_assignment", STEP)
+            hand_in(root, 1)
+        package = whole / "class" / "submitted" / "student-00" / STEP
+        runs: dict[str, list[float]] = {"autograde": [], "nbgrader's own": [], "grader check": []}
+        for _ in range(options.repeat):
+            runs["autograde"].append(nbgrader(whole, "autograde", STEP, "--force"))
+            runs["nbgrader's own"].append(nbgrader(bare, "autograde", STEP, "--force"))
+            runs["grader check"].append(
+                seconds([grader, "check", str(package), "--exercise", STEP, "--sandbox"], whole)
+            )
+        medians = {name: statistics.median(took) for name, took in runs.items()}
+        for name, median in medians.items():
+            print(f"{name:16} {median:6.2f} s   (from {min(runs[name]):.2f} to {max(runs[name]):.2f})")
+        ratio = medians["autograde"] / (medians["nbgrader's own"] + medians["grader check"])
+        print(f"{'ratio':16} {ratio:6.2f}     (at most {AT_MOST})")
+
+        if options.students:
+            make_class(many, None)
+            nbgrader(many, "generate_assignment", STEP)
+            hand_in(many, options.students)
+            alone = nbgrader(many, "autograde", STEP)
+            together = seconds([grader, "gradebook", "sync", "--course", str(many / "course")], many)
+            print(f"a class of {options.students}: nbgrader autograde {alone:.1f} s, gradebook sync {together:.1f} s")
+
+
+if __name__ == "__main__":
+    main()
