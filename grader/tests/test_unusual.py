@@ -1,4 +1,7 @@
-"""Submissions that are right, and unlike ours: full marks, and nothing said against them but advice."""
+"""Submissions that are right, and unlike ours: full marks, and nothing said against them but advice.
+
+`make test` leaves those out that live by wall time and take ten seconds.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ UNUSUAL = read_cases(CASES.parent / "unusual")
 
 
 @pytest.mark.clocks("auto")
-@each(UNUSUAL, always=True)
+@each(UNUSUAL)
 def test_what_is_right_gets_full_marks_however_it_is_written(case: Case, gradings: Gradings) -> None:
     assert (case.result, case.points, case.failed, case.skipped) == ("passed", 100, (), ())
     check_report(case, gradings.of(case))
