@@ -44,7 +44,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     files = [path.resolve() for path in asked.files] or diagnosis_files()
     materials = _materials(make=not asked.recorded)
     _tell(f"{len(materials)} cases, {len(files)} files")
-    mutants = [mutant for file in files for mutant in mutants_of(file)]
+    mutants = [mutant for file in files for mutant in mutants_of(file)][:: asked.every]
     equal = equivalent.read()
     counted = [mutant for mutant in mutants if not equivalent.is_known(mutant, equal)]
     by_case = _unnoticed(counted, judging.touched(materials.values(), files), _by_cases(materials), asked.jobs)
@@ -98,6 +98,7 @@ def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count() or 1, help="at once (one a processor)")
     parser.add_argument("--recorded", action="store_true", help="judge by the recordings that are there, make none")
     parser.add_argument("--cases", action="store_true", help="leave the tests of single checks out, which take longest")
+    parser.add_argument("--every", type=int, default=1, metavar="N", help="only each Nth mutant: an estimate")
     return parser.parse_args(argv)
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from grader.tests.mutation.judging import Lines
 
 TESTS = ROOT / "grader" / "tests" / "checks"
-QUIET = ("-q", "-p", "no:cacheprovider", "--rootdir", str(ROOT))
+QUIET = ("-q", "-p", "no:cacheprovider", "-W", "ignore", "--rootdir", str(ROOT))
 
 
 def touched(files: Collection[Path]) -> Lines:
