@@ -66,7 +66,7 @@ def _saves(package: Path, exercise: str, file: Path, times: int) -> Iterator[flo
     screen = pexpect.spawn(
         _GRADER,
         ["watch", str(package), "--exercise", exercise],
-        env=env,  # type: ignore[arg-type] - os._Environ was asked for, a dict is what is used
+        env=env,
         encoding="utf-8",
         timeout=_PATIENCE_S,
         dimensions=(60, 110),
