@@ -34,7 +34,7 @@ Steps = Annotated[
 ]
 Course = Annotated[
     Optional[Path],  # noqa: UP045
-    typer.Option(help="The folder with nbgrader_config.py; this one, or its course/, when left out.", metavar="DIR"),
+    typer.Option(help="The class's folder, or its course/; this one when left out.", metavar="DIR"),
 ]
 
 

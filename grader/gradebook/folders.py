@@ -55,13 +55,13 @@ class ClassFolders:
 
 
 def open_class(folder: Path | None) -> ClassFolders:
-    """The class whose nbgrader_config.py is in `folder`; in this one or its course/ when None.
+    """The class whose nbgrader_config.py is in `folder` (this one when None) or its course/.
 
     Raises:
         UsageError: there is no nbgrader_config.py.
         MachineError: nbgrader is not installed.
     """
-    tried = [folder] if folder else [Path(), Path("course")]
+    tried = [folder or Path(), (folder or Path()) / "course"]
     found = next((each for each in tried if (each / CONFIG).is_file()), None)
     if found is None:
         message = (

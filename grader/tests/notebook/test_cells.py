@@ -96,7 +96,8 @@ def test_a_simulator_moves_below_the_cell_and_goes_with_the_kernel(notebook: Not
 
     mark = notebook.run(f"import os; print(os.environ[{guardian.VARIABLE!r}])").strip()
     assert marked_processes(mark) == set()  # with the `with` it has ended
-    notebook.run("sim = simulator(); sim.__enter__(); sim.start('draw_circle')\n!setsid sleep 1000 > /dev/null 2>&1 &")
+    notebook.run("sim = simulator(); sim.__enter__(); sim.start('draw_circle')")
+    notebook.run("import subprocess; subprocess.Popen(['setsid', 'sleep', '1000'])")
     assert len(marked_processes(mark)) >= 3
     os.kill(notebook.pid, signal.SIGKILL)
     deadline = time.monotonic() + DEADLINE_S

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from grader.exercise import course_folder
+from grader.markers import HASH, solved
 from grader.notebook.kernel import DISPLAY_NAME, install
 from grader.tests.browser import browser_or_reason, launched
 from grader.tests.notebook.jupyterlab import run_all, serving, type_cell
@@ -37,7 +38,7 @@ def test_the_released_notebook_is_solved(tmp_path: Path, monkeypatch: pytest.Mon
         page.get_by_text(DISPLAY_NAME).first.wait_for()
         page.screenshot(path=pictures / "lab-1-opened.png")
 
-        solution = (ROOT / "solutions" / STEP / NODE).read_text("utf-8")
+        solution = solved((ROOT / "solutions" / STEP / NODE).read_text("utf-8"), HASH, NODE)
         type_cell(page, "%%node draw_circle.py", f"%%node draw_circle.py\n{solution}")
         run_all(page)
 
@@ -62,6 +63,7 @@ def test_the_released_notebook_is_solved(tmp_path: Path, monkeypatch: pytest.Mon
         last.locator(".jp-OutputArea-executeResult").wait_for()
         points = page.locator(".jp-CodeCell", has_text='points("circle")').last
         points.scroll_into_view_if_needed()
-        assert "25.0" in points.inner_text()
+        # JupyterLab draws a cell when it comes into view.
+        points.get_by_text("25.0", exact=True).wait_for()
         page.screenshot(path=pictures / "lab-4-points.png")
     assert (tmp_path / "work" / STEP / NODE).read_text("utf-8") == solution

@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.errors import UsageError
+from grader.gradebook.class_folder import make_class, read_students
+from grader.gradebook.folders import open_class
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def roster(folder: Path, text: str) -> Path:
+    file = folder / "roster.csv"
+    file.write_text(text, encoding="utf-8-sig")
+    return file
+
+
+def test_a_class_has_its_students_and_nothing_of_others(tmp_path: Path) -> None:
+    file = roster(tmp_path, "id,last_name,first_name,room\nada,Lovelace,Ada,12\nbob,,,\n")
+    assert make_class(tmp_path / "new", file) == 2
+    folders = open_class(tmp_path / "new")  # its course/ is found
+    assert open_class(tmp_path / "new" / "course").course.root == folders.course.root == str(tmp_path / "new")
+    from nbgrader.api import Gradebook
+
+    with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
+        assert [(s.id, s.first_name, s.last_name) for s in gradebook.students] == [
+            ("bob", None, None),
+            ("ada", "Ada", "Lovelace"),
+        ]
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == ["class", "course", "exercises", "solutions"]
+    with pytest.raises(UsageError, match="is not an empty folder"):
+        make_class(tmp_path / "new", file)
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("name\nada\n", 'names the column "id"'),
+        ("", 'names the column "id"'),
+        ("id\nada\n\nb/c\n", 'line 3: the id is "b/c"'),
+        ("id\n../ada\n", "nbgrader makes a folder of it"),
+        ("id,email\nada,a\n,b\n", 'line 3: the id is ""'),
+        ("id\nada\nada\n", "the id ada is there twice"),
+    ],
+)
+def test_a_roster_that_is_none_is_told(tmp_path: Path, text: str, why: str) -> None:
+    with pytest.raises(UsageError, match=why):
+        read_students(roster(tmp_path, text))
+
+
+def test_a_folder_without_a_course_is_told(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"There is no nbgrader_config\.py"):
+        open_class(tmp_path)
