@@ -50,9 +50,9 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"  {name:<40} {seconds:6.1f} s")
     print(f"  {'in all':<40} {time.time() - since:6.1f} s")
     print(f"\nThe picture of the turtle's path: {image}")
-    print("\nNext, in this folder: make the environment yours, and grade what you were given to start from.\n")
+    print("\nNext, in this folder: make the environment yours, and begin with the first step.\n")
     print("    source .venv/bin/activate")
-    print(f"    grader check exercises/{STEP}")
+    print("    grader start 01")
     return 0
 
 
