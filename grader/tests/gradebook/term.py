@@ -49,7 +49,7 @@ class Term:
         argv += module if command[0] == "grader" else module[1:]
         env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
         done = subprocess.run(
-            argv, cwd=cwd or self.course, capture_output=True, text=True, env=env, check=False, timeout=900
+            argv, cwd=cwd or self.course, capture_output=True, text=True, env=env, check=False, timeout=1800
         )
         said = done.stdout + done.stderr
         assert (done.returncode != 0) == fails, f"{' '.join(command)}: {done.returncode}\n{said[-6000:]}"
