@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 
     from grader.tests.grading import Gradings
 
+collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
+"""Submissions, some of which bring tests of their own."""
+
 
 @pytest.fixture(scope="session")
 def in_ros(tmp_path_factory: pytest.TempPathFactory) -> InRos:
