@@ -55,7 +55,8 @@ def _refresh(cell: Cell, exercise: Exercise, files: Mapping[str, bytes], name: s
         raise UsageError(message)
     text = files[path].decode("utf-8")
     cell["source"] = f"{first}\n{text}".rstrip("\n").splitlines(keepends=True)
-    cell["metadata"]["nbgrader"] = _about(cell["id"], solution=True)
+    # Not the cell's id alone: a check may be called "answers" too, and to nbgrader both are names of cells.
+    cell["metadata"]["nbgrader"] = _about(f"write-{cell['id']}", solution=True)
 
 
 def _is_grade(cell: Cell) -> bool:

@@ -68,7 +68,7 @@ def test_a_solution_that_would_slip_through_stops_generate_assignment(tmp_path: 
     node = term.root / "solutions" / STEP / "my_robot_controller/my_robot_controller/draw_circle.py"
     node.write_text(node.read_text().replace("# END SOLUTION", "# THE END", 1))
     said = term.run("generate_assignment", STEP, fails=True)
-    assert "BEGIN SOLUTION inside the SOLUTION block" in said
+    assert "BEGIN STARTER inside the SOLUTION block" in said
     assert not (term.root / "exercises" / STEP).exists()
 
 

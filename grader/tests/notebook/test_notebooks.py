@@ -36,6 +36,13 @@ def test_each_check_is_a_grade_cell_of_the_same_id_and_points(step: str, root: s
 
 
 @pytest.mark.parametrize("step", STEPS)
+def test_no_two_cells_have_one_name(step: str) -> None:
+    for names in ([about(cell).get("grade_id") for cell in cells_of(step)], [cell["id"] for cell in cells_of(step)]):
+        known = [name for name in names if name is not None]
+        assert len(known) == len(set(known))
+
+
+@pytest.mark.parametrize("step", STEPS)
 def test_every_file_with_something_to_solve_has_a_cell(step: str) -> None:
     written = "".join(about(cell).get("grade_id", "") for cell in cells_of(step) if about(cell).get("solution"))
     to_solve = [
