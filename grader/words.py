@@ -29,9 +29,9 @@ def shorten(text: str, limit: int = 60) -> str:
     return line if len(line) <= limit and len(text) <= 4 * limit else line[: limit - 3].rstrip() + "..."
 
 
-def nearest(name: str, candidates: Iterable[str]) -> str | None:
-    """The candidate most like `name`, or None when none is alike (difflib's ratio below 0.6)."""
-    found = difflib.get_close_matches(name[:200], [candidate[:200] for candidate in candidates], n=1)
+def nearest(name: str, candidates: Iterable[str], alike: float = 0.6) -> str | None:
+    """The candidate most like `name`, or None when none is alike (difflib's ratio below `alike`)."""
+    found = difflib.get_close_matches(name[:200], [candidate[:200] for candidate in candidates], n=1, cutoff=alike)
     return found[0] if found else None
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 START = "Traceback (most recent call last):"
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
 ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
-GUESS = re.compile(r"\.? Did you mean: .*| The following argument types are supported:.*")
+GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument types are supported:.*")
 """What Python's versions add to an error in different words; a diagnosis names the nearest name itself."""
 STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
 """How a node in the tutorial's shape is told of Ctrl-C."""
@@ -36,6 +36,7 @@ MEANINGS = {
     "ModuleNotFoundError": "No module of that name is installed: compare it letter by letter.",
     "NameError": "A name is used that was never defined: a typing error, or a missing import.",
     "NotInitializedException": "ROS 2 was used before rclpy.init, or after its shutdown.",
+    "ParameterNotDeclaredException": "A parameter is declared, by declare_parameter, before it is read.",
     "SyntaxError": "Python cannot read that line, or the one before it.",
     "TabError": "Tabs and blanks are mixed in the indentation.",
     "TypeError": "A function got another number or kind of arguments than it takes.",
@@ -71,10 +72,11 @@ def crash_of(evidence: Evidence) -> Crash | None:
     end = evidence.trial.end
     if end.out_of is not None:
         return Crash(f"it used up the {end.out_of} that a node may use", "")
-    if end.by != "itself" or end.exit_code == 0:
+    if end.by != "itself":
         return None
+    # What a crashed node leaves as its exit code is not always what Python gave it: its last words count.
     found = read_traceback(evidence.trial.stderr.text, evidence.submission.files)
-    if found is not None:
+    if found is not None or end.exit_code == 0:
         return found
     if end.exit_code < 0:
         return Crash(_signal_name(-end.exit_code), "")

@@ -39,7 +39,7 @@ def entry_point(evidence: Evidence, _: NoParams) -> Finding:
             if "setup.cfg" not in evidence.submission.files
             else "Compare it with the lesson's, letter by letter."
         )
-        where = Where("setup.cfg") if "setup.cfg" in evidence.submission.files else None
+        where = Where("setup.cfg" if "setup.cfg" in evidence.submission.files else "setup.py")
         return failed("setup-cfg", seen, expected, cause, where=where)
     module, _colon, attribute = target.partition(":")
     return _resolve(evidence, module.strip(), attribute.split("[")[0].strip())

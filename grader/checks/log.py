@@ -120,7 +120,8 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
     expected = f'"{form.example(params.first)}", then "{form.example(params.first + 1)}", and so on.'
     where = evidence.place(*LEVELS)
     if len(numbers) < 2:
-        return failed("too-few-log-lines", "There are not two lines to compare.", expected, ended_early(evidence))
+        seen = "There are not two lines to compare."
+        return failed("too-few-log-lines", seen, expected, ended_early(evidence), where=where)
     steps = [later - earlier for earlier, later in pairwise(numbers)]
     if not any(steps):
         seen = f"The number stays {numbers[0]:.0f}."

@@ -48,7 +48,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
     said = _trusted(recording, params.format)
     expected = "Each line says where the turtle is at that moment, to two digits behind the point."
     if len(said) < FEWEST:
-        return _too_few(recording)
+        return _too_few(evidence)
 
     def off(line: Line, x: float, y: float) -> float:
         near = _window(recording, line.t_s, params.lag_s)
@@ -77,7 +77,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     said = _trusted(recording, params.format)
     expected = "The distance is the length of the way driven so far, in metres; it never gets less."
     if len(said) < FEWEST:
-        return _too_few(recording)
+        return _too_few(evidence)
     x, y = np.append(recording.start.x, frames.x), np.append(recording.start.y, frames.y)
     way = np.cumsum(np.hypot(np.diff(x), np.diff(y)))
 
@@ -124,11 +124,12 @@ def _trusted(recording: Recording, text_: str) -> list[Line]:
     return [line for line in lines.in_format(recording, text_) if not recording.stalled(line.t_s)]
 
 
-def _too_few(recording: Recording) -> Finding:
-    if recording.stalls:
+def _too_few(evidence: Evidence) -> Finding:
+    if evidence.trial.stalls:
         return Finding(Status.ERROR, "The machine was too busy in wall time. Try again when it is not.")
     expected = f"At least {FEWEST} lines in the format."
-    return failed("too-few-log-lines", "There are too few lines to compare.", expected)
+    where = evidence.place("info")
+    return failed("too-few-log-lines", "There are too few lines to compare.", expected, where=where)
 
 
 def _window(recording: Recording, t_s: float, lag_s: float) -> slice:

@@ -137,7 +137,7 @@ def _wrong_mean(
     evidence: Evidence, what: Subject, measured: Measured, params: Rate, expected: str, *, near_edge: bool
 ) -> Finding:
     mean = measured.mean_s
-    often = why_often(evidence, what.call, mean) or why_timers_grow(evidence)
+    often = why_often(evidence, what.call, mean, 1.0 / params.rate_hz) or why_timers_grow(evidence)
     if mean < 0.01:
         seen = f"{count(len(measured.arrivals), what.noun)} arrived, one every {1000.0 * mean:.2f} ms."
     else:

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 MISSING = re.compile(r"(?:\w+\.)*(?P<function>\w+)\(\) missing \d+ required .*arguments?: (?P<names>.*)")
 TOO_MANY = re.compile(
-    r"(?:\w+\.)*(?P<function>\w+)\(\) takes (?:from \d+ to )?\d+ positional arguments? but \d+ (?:was|were) given"
+    r"(?:(?P<of>\w+)\.)?(?P<function>\w+)\(\) takes (?:from \d+ to )?\d+ positional arguments?"
+    r" but \d+ (?:was|were) given"
 )
 KEYWORD = re.compile(r"(?:\w+\.)*(?P<function>\w+)\(\) got an unexpected keyword argument '(?P<name>\w+)'")
 NOT_CALLABLE = re.compile(r"'(?P<type>\w+)' object is not callable")
@@ -86,6 +87,8 @@ def why_type(scene: Scene) -> Cause | None:
     if missing is not None:
         return _too_few(scene, missing["function"], missing["names"])
     if many is not None:
+        if many["function"] == "__init__" and many["of"] in ros_names.FIELDS:
+            return Cause("message-arguments", "A message is made empty, and its fields are set after that, one by one.")
         return _too_many(scene, many["function"])
     if keyword is not None:
         more = f" It wants {WANTS[keyword['function']]}." if keyword["function"] in WANTS else ""
@@ -94,6 +97,10 @@ def why_type(scene: Scene) -> Cause | None:
         return _published(expected["wanted"], expected["got"])
     if (called := NOT_CALLABLE.search(text)) is not None:
         return _not_callable(scene, called["type"])
+    return _by_its_words(scene, text)
+
+
+def _by_its_words(scene: Scene, text: str) -> Cause | None:
     if "'property' object is not iterable" in text:
         spun = next(iter(scene.calls_on_line("spin")), None)
         name = ast.unparse(spun.args[0]) if spun is not None and spun.args else "It"
@@ -133,8 +140,6 @@ def _too_many(scene: Scene, function: str) -> Cause | None:
         return Cause(
             "log-arguments", f"{function} takes one text, not several like print: an f-string puts all into one."
         )
-    if function == "__init__":
-        return Cause("message-arguments", "A message is made empty, and its fields are set after that, one by one.")
     if function in WANTS:
         return Cause("too-many-arguments", f"{function} wants {WANTS[function]}, and nothing else.")
     return None
@@ -161,7 +166,7 @@ def _not_callable(scene: Scene, kind: str) -> Cause | None:
                 if called and isinstance(call.args[place], ast.Call):
                     text = f"{name} wants the method itself; with () behind its name it gets only the method's result."
                     return Cause("callback-called", text, scene.at(call))
-    return Cause("not-callable", f"The parentheses call something that is no function, but a {shorten(kind)}.")
+    return Cause("not-callable", f"The parentheses call something of the type {shorten(kind)}, which is no function.")
 
 
 def why_refused(scene: Scene) -> Cause | None:
@@ -173,10 +178,22 @@ def why_refused(scene: Scene) -> Cause | None:
         ]
         more = f" It stands in lines {a_list([str(line) for line in sorted(lines)])}." if len(lines) > 1 else ""
         return Cause("init-twice", f"rclpy.init belongs at one place of a program.{more}")
-    if "callback should be either be callable" in text:
-        return callback_called(scene) or Cause(
-            "not-callable", "What should be called with each message is no function."
+    if "called for existing topic name" in text:
+        return Cause(
+            "second-type", "A topic has one type: two publishers of different types on one name do not go together."
         )
+    if "callback should be either be callable" in text:
+        return callback_called(scene) or _no_message(scene)
     if "timer period must be non-negative" in text:
         return Cause("timer-period-negative", "A period is a time in seconds, so it is above 0.")
     return None
+
+
+def _no_message(scene: Scene) -> Cause:
+    for call in scene.calls_on_line("create_subscription"):
+        name = (dotted(call.args[2]) or "").rpartition(".")[2] if len(call.args) > 2 else ""
+        for method in scene.functions(name):
+            if len(method.args.args) < 2:
+                text = f"{name} has no parameter for the message that a subscription hands over."
+                return Cause("callback-parameters", text, scene.at(method))
+    return Cause("not-callable", "What should be called with each message is no function.")

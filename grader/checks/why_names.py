@@ -46,7 +46,7 @@ def why_no_name(scene: Scene) -> Cause | None:
         return Cause("missing-import", f"Nothing in the file imports {name}; it lives in {ros_names.LIVES_IN[name]}.")
     if name in WELL_KNOWN:
         return Cause("missing-import", f"Nothing in the file imports the module {name}.")
-    guess = nearest(name, _bound(scene))
+    guess = nearest(name, _bound(scene), alike=0.8)
     if guess is not None:
         return Cause("name-misspelt", f"There is a name {shorten(guess)}: compare the two letter by letter.")
     return Cause("name-undefined", "The name gets no value anywhere before this line. A text needs quotation marks.")

@@ -15,19 +15,19 @@ if TYPE_CHECKING:
     from grader.checks.code import Module
     from grader.checks.evidence import Evidence
 
-OFTEN_S = 0.01
-"""A mean interval below this comes of a loop that waits for nothing."""
+OFTEN = 0.5
+"""A loop that waits for nothing goes at least so much faster than what is asked for, as a share of the period."""
 FRAME_S = 0.016
 """turtlesim tells the pose once a frame."""
 
 
-def why_often(evidence: Evidence, call: str, mean_s: float) -> Cause | None:
+def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
     """A loop without a pause around `call`, or a method with it that each message calls."""
     for module in evidence.code.modules:
         for node in module.nodes:
             where = Where(module.file, getattr(node, "lineno", None))
             busy = isinstance(node, ast.While) and _calls(node, call) and not _calls(node, "sleep", "spin_once")
-            if busy and mean_s < OFTEN_S:
+            if busy and mean_s < OFTEN * period_s:
                 return Cause("loop-without-pause", f"This loop calls {call} as fast as the machine can.", where)
     if abs(mean_s - FRAME_S) > 0.1 * FRAME_S:
         return None

@@ -215,7 +215,7 @@ def leads_to(target: str) -> Build:
             "entry-point-name",
             "setup.py:14",
         ),
-        ({"setup.cfg": None}, replace(BUILD, executables=()), "setup-cfg", "None"),
+        ({"setup.cfg": None}, replace(BUILD, executables=()), "setup-cfg", "setup.py"),
         ({}, leads_to("my_robot_controller.drawcircle:main"), "entry-point-module", "setup.py:14"),
         ({}, leads_to("draw_circle:main"), "entry-point-module", "setup.py:14"),
         ({}, leads_to("my_robot_controller.draw_circle:man"), "entry-point-function", "setup.py:14"),

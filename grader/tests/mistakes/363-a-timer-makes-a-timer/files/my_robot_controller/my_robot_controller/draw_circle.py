@@ -14,8 +14,8 @@ class DrawCircleNode(Node):
         msg.linear.x = 2.0
         msg.angular.z = 1.0
         self.publisher.publish(msg)
-        # and again in half a second
-        self.timer = self.create_timer(0.5, self.send_velocity_command)
+        # and once more in three seconds
+        self.later = self.create_timer(3.0, self.send_velocity_command)
 
 
 def main(args=None):
