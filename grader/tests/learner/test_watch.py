@@ -13,8 +13,10 @@ from grader.exercise import find_exercise
 from grader.grade import Options
 from grader.learner.rebuild import Rebuild
 from grader.learner.watch import Events, Watched
+from grader.recording import Pose
 from grader.ros import find_ros
 from grader.submission import open_submission
+from grader.trial.trial import Plan
 from grader.underlay import ensure
 
 if TYPE_CHECKING:
@@ -105,3 +107,31 @@ def test_a_save_is_heard_however_the_editor_saves(package: Path, how: str) -> No
 def test_keys_come_in_order_and_the_end_of_the_terminal_ends_the_loop() -> None:
     keys = iter(["h", "r", ""])
     assert [happened.key for happened in Events(lambda: next(keys))] == ["h", "r"]
+
+
+def test_of_several_trials_the_first_is_kept_warm(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With it the next grading begins."""
+    first, second = (Plan("simulated", Pose(1.0, 1.0, 0.0), None, duration_s) for duration_s in (12.0, 9.0))
+    begun: list[Plan] = []
+
+    class Waiting:
+        def __init__(self, plan: Plan, *_: object, **__: object) -> None:
+            self.plan = plan
+
+        def start(self) -> None:
+            begun.append(self.plan)
+
+        def close(self) -> None:
+            begun.remove(self.plan)
+
+    def graded(*_: object, trial: Callable[..., Waiting], **__: object) -> None:
+        for plan in (first, second):
+            trial(plan, None, None, in_cell=False)
+
+    monkeypatch.setattr("grader.learner.watch.Trial", Waiting)
+    monkeypatch.setattr("grader.learner.watch.grade", graded)
+    watched = Watched(find_exercise(STEP), package, Options(in_cell=False))
+    watched.grade()
+    assert begun == [first]
+    watched.close()
+    assert begun == []
