@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -47,15 +49,18 @@ class Cluster:
         argv = [DASK, *map(str, arguments), "--no-dashboard"]
         log = (self._folder / f"{len(self.processes)}.log").open("wb")
         with log:
-            child = subprocess.Popen(argv, cwd=self._folder, stdout=log, stderr=log, env=environment())
+            child = subprocess.Popen(
+                argv, cwd=self._folder, stdout=log, stderr=log, env=environment(), start_new_session=True
+            )
         self.processes.append(child)
         return child
 
     def close(self) -> None:
+        # A nanny that is just making a worker hears of no gentler end.
         for process in reversed(self.processes):
-            process.send_signal(signal.SIGTERM)
-        for process in self.processes:
-            process.wait(60)
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
 
 
 @pytest.fixture
