@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
+import shutil
 import sys
 import time
 from pathlib import Path
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from grader.tests.mutation.mutants import Mutant
+    from grader.tests.mutation.recordings import Recorded
 
 CHECKS = ROOT / "grader" / "checks"
 MAKES_DIAGNOSES = re.compile(r"\bfailed\(|diagnosis")
@@ -48,7 +50,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     equal = equivalent.read()
     counted = [mutant for mutant in mutants if not equivalent.is_known(mutant, equal)]
     by_case = _unnoticed(counted, judging.touched(materials.values(), files), _by_cases(materials), asked.jobs)
-    _tell(f"{len(by_case)} of {len(counted)} are noticed by no case; now the tests of single checks")
+    _tell(f"{len(by_case)} of {len(counted)} are noticed by no case")
     survivors = by_case if asked.cases else _unnoticed(by_case, unit.touched(files), unit.fail, asked.jobs)
     _print(files, counted, by_case, survivors, len(mutants) - len(counted))
     _tell(f"{time.monotonic() - begun:.0f} s")
@@ -56,14 +58,27 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _materials(*, make: bool) -> dict[str, judging.Material]:
-    """The cases by name, without those that do not get from their recording what they expect."""
-    materials = {each.name: each for each in judging.load(recordings(all_cases(), _tell, make=make))}
-    stale = [name for name, material in materials.items() if judging.fails(material)]
+    """The cases by name, without those that do not get from their recording what they expect.
+
+    A recording of which that is so may have been made while the machine was busy: with `make`, it is made once more.
+    """
+    recorded = recordings(all_cases(), _tell, make=make)
+    good, stale = _judged(recorded)
+    if make and stale:
+        for each in stale:
+            shutil.rmtree(each.folder)
+        more, stale = _judged(recordings([each.case for each in stale], _tell))
+        good |= more
+    for each in stale:
+        _tell(f"{each.name} does not get from its recording what it expects: left out")
+    return good
+
+
+def _judged(recorded: Sequence[Recorded]) -> tuple[dict[str, judging.Material], list[Recorded]]:
+    """Those that get what they expect, by name; and the others."""
+    good = {each.name: each for each in judging.load(recorded) if not judging.fails(each)}
     judging.forget()
-    for name in stale:
-        _tell(f"{name} does not get from its recording what it expects: left out")
-        del materials[name]
-    return materials
+    return good, [each for each in recorded if each.name not in good]
 
 
 def _by_cases(materials: Mapping[str, judging.Material]) -> Callable[[Iterable[str]], bool]:
