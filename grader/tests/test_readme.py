@@ -89,7 +89,9 @@ def test_every_path_on_the_map_exists() -> None:
 
 @pytest.fixture
 def tracked() -> list[str]:
-    done = subprocess.run(["git", "-c", "core.quotePath=false", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        ["git", "-c", "core.quotePath=false", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     if done.returncode != 0:
         pytest.skip("not a git checkout")
     return done.stdout.splitlines()
