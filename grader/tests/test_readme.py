@@ -62,7 +62,7 @@ def test_commands_do_what_the_readme_shows(number: int, checkout: Path) -> None:
 
 def test_every_make_target_of_the_readme_is_there() -> None:
     makefile = (ROOT / "Makefile").read_text("utf-8")
-    targets = set(re.findall(r"`?make ([a-z-]+)`?", README))
+    targets = set(re.findall(r"(?:`|^\$ |^ {4})make ([a-z-]+)", README, re.MULTILINE))
     assert targets
     assert {target for target in targets if not re.search(rf"^{target}:", makefile, re.MULTILINE)} == set()
 
@@ -94,7 +94,7 @@ def tracked() -> list[str]:
     )
     if done.returncode != 0:
         pytest.skip("not a git checkout")
-    return done.stdout.splitlines()
+    return done.stdout.rstrip("\0").split("\0")
 
 
 def test_everything_at_the_top_is_on_the_map(tracked: list[str]) -> None:
