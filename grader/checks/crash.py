@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import signal
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from grader.outcome import Where
@@ -22,6 +22,8 @@ GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument t
 """What Python's versions add to an error in different words; a diagnosis names the nearest name itself."""
 STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
 """How a node in the tutorial's shape is told of Ctrl-C."""
+
+TOLD_BY_RCLPY = frozenset({"InvalidNodeNameException", "InvalidTopicNameException", "NotInitializedException"})
 
 MEANINGS = {
     "AssertionError": "Something that the code, or a message field, takes for granted did not hold.",
@@ -113,7 +115,11 @@ def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
     for chained, crash in read_tracebacks(text, files):
         last = [*last, crash] if chained else [crash]
     roots = [crash for crash in last if crash.error not in STOPS]
-    return roots[0] if roots else None
+    if not roots:
+        return None
+    # rclpy says best what was wrong; and the first part of a chain need not have a line of the student's in it.
+    root = next((crash for crash in roots if crash.error in TOLD_BY_RCLPY), roots[0])
+    return replace(root, where=root.where or next((crash.where for crash in last if crash.where is not None), None))
 
 
 def read_tracebacks(text: str, files: Mapping[str, bytes]) -> Iterable[tuple[bool, Crash]]:

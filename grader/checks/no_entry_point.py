@@ -54,7 +54,9 @@ def _script(evidence: Evidence) -> Cause | None:
     if executable not in evidence.built.executables:
         return None
     files = evidence.submission.files
-    script = next((path for path in sorted(files) if path.rpartition("/")[2] in (executable, f"{executable}.py")), None)
+    names = (executable, f"{executable}.py")
+    found = [path for name in names for path in sorted(files) if path.rpartition("/")[2] == name]
+    script = next(iter(found), None)
     if script is None:
         return None
     first = files[script].split(b"\n", 1)[0].decode("utf-8", "replace")

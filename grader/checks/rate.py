@@ -12,6 +12,7 @@ from grader.checks.crash import crash_of, end_seen, ended_early
 from grader.checks.kind import Kind, number
 from grader.checks.tolerance import Band
 from grader.checks.why_crashed import crash_finding
+from grader.checks.why_ended import why_ended
 from grader.checks.why_rate import why_often, why_timers_grow
 from grader.outcome import Finding, Status, Where, failed, passed
 from grader.words import count
@@ -121,6 +122,9 @@ def _few(evidence: Evidence, what: Subject, measured: Measured, expected: str) -
     if crash is not None:
         return crash_finding(evidence, crash, f"{seen} {end_seen(evidence)}", expected)
     where = evidence.place(what.call)
+    if evidence.trial.end.by == "itself":
+        why = why_ended(evidence)
+        return failed(why.diagnosis, f"{seen} {end_seen(evidence)}", expected, why.text, where=why.where)
     if amount == 1:
         cause = f"{what.call} is called once; a timer calls a method again and again."
         return failed("published-once" if what is COMMAND else "logged-once", seen, expected, cause, where=where)

@@ -10,6 +10,7 @@ from grader.checks.constants import evaluate
 from grader.checks.crash import crash_of, end_seen
 from grader.checks.kind import Kind, text
 from grader.checks.why_crashed import crash_finding
+from grader.checks.why_ended import why_ended
 from grader.checks.why_silent import why_nothing, why_qos
 from grader.outcome import Finding, Where, failed, passed
 from grader.words import a_list, nearest, shorten
@@ -83,12 +84,12 @@ def _why_topic(wanted: str, topic: str) -> tuple[str, str]:
     last = wanted.rpartition("/")[2]
     if topic == f"/{last}":
         return "topic-without-turtle", "Each turtle has a topic of its own: the turtle's name is part of the topic's."
+    if topic.lower() == wanted.lower():
+        return "topic-capitals", "Capital and small letters differ."
     if topic.endswith(wanted):
         return "topic-namespace", "The name has a namespace before it: one that begins with a slash is taken as it is."
     if topic.endswith(f"/{last}") and topic.count("/") == 2 and nearest(topic, [wanted]):
         return "topic-other-turtle", "There is no turtle of that name here."
-    if topic.lower() == wanted.lower():
-        return "topic-capitals", "Capital and small letters differ."
     return "wrong-topic", "The topic's name is the second argument of create_publisher; compare it letter by letter."
 
 
@@ -104,6 +105,9 @@ def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
             "subscription-instead", f"The node subscribes to {params.topic}.", _expected(params), cause, where=where
         )
     seen = end_seen(evidence) or "The node has no publisher."
+    why = why_nothing(evidence, ("publish",)) if evidence.code.calls("create_publisher") else None
+    if why is not None:
+        return failed(why.diagnosis, seen, _expected(params), why.text, where=why.where)
     cause = "" if evidence.code.calls("create_publisher") else "create_publisher is called nowhere."
     return failed("no-publisher", seen, _expected(params), cause, where=evidence.place("create_publisher"))
 
@@ -114,6 +118,9 @@ def _silent(evidence: Evidence, params: Topic) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
+    if evidence.trial.end.by == "itself":
+        why = why_ended(evidence)
+        return failed(why.diagnosis, f"{seen} {end_seen(evidence)}", _expected(params), why.text, where=why.where)
     cause, diagnosis, where = _why_silent(evidence)
     return failed(diagnosis, f"{seen} {end_seen(evidence)}".rstrip(), _expected(params), cause, where=where)
 

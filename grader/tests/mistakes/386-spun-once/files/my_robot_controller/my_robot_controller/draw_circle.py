@@ -17,6 +17,6 @@ class Cercle(Node):
 def main():
     rclpy.init()
     noeud = Cercle()
-    rclpy.spin_once(noeud)
+    rclpy.spin_once(noeud, timeout_sec=0.1)
     noeud.destroy_node()
     rclpy.shutdown()
