@@ -7,6 +7,7 @@ where it came from (Origin) and under which name it found this machine (Host), a
 from __future__ import annotations
 
 import hmac
+import secrets
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -32,6 +33,30 @@ def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:
 def admitted(token: str, shown: str) -> bool:
     """Whether the token that was shown is ours; takes as long for every wrong one."""
     return hmac.compare_digest(token.encode(), shown.encode())
+
+
+class Door:
+    """Opens to who knows the token, and to a code once.
+
+    A code is for the browser that is started here: command lines can be read by every user of the machine.
+    """
+
+    def __init__(self, token: str) -> None:
+        self.token = token
+        self._codes: set[str] = set()
+
+    def code(self) -> str:
+        """A new code."""
+        made = secrets.token_urlsafe(16)
+        self._codes.add(made)
+        return made
+
+    def opens(self, shown: str) -> bool:
+        """Whether who shows this may come in; a code is worth nothing afterwards."""
+        if shown in self._codes:
+            self._codes.discard(shown)
+            return True
+        return admitted(self.token, shown)
 
 
 POLICY = (

@@ -7,6 +7,7 @@ import json
 import os
 import signal
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import uvicorn
@@ -17,6 +18,7 @@ from grader.ros2.graph import Show, picture
 from grader.view import browser
 from grader.view.feed import LARGEST
 from grader.view.graph import laid_out
+from grader.view.guard import Door
 from grader.view.hands import Hands
 from grader.view.hub import Hub
 from grader.view.server import application
@@ -73,11 +75,12 @@ class Page:
             Ears(node, lambda system: _in(loop, self._look, system), lambda: list(self._state.rates)) as ears,
         ):
             self._ears = ears
-            app = application(self._hub, Hands(ears, self._state, self._feed), place.address.token)
+            door = Door(place.address.token)
+            app = application(self._hub, Hands(ears, self._state, self._feed), door)
             server = _Server(uvicorn.Config(app, **_SETTINGS))
             serving = asyncio.create_task(server.serve([place.listening]))
             ended = asyncio.create_task(self._ended.wait())
-            opening = asyncio.create_task(self._open(place))
+            opening = asyncio.create_task(self._open(place, door))
             if self._feed is not None:
                 self._feed.settimeout(0.0)
                 loop.add_reader(self._feed, self._hear)
@@ -93,13 +96,13 @@ class Page:
                 await serving
         return opened
 
-    async def _open(self, place: Place) -> bool:
+    async def _open(self, place: Place, door: Door) -> bool:
         """Open the page where there is a browser, unless a tab of the last time has come back by then."""
         for _ in range(_TIMES if place.before else 0):
             if self._hub.pages:
                 return True
             await asyncio.sleep(_RECONNECTS_S / _TIMES)
-        return await asyncio.to_thread(browser.open_page, place.address.url)
+        return await asyncio.to_thread(browser.open_page, replace(place.address, token=door.code()).url)
 
     # --- the simulator ------------------------------------------------------------------------------------------
 

@@ -14,12 +14,13 @@ from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from grader.view.guard import admitted, answer_headers, refusal
+from grader.view.guard import answer_headers, refusal
 
 if TYPE_CHECKING:
     from starlette.requests import Request
     from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+    from grader.view.guard import Door
     from grader.view.hub import Hub
 
 ASSETS = Path(__file__).parent / "assets"
@@ -49,7 +50,7 @@ class Pressed(Protocol):
         """The page is closed."""
 
 
-def application(hub: Hub, hands: Pressed, token: str) -> ASGIApp:
+def application(hub: Hub, hands: Pressed, door: Door) -> ASGIApp:
     """The server, behind its guard."""
 
     def file(request: Request) -> Response:
@@ -61,10 +62,14 @@ def application(hub: Hub, hands: Pressed, token: str) -> ASGIApp:
         return FileResponse(path)
 
     async def live(socket: WebSocket) -> None:
-        if not admitted(token, socket.query_params.get("token", "")):
+        shown = socket.query_params.get("token", "")
+        if not door.opens(shown):
             await socket.close(4403)
             return
         await socket.accept()
+        if shown != door.token:
+            # It came with a code: from now on it has the token, so that it finds the next simulator, too.
+            await socket.send_text(json.dumps({"kind": "token", "token": door.token}))
         await _Page(socket, hub, hands).run()
 
     routes = [Route("/", file), Route("/{name}", file), WebSocketRoute("/live", live)]

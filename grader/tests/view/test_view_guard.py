@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.view.guard import admitted, answer_headers, refusal
+from grader.view.guard import Door, admitted, answer_headers, refusal
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1:4711", "localhost:4711", "localhost"])
@@ -45,3 +45,9 @@ def test_the_policy_lets_nothing_in_from_elsewhere() -> None:
     assert "default-src 'none'" in policy
     assert "unsafe" not in policy
     assert "frame-ancestors 'none'" in policy
+
+
+def test_a_code_opens_once_and_the_token_always() -> None:
+    door = Door("secret")
+    code = door.code()
+    assert [door.opens(shown) for shown in (code, code, "secret", "secret", "")] == [True, False, True, True, False]

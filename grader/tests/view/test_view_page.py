@@ -45,6 +45,12 @@ def system(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
         yield made
 
 
+@pytest.fixture
+def fresh(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    """A world with nothing in it yet."""
+    yield from world(tmp_path_factory.mktemp("fresh"))
+
+
 def address(of: World) -> str:
     """What the last turtlesim that was started has printed."""
     started = of.running[-1] if len(of.running) == 1 else next(each for each in reversed(of.running) if url(each))
@@ -256,23 +262,18 @@ def _quiet(tab: Page) -> bool:
     return bool(tab.evaluate("told") == before)
 
 
-def test_a_simulator_that_was_started_again_is_found_by_the_same_tab(
-    browser: Browser, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    for made in world(tmp_path_factory.mktemp("again")):
-        first = made.start(VIEW, "Spawning turtle")
-        tab = opened(browser, url(first))
-        assert first.stop() == 0
-        tab.get_by_role("status").get_by_text("Not running").wait_for()
-        second = made.start(VIEW, "Spawning turtle")
-        tab.get_by_role("status").get_by_text("Live").wait_for()
-        assert url(second) == url(first)
-        moved = made.run(
-            "ros2 service call /turtle1/teleport_absolute turtlesim/srv/TeleportAbsolute '{x: 1.0, y: 9.0}'"
-        )
-        assert moved.code == 0
-        tab.get_by_text("turtle1: x 1.00 m, y 9.00 m").wait_for()
-        tab.close()
+def test_a_simulator_that_was_started_again_is_found_by_the_same_tab(browser: Browser, fresh: World) -> None:
+    first = fresh.start(VIEW, "Spawning turtle")
+    tab = opened(browser, url(first))
+    assert first.stop() == 0
+    tab.get_by_role("status").get_by_text("Not running").wait_for()
+    second = fresh.start(VIEW, "Spawning turtle")
+    tab.get_by_role("status").get_by_text("Live").wait_for()
+    assert url(second) == url(first)
+    moved = fresh.run("ros2 service call /turtle1/teleport_absolute turtlesim/srv/TeleportAbsolute '{x: 1.0, y: 9.0}'")
+    assert moved.code == 0
+    tab.get_by_text("turtle1: x 1.00 m, y 9.00 m").wait_for()
+    tab.close()
 
 
 # --- who may not come in ----------------------------------------------------------------------------------------------
@@ -342,6 +343,25 @@ def test_a_page_with_a_wrong_token_says_what_to_do(browser: Browser, system: Wor
     tab = browser.new_page()
     tab.goto(address(system)[:-3] + "xyz")
     tab.get_by_text("This address is not that of the simulator that runs.").wait_for()
+    tab.close()
+
+
+def test_the_browser_is_opened_with_a_code_for_which_it_gets_the_token(browser: Browser, fresh: World) -> None:
+    """Command lines can be read by every user of the machine."""
+    program = fresh.home / "xdg-open"
+    program.write_text(f'#!/bin/sh\necho "$1" > {fresh.home}/opened\n')
+    program.chmod(0o755)
+    screen = {"DISPLAY": ":0", "PATH": f"{fresh.home}:{fresh.env['PATH']}"}
+    simulator = fresh.start(VIEW, "Spawning turtle", **screen)
+    until(lambda: (fresh.home / "opened").exists() and bool((fresh.home / "opened").read_text()))
+    address = (fresh.home / "opened").read_text().strip()
+    assert address != url(simulator)
+    tab = opened(browser, address)
+    until(lambda: tab.url == url(simulator))
+    second = browser.new_page()
+    second.goto(address)
+    second.get_by_text("This address is not that of the simulator that runs.").wait_for()
+    second.close()
     tab.close()
 
 

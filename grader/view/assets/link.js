@@ -27,7 +27,12 @@ export class Link {
       this.up();
       this.wake();
     });
-    socket.addEventListener("message", (event) => this.news(JSON.parse(event.data)));
+    socket.addEventListener("message", (event) => {
+      const news = JSON.parse(event.data);
+      // Opened with a code that is used up now: the address gets the token instead, for the next time.
+      if (news.kind === "token") history.replaceState(null, "", `#${news.token}`);
+      else this.news(news);
+    });
     socket.addEventListener("close", async () => {
       this.down(!opened && await refused());
       setTimeout(() => this.open(), AGAIN_MS);
