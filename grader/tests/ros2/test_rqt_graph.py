@@ -85,12 +85,14 @@ def test_without_grader_env_it_finds_ros_by_itself(tutorial: World) -> None:
 
 
 @pytest.fixture
-def before_a_screen(tutorial: World, tmp_path: Path) -> World:
+def before_a_screen(tutorial: World, tmp_path: Path) -> Iterator[World]:
     """A desktop whose browser notes the address, and fails where BROKEN is set."""
     program = tmp_path / "xdg-open"
     program.write_text(f'#!/bin/sh\necho "$1" > {tmp_path}/opened\nexit ${{BROKEN:-0}}\n')
     program.chmod(0o755)
-    return World(tutorial.home, {**tutorial.env, "PATH": f"{tmp_path}:{tutorial.env['PATH']}", "DISPLAY": ":0"})
+    made = World(tutorial.home, {**tutorial.env, "PATH": f"{tmp_path}:{tutorial.env['PATH']}", "DISPLAY": ":0"})
+    yield made
+    made.end()
 
 
 def test_where_there_is_a_browser_the_graph_is_shown_live_until_ctrl_c(before_a_screen: World, tmp_path: Path) -> None:
