@@ -1,3 +1,5 @@
+import time
+
 import rclpy
 from rclpy.node import Node
 from geometry_msgs.msg import Twist
@@ -17,6 +19,7 @@ class Cercle(Node):
 def main():
     rclpy.init()
     noeud = Cercle()
-    rclpy.spin_once(noeud, timeout_sec=0.1)
+    rclpy.spin_once(noeud)
+    time.sleep(1.0)  # le temps d'arriver
     noeud.destroy_node()
     rclpy.shutdown()
