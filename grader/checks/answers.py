@@ -31,7 +31,9 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
         return failed("no-answers", f"There is no {FILE}.", expected)
     if found.problem is not None:
         cause = 'A text stands in "quotation marks", a list in [brackets], a number stands alone.'
-        return failed("answers-unreadable", f"{FILE} cannot be read: {found.problem}.", expected, cause)
+        return failed(
+            "answers-unreadable", f"{FILE} cannot be read: {found.problem}.", expected, cause, where=Where(FILE)
+        )
     asked = {str(check.params["answer"]) for check in evidence.exercise.checks if "answer" in check.params}
     other = sorted(set(found.given) - asked)
     if other:

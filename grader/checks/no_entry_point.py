@@ -35,7 +35,7 @@ def no_entry_point(evidence: Evidence) -> Finding:
     if joined is not None:
         return bad_entry_point(joined)
     seen = f"The package has no executable {executable}."
-    cause = _script(evidence) or _unread(evidence, setup)
+    cause = _unread(evidence, setup) or _script(evidence)
     if cause is None:
         others = sorted(set(evidence.built.entry_points) | set(evidence.built.executables))
         guess = nearest(executable, [other for other in others if other != executable])
