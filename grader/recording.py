@@ -160,7 +160,7 @@ class Recording:
     stalls: tuple[tuple[float, float], ...] = ()
     """When the machine gave simulator or node no time to run in a wall-clock trial: (from, to) on its clock (s)."""
     crowded: bool = False
-    """Whether other programs used the machine so much in a wall-clock trial that simulator and node often had to wait."""
+    """Whether others used the machine so much in a wall-clock trial that simulator and node often had to wait."""
 
     @property
     def stalled_s(self) -> float:

@@ -22,7 +22,7 @@ from grader.simulator.node import TurtlesimNode
 from grader.simulator.turtle import FRAME_S
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from grader.view.launch import View
 
