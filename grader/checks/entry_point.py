@@ -34,11 +34,11 @@ def entry_point(evidence: Evidence, _: NoParams) -> Finding:
         folder = f"lib/{build.package or evidence.exercise.package}"
         seen = f"{executable} was not installed into the package's own folder, {folder}."
         expected = "setup.cfg says where executables go, so that `ros2 run` finds them."
-        cause = (
-            "setup.cfg is missing."
-            if "setup.cfg" not in evidence.submission.files
-            else "Compare it with the lesson's, letter by letter."
-        )
+        cause = "Compare it with the lesson's, letter by letter."
+        if "setup.cfg" not in evidence.submission.files:
+            cause = "setup.cfg is missing."
+        elif build.package not in (None, evidence.exercise.package):
+            cause = "It must name the folder after the package, as package.xml names that."
         where = Where("setup.cfg" if "setup.cfg" in evidence.submission.files else "setup.py")
         return failed("setup-cfg", seen, expected, cause, where=where)
     module, _colon, attribute = target.partition(":")
