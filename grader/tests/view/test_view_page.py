@@ -250,7 +250,7 @@ def test_a_tab_that_slept_catches_up_at_once(page: Page, browser: Browser, syste
     assert turtle(asleep) != turtle(page)
     asleep.evaluate(SLEEP, "visible")
     until(lambda: turtle(asleep) == turtle(page))
-    assert drawn(asleep) == pytest.approx(drawn(page), rel=0.05)
+    until(lambda: drawn(asleep) == pytest.approx(drawn(page), rel=0.05))
     # Not what it missed, message by message.
     assert asleep.evaluate("told") - before < 40
     asleep.close()
