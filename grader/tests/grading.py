@@ -77,11 +77,11 @@ def grade(case: Case, clock: str, folder: Path) -> Graded:
 
 
 def gradings_of(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gradings]:
-    """The fixture `gradings`: all that this session's tests mark with `clocks`."""
+    """The fixture `gradings`: all that this session's tests which use it mark with `clocks`."""
     wanted: dict[tuple[Path, str], tuple[Case, str]] = {}
     for item in request.session.items:
         case = getattr(item, "callspec", None) and item.callspec.params.get("case")  # type: ignore[attr-defined]
-        if isinstance(case, Case):
+        if isinstance(case, Case) and "gradings" in item.fixturenames:  # type: ignore[attr-defined]
             for mark in item.iter_markers("clocks"):
                 wanted.update({(case.folder, clock): (case, clock) for clock in mark.args})
     with ThreadPoolExecutor(os.cpu_count()) as pool:
