@@ -18,7 +18,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from grader import bootstrap, machine, sandbox, underlay
+from grader import bootstrap, machine, sandbox, underlay, xdg
 from grader.control_group import control_group
 from grader.errors import MachineError
 from grader.ros import DISTRO, FASTDDS_PROFILE, Ros, environment, find_ros, has_turtlesim
@@ -70,7 +70,7 @@ class Line:
 def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] = lambda _: None) -> list[Line]:
     """All lines, in the order in which things need each other; `tell` gets a line where something takes long."""
     lines = [look_at_system(), look_at_python(), *look_at_set_up(env), *look_at_tools(env), look_at_colcon()]
-    lines += [look_at_disk(underlay.cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
+    lines += [look_at_disk(xdg.cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
     sandbox_line = look_at_sandbox()
     lines.append(sandbox_line)
     if sandbox_line.state == "ok":

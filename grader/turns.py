@@ -13,6 +13,8 @@ import time
 from contextlib import ExitStack, contextmanager
 from typing import IO, TYPE_CHECKING
 
+from grader import xdg
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
@@ -86,6 +88,4 @@ def _locked(file: IO[bytes], how: int) -> bool:
 
 def folder() -> Path:
     """Where the gradings of this user look."""
-    from grader import underlay
-
-    return underlay.cache() / f"turns-{os.getuid()}"
+    return xdg.cache() / f"turns-{os.getuid()}"

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader import machine, ros
+from grader import machine, ros, xdg
 from grader.errors import MachineError
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def ensure(here: ros.Ros, tell: Callable[[str], None] = _say_nothing) -> Path | 
     if ros.has_turtlesim(here):
         return None
     search = ros.environment(here, home=Path("/"))["PATH"]
-    prefix = cache() / _name(here, _compiler(search))
+    prefix = xdg.cache() / _name(here, _compiler(search))
     if prefix.is_dir():
         return prefix
     kept = _built_by_another_compiler(here) if _compiler(search) is None else None
@@ -55,18 +55,11 @@ def ensure(here: ros.Ros, tell: Callable[[str], None] = _say_nothing) -> Path | 
                 _build(here, prefix, tell)
     except OSError as error:
         message = (
-            f"The turtlesim interfaces could not be built in {cache()}: {error.strerror or error}. The folder must "
+            f"The turtlesim interfaces could not be built in {xdg.cache()}: {error.strerror or error}. The folder must "
             "be writable and have 20 MB free; XDG_CACHE_HOME says where it lies."
         )
         raise MachineError(message) from error
     return prefix
-
-
-def cache() -> Path:
-    """Return the folder that this program may fill with what it can make again."""
-    # The XDG rule: a value that is not an absolute path counts as none.
-    home = os.environ.get("XDG_CACHE_HOME", "")
-    return (Path(home) if home.startswith("/") else Path.home() / ".cache") / "grader"
 
 
 def _name(here: ros.Ros, compiler: Path | None) -> str:
@@ -102,7 +95,7 @@ def _compiler(search: str) -> Path | None:
 
 def _built_by_another_compiler(here: ros.Ros) -> Path | None:
     """Find a finished build whose compiler has been removed since: what it made still works."""
-    builds = cache().glob(f"turtlesim-{_key_of_sources(here)}-*")
+    builds = xdg.cache().glob(f"turtlesim-{_key_of_sources(here)}-*")
     return max(builds, key=lambda build: build.stat().st_mtime, default=None)
 
 
@@ -133,8 +126,8 @@ def _listed(needs: list[machine.Need]) -> str:
 @contextmanager
 def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
     """Wait for any other process that is building; the lock goes with the process that holds it."""
-    cache().mkdir(parents=True, exist_ok=True)
-    with (cache() / "turtlesim.lock").open("w") as lock:
+    xdg.cache().mkdir(parents=True, exist_ok=True)
+    with (xdg.cache() / "turtlesim.lock").open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from grader import xdg
 from grader.errors import MachineError
 
 if TYPE_CHECKING:
@@ -65,8 +66,7 @@ def workspace_of(folder: Path | None) -> Path:
 
 def state_file() -> Path:
     """Where progress is kept: progress.json below XDG_STATE_HOME."""
-    home = os.environ.get("XDG_STATE_HOME", "")
-    return (Path(home) if home.startswith("/") else Path.home() / ".local/state") / "grader" / "progress.json"
+    return xdg.state() / "progress.json"
 
 
 def load(workspace: Path) -> Progress:

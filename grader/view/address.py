@@ -12,9 +12,13 @@ import os
 import secrets
 import socket
 from dataclasses import asdict, dataclass
-from pathlib import Path
+from typing import TYPE_CHECKING
 
+from grader import xdg
 from grader.errors import UsageError
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 HOST = "127.0.0.1"
 _TOKEN_BYTES = 16
@@ -88,10 +92,7 @@ def _socket(port: int) -> socket.socket:
 
 
 def _file(kind: str) -> Path:
-    # The XDG rule: a value that is not an absolute path counts as none.
-    home = os.environ.get("XDG_STATE_HOME", "")
-    folder = Path(home) if home.startswith("/") else Path.home() / ".local/state"
-    return folder / "grader" / f"view-{kind}.json"
+    return xdg.state() / f"view-{kind}.json"
 
 
 def _remembered(kind: str) -> Address | None:

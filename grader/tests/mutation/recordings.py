@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader import xdg
 from grader.tests.case import CASES, ROOT, make_submission, read_cases
 from grader.tests.grading import EXERCISE
 
@@ -40,7 +41,7 @@ class Recorded:
 
 def cache() -> Path:
     """Where recordings are kept from one run to the next."""
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "grader" / "mutation"
+    return xdg.cache() / "mutation"
 
 
 def all_cases() -> Iterator[Case]:
