@@ -9,13 +9,10 @@ from __future__ import annotations
 import hashlib
 from typing import TYPE_CHECKING
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from grader.outcome import Status
 from grader.report.html import ShownCheck
 from grader.report.html_run import runs_of
-from grader.report.page import ASSETS
-from grader.report.plain import plain_line
+from grader.report.template import fill
 from grader.report.verdict import tone, verdict
 
 if TYPE_CHECKING:
@@ -25,14 +22,6 @@ if TYPE_CHECKING:
 
 def html_fragment(evidence: Evidence, report: Report) -> str:
     """The piece of HTML."""
-    environment = Environment(
-        loader=FileSystemLoader(ASSETS),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["plain"] = plain_line
     worth = [o for o in report.outcomes if o.max or o.status is not Status.PASSED]
     values = {
         "report": report,
@@ -42,7 +31,7 @@ def html_fragment(evidence: Evidence, report: Report) -> str:
         "silent": len(report.outcomes) - len(worth),
         "runs": runs_of([evidence, *evidence.others.values()], _key(report)),
     }
-    return environment.get_template("notebook.html").render(values)
+    return fill("notebook.html", values)
 
 
 def _key(report: Report) -> str:

@@ -9,19 +9,16 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from grader.errors import UsageError
-from grader.report.plain import plain_line
+from grader.report.template import ASSETS, fill
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-ASSETS = Path(__file__).parent / "assets"
+    from pathlib import Path
 
 
 def make_page(template: str, script: str, data: object, values: Mapping[str, object]) -> str:
@@ -31,17 +28,8 @@ def make_page(template: str, script: str, data: object, values: Mapping[str, obj
         f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(code)}; img-src data:; base-uri 'none'; "
         "form-action 'none'; require-trusted-types-for 'script'; trusted-types 'none'"
     )
-    environment = Environment(
-        loader=FileSystemLoader(ASSETS),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["plain"] = plain_line
-    return environment.get_template(template).render(
-        {**values, "policy": policy, "style": Markup(style), "script": Markup(code), "data": _json(data)}
-    )
+    parts = {"policy": policy, "style": Markup(style), "script": Markup(code), "data": _json(data)}
+    return fill(template, {**values, **parts})
 
 
 def save_page(page: str, file: Path) -> None:
