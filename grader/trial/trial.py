@@ -165,13 +165,18 @@ class Trial:
 
     def _limit(self) -> None:
         # Whatever happens inside, the grader does not wait for ever; the trial's own deadlines are much tighter.
-        timer = Timer(120.0 + 6.0 * self._plan.duration_s, self._process.kill)
+        timer = Timer(120.0 + 6.0 * self._plan.duration_s, self._kill)
         timer.daemon = True
         timer.start()
         self._stack.callback(timer.cancel)
 
+    def _kill(self) -> None:
+        # All of its group: a bubblewrap that is just starting has a child that does not yet die with it.
+        with suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+
     def _end(self) -> None:
-        self._process.kill()
+        self._kill()
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
                 with suppress(BrokenPipeError):
@@ -199,7 +204,7 @@ class Trial:
             if "overwhelmed" in answer:
                 raise OverwhelmedError(answer["overwhelmed"])
             raise self._end_seen()
-        self._process.kill()
+        self._kill()
         self._errors.seek(0)
         said = answer.get("fault") or self._errors.read()[-2000:].decode("utf-8", "replace").strip()
         message = f"The simulator failed: {said or 'it said nothing'}. `grader doctor` tells what is missing."
