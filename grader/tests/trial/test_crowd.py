@@ -1,0 +1,116 @@
+"""The kernel counts who works and who waits, so real processes are looked at; figures that must be exact are made."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.trial import crowd
+from grader.trial.crowd import Others, Stalls, is_crowded
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+WORK_S = 0.5
+"""CPU time that a program works when it is told to; the kernel counts in steps of 0.01 s or finer."""
+WORKS = """
+import os, sys, time
+os.sched_setaffinity(0, {{{processor}}})
+print("ready", flush=True)
+for _ in sys.stdin:
+    until_s = time.process_time() + {work_s}
+    while time.process_time() < until_s:
+        pass
+    print("worked", flush=True)
+"""
+
+
+@contextmanager
+def program(work_s: float) -> Iterator[subprocess.Popen[str]]:
+    """A program that works for so long (s of CPU time) whenever it gets a line, all of them on one processor."""
+    code = WORKS.format(processor=min(os.sched_getaffinity(0)), work_s=work_s)
+    pipe = subprocess.PIPE
+    with subprocess.Popen([sys.executable, "-c", code], stdin=pipe, stdout=pipe, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        yield process
+        process.kill()
+
+
+def begin(process: subprocess.Popen[str]) -> None:
+    assert process.stdin is not None
+    process.stdin.write("\n")
+    process.stdin.flush()
+
+
+def work(process: subprocess.Popen[str]) -> None:
+    begin(process)
+    assert process.stdout is not None
+    assert process.stdout.readline() == "worked\n"
+
+
+def test_what_another_program_works_is_counted() -> None:
+    with program(WORK_S) as other:
+        others = Others()
+        work(other)
+        assert others.worked_s(but_s=0.0) >= WORK_S / 2
+
+
+def test_what_simulator_and_node_work_is_not_that_of_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    machine, own = iter([100.0, 107.0]), iter([1.0, 3.0])
+    monkeypatch.setattr(crowd, "_machine_worked_s", lambda: next(machine))
+    monkeypatch.setattr("time.process_time", lambda: next(own))
+    assert Others().worked_s(but_s=4.0) == pytest.approx(7.0 - 2.0 - 4.0)
+
+
+def test_a_node_that_shares_its_processor_waits_and_is_seen_waiting() -> None:
+    with program(WORK_S) as node, program(3600.0) as rival:
+        watch = Stalls(node.pid)
+        begin(rival)
+        work(node)
+        watch.look(1.0, late_s=0.0)
+        assert watch.waited_s >= WORK_S / 5
+
+
+@pytest.mark.parametrize(
+    ("waited_s", "others_s", "crowded"),
+    [(0.5, 2.0, True), (0.4, 8.0, False), (8.0, 1.9, False), (0.0, 0.0, False)],
+    ids=["both", "nobody waited", "nobody else worked", "an idle machine"],
+)
+def test_a_machine_is_crowded_where_others_work_and_ours_wait(
+    waited_s: float, others_s: float, *, crowded: bool
+) -> None:
+    assert is_crowded(waited_s, others_s, of_s=10.0) == crowded
+
+
+Counts = tuple[tuple[float, float], tuple[float, float], float]
+"""(ran, waited) of the node, (ran, waited) of the simulator, stolen from the machine, all since the last look (s)."""
+
+
+@pytest.mark.parametrize(
+    ("late_s", "counts", "stall"),
+    [
+        (0.0, ((0.01, 0.0), (0.01, 0.0), 0.0), False),
+        (0.05, ((0.01, 0.0), (0.01, 0.0), 0.0), True),
+        (0.02, ((0.01, 0.0), (0.01, 0.0), 0.0), False),
+        (0.0, ((0.01, 0.05), (0.01, 0.0), 0.0), True),
+        (0.0, ((0.01, 0.0), (0.01, 0.05), 0.0), True),
+        (0.0, ((0.01, 0.0), (0.01, 0.0), 0.05), True),
+        (0.05, ((0.09, 0.05), (0.01, 0.0), 0.0), False),
+    ],
+    ids=["all in time", "late", "hardly late", "the node waited", "ours waited", "stolen", "the node's own doing"],
+)
+def test_a_stall_is_what_the_machine_owes(
+    late_s: float, counts: Counts, monkeypatch: pytest.MonkeyPatch, *, stall: bool
+) -> None:
+    node, simulator, stolen_s = counts
+    times = iter([(0.0, 0.0), (0.0, 0.0), node, simulator])
+    stolen = iter([0.0, 0.0, stolen_s])
+    monkeypatch.setattr(crowd, "_times", lambda _: next(times))
+    monkeypatch.setattr(crowd, "_stolen_s", lambda: next(stolen))
+    assert Stalls(os.getpid()).look(0.1, late_s=late_s) == ((0.0, 0.1) if stall else None)
