@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 EXERCISE = "03-circle-publisher"
 GRADER = Path(sys.executable).with_name("grader")
+AT_ONCE = max(1, (os.cpu_count() or 1) // int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")))
+"""Gradings side by side: with the other test processes, as many as there are processors."""
 HANG_S = 300.0
 """Longer than any limit of the grader's own: beyond it the command hangs."""
 
@@ -39,7 +41,7 @@ class Graded:
 
 
 class Gradings:
-    """Grades the cases that this session asks for, as many at once as there are processors."""
+    """Grades the cases that this session asks for, `AT_ONCE` at once."""
 
     def __init__(self, wanted: list[tuple[Case, str]], folder: Path, pool: ThreadPoolExecutor) -> None:
         self._futures: dict[tuple[Path, str], Future[Graded]] = {
@@ -84,7 +86,7 @@ def gradings_of(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPat
         if isinstance(case, Case) and "gradings" in item.fixturenames:  # type: ignore[attr-defined]
             for mark in item.iter_markers("clocks"):
                 wanted.update({(case.folder, clock): (case, clock) for clock in mark.args})
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(AT_ONCE) as pool:
         yield Gradings(list(wanted.values()), tmp_path_factory.mktemp("cases"), pool)
         pool.shutdown(cancel_futures=True)
 

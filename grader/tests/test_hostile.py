@@ -21,6 +21,7 @@ from grader.checks.judge import judge
 from grader.outcome import Status
 from grader.tests.attack import Attack, make_attack, read_attacks
 from grader.tests.case import copy_solution
+from grader.tests.grading import AT_ONCE
 from grader.tests.observed_host import SECRET, USER, Host, Left
 from grader.trial.recorder import NAMESAKE, OWN_NAMESPACE
 
@@ -97,7 +98,7 @@ def runs(request: pytest.FixtureRequest) -> Iterator[Runs]:
             for mark in item.iter_markers("clocks"):
                 wanted.update({(attack.name, way): (attack, way) for way in mark.args})
     # pytest's own folders are closed to other users.
-    with tempfile.TemporaryDirectory(prefix="hostile-") as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
+    with tempfile.TemporaryDirectory(prefix="hostile-") as folder, ThreadPoolExecutor(AT_ONCE) as pool:
         Path(folder).chmod(0o755)
         yield Runs(list(wanted.values()), Path(folder), pool)
         pool.shutdown(cancel_futures=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
@@ -18,7 +17,7 @@ from grader.exercise import find_exercise
 from grader.submission import open_submission
 from grader.tests.case import ROOT, Case, make_submission, read_cases
 from grader.tests.catalogue import MISTAKES, PAGE, cases, page
-from grader.tests.grading import Graded, check_report, each, place_of
+from grader.tests.grading import AT_ONCE, Graded, check_report, each, place_of
 from grader.tests.grading_here import Builds, grade_here
 
 if TYPE_CHECKING:
@@ -63,7 +62,7 @@ def graded(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     """What is said of a case under a clock; all that this session asks for is graded side by side."""
     folder, builds = tmp_path_factory.mktemp("mistakes"), Builds()
     futures: dict[tuple[str, str], Future[Graded]] = {}
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(AT_ONCE) as pool:
 
         def ask(case: Case, clock: ClockChoice) -> Future[Graded]:
             if (case.name, clock) not in futures:
