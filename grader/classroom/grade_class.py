@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from grader import sandbox, underlay
 from grader.classroom import outputs, results
 from grader.classroom.found import find_submissions, passed_over
-from grader.classroom.order import Order, read_roster, sort_out, sources_for
+from grader.classroom.order import Order, sort_out, sources_for
+from grader.classroom.roster import read_owners
 from grader.classroom.run import run
 from grader.classroom.show import screen, summary
 from grader.errors import MachineError, UsageError
@@ -63,7 +64,7 @@ def grade_found(
 ) -> list[Result]:
     """The same for submissions that were found already; raises as `grade_class`."""
     local = _engine_is_known(asked)
-    roster = read_roster(asked.roster)
+    roster = read_owners(asked.roster) if asked.roster else {}
     beside = passed_over(asked.submissions, asked.out)
     sources = sources_for(found, asked.checks)
     order = Order(

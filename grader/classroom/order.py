@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -11,7 +10,6 @@ from grader.classroom.content import Refused, fingerprint, read
 from grader.classroom.key import Key, changed, grader_key
 from grader.classroom.private_checks import sources_of
 from grader.classroom.task import Task, lesson_folder
-from grader.errors import UsageError
 from grader.outcome import Status
 
 if TYPE_CHECKING:
@@ -141,21 +139,3 @@ def _why_again(old: Result, key: Key) -> str:
     if parts:
         return "graded in another way"
     return "not finished for a fault of the machine" if old.report.with_status(Status.ERROR) else ""
-
-
-def read_roster(file: Path | None) -> dict[str, str]:
-    """Submission -> student's id, from a CSV with these two columns. Raises UsageError where it is none."""
-    if file is None:
-        return {}
-    try:
-        with file.open(encoding="utf-8-sig", newline="") as opened:
-            rows = list(csv.DictReader(opened))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        message = f"{file} cannot be read: {error}."
-        raise UsageError(message) from error
-    if not rows or not {"submission", "student"} <= rows[0].keys():
-        message = (
-            f'{file} is no roster: a CSV with the columns "submission" (the folder\'s name) and "student" (the id).'
-        )
-        raise UsageError(message)
-    return {row["submission"].strip(): row["student"].strip() for row in rows if row["submission"] and row["student"]}

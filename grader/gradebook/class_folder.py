@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 import shutil
 from typing import TYPE_CHECKING
 
+from grader.classroom.roster import read_roster
 from grader.errors import MachineError, UsageError
 from grader.exercise import catalogue, course_folder
 from grader.gradebook.folders import CONFIG, open_class
 from grader.release import release
+from grader.words import shorten
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,7 +26,7 @@ def make_class(folder: Path, roster: Path | None) -> int:
         UsageError: the folder is not empty, the roster is none, or this copy of the course has no solutions.
         MachineError: it cannot be written, or nbgrader is not installed.
     """
-    students = read_students(roster)
+    students = read_students(roster) if roster else []
     root = course_folder().parent
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         message = f"{folder} is not an empty folder: name a new one."
@@ -53,29 +54,13 @@ def make_class(folder: Path, roster: Path | None) -> int:
     return len(students)
 
 
-def read_students(file: Path | None) -> list[dict[str, str]]:
+def read_students(file: Path) -> list[dict[str, str]]:
     """The students of a roster, each with COLUMNS. Raises UsageError where the file is none."""
-    if file is None:
-        return []
-    try:
-        with file.open(encoding="utf-8-sig", newline="") as opened:
-            rows = list(csv.DictReader(opened))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        message = f"{file} cannot be read: {error}."
-        raise UsageError(message) from error
-    if not rows or "id" not in rows[0]:
-        also = ", ".join(COLUMNS[1:])
-        message = f'{file} is no roster: a CSV whose first line names the column "id", and perhaps {also}.'
-        raise UsageError(message)
-    students = [{key: (row.get(key) or "").strip() for key in COLUMNS} for row in rows]
-    for line, student in enumerate(students, 2):
+    rows = read_roster(file, COLUMNS[:1], COLUMNS[1:])
+    for line, student in rows.items():
         # nbgrader makes folders of it, and names with a + in the exchange.
-        if not student["id"] or "/" in student["id"] or student["id"].startswith(".") or "+" in student["id"]:
+        if "/" in student["id"] or student["id"].startswith(".") or "+" in student["id"]:
             why = 'nbgrader makes a folder of it: no "/", no "+", and no "." at its beginning'
-            message = f'{file}, line {line}: the id is "{student["id"]}"; {why}.'
+            message = f'{file}, line {line}: the id is "{shorten(student["id"])}"; {why}.'
             raise UsageError(message)
-    twice = {student["id"] for student in students if [each["id"] for each in students].count(student["id"]) > 1}
-    if twice:
-        message = f"{file}: the id {min(twice)} is there twice."
-        raise UsageError(message)
-    return students
+    return list(rows.values())

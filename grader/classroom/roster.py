@@ -1,0 +1,81 @@
+"""A roster: the CSV in which an instructor says who is in a class, as spreadsheets write it.
+
+Commas or semicolons, a byte order mark, empty lines, blanks around values, capitals in the names of columns and columns
+of the instructor's own are all right.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import TYPE_CHECKING
+
+from grader.errors import UsageError
+from grader.words import a_list, shorten
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+
+def read_owners(file: Path) -> dict[str, str]:
+    """Submission's name -> its student's id. Raises UsageError as `read_roster`."""
+    return {row["submission"]: row["student"] for row in read_roster(file, ("submission", "student")).values()}
+
+
+def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> dict[int, dict[str, str]]:
+    """Line -> what stands there, by column. Those `needed` are never empty, and no two lines are alike in the first.
+
+    Raises:
+        UsageError: the file is no such roster; the message tells the line, and what to do.
+    """
+    (_, names), *lines = _lines(file) or [(1, [])]
+    columns = [name.lower() for name in names]
+    if any(columns.count(name) != 1 for name in needed):
+        wanted = a_list([f'"{name}"' for name in needed]) + (f", and perhaps {a_list(also)}" if also else "")
+        seen = shorten(",".join(names))
+        message = f'{file} is no roster: its first line is to name the columns {wanted}. It is "{seen}".'
+        raise UsageError(message)
+    if not lines:
+        message = f"{file} is no roster: there is nothing below its first line."
+        raise UsageError(message)
+    rows: dict[int, dict[str, str]] = {}
+    lines_of: dict[str, int] = {}
+    for line, values in lines:
+        given = dict(zip(columns, values, strict=False))
+        rows[line] = {name: given.get(name, "") for name in (*needed, *also)}
+        empty = [name for name in needed if not rows[line][name]]
+        name = rows[line][needed[0]]
+        if any(values[len(columns) :]):
+            fault = f"{len(values)} values for {len(columns)} columns. Put values with a separator in them into quotes."
+        elif empty:
+            fault = f"the {empty[0]} is missing."
+        elif lines_of.setdefault(name, line) != line:
+            fault = f'the {needed[0]} "{shorten(name)}" stands in line {lines_of[name]} already.'
+        else:
+            continue
+        message = f"{file}, line {line}: {fault}"
+        raise UsageError(message)
+    return rows
+
+
+def _lines(file: Path) -> list[tuple[int, list[str]]]:
+    """The lines that are not empty, by number, each as its values. Raises UsageError where the file is no CSV."""
+    try:
+        data = file.read_bytes()
+        text = data.decode("utf-8-sig")
+        first = text.lstrip().partition("\n")[0]
+        separator = ";" if first.count(";") > first.count(",") else ","
+        reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+        lines = [(reader.line_num, [value.strip() for value in values]) for values in reader]
+    except OSError as error:
+        message = f"{file} cannot be read: {error.strerror}."
+        raise UsageError(message) from error
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        message = f'{file}, line {line}: this is not UTF-8. Let the spreadsheet save the file as "CSV UTF-8".'
+        raise UsageError(message) from error
+    except csv.Error as error:
+        message = f"{file}, line {reader.line_num}: this is no CSV: {error}."
+        raise UsageError(message) from error
+    return [(number, values) for number, values in lines if any(values)]
