@@ -16,15 +16,31 @@ from grader.tests.case import CASES, read_cases
 if TYPE_CHECKING:
     from grader.tests.case import Case
 
-PAGE = Path(__file__).parent.parent / "checks" / "README.md"
+TESTS = Path(__file__).parent
+PAGE = TESTS.parent / "checks" / "README.md"
 MISTAKES = CASES.parent / "mistakes"
+SHOWN_BY_TESTS = {
+    "build-limit": "checks/test_package.py",
+    "lobe-gap": "checks/test_eight.py",
+    "no-commands": "checks/test_values.py",
+    "no-timer": "checks/test_running.py",
+    "numbers-of-another": "checks/test_own.py",
+    "overwhelmed": "checks/test_judge.py",
+    "package-xml-not-installed": "checks/test_package.py",
+    "resource-marker": "checks/test_package.py",
+    "slow-stop": "checks/test_running.py",
+    "square-gap": "checks/test_square.py",
+    "wrong-centre": "checks/test_path.py",
+}
+"""Diagnosis -> the test that shows it: no ordinary submission leads to it, but a hostile one, or a class."""
 HEAD = """\
 # The catalogue of mistakes
 
 A check that fails names its cause by a stable id. This page lists them all, with the cases that show each:
-folders in `grader/tests/mistakes/` and `grader/tests/cases/`, a submission with what must be said about it. The
-ids and meanings stand in [diagnoses.py](diagnoses.py); this page is made from them and from the cases by
-`python -m grader.tests.catalogue`, and a test fails when it is stale.
+folders in `grader/tests/mistakes/` and `grader/tests/cases/`, a submission with what must be said about it. A few
+are shown by a test on made recordings, which stands in their place. The ids and meanings stand in
+[diagnoses.py](diagnoses.py); this page is made from them and from the cases by `python -m grader.tests.catalogue`,
+and a test fails when it is stale.
 
 A new mistake is a folder `grader/tests/mistakes/NNN-name/` with the submission and an expected.toml (its keys
 are the fields of `Case` in [case.py](../tests/case.py)), and, where none of the ids fits, a new one: the code
@@ -52,13 +68,19 @@ def page() -> str:
             shown.setdefault(id_, []).append(case.name.partition("-")[0])
     parts = [HEAD]
     for group, diagnoses in GROUPS.items():
-        rows = [f"| `{id_}` | {meaning} | {_some(shown.get(id_, []))} |" for id_, meaning in diagnoses.items()]
+        rows = [f"| `{id_}` | {meaning} | {_shown(id_, shown)} |" for id_, meaning in diagnoses.items()]
         title = group[0].upper() + group[1:]
-        parts.append("\n".join([f"## {title}", "", "| id | what it means | cases |", "| --- | --- | --- |", *rows, ""]))
+        parts.append(
+            "\n".join([f"## {title}", "", "| id | what it means | shown by |", "| --- | --- | --- |", *rows, ""])
+        )
     return "\n".join(parts)
 
 
-def _some(names: list[str]) -> str:
+def _shown(id_: str, by_case: dict[str, list[str]]) -> str:
+    """What shows a diagnosis: some of the cases, else a test."""
+    names = by_case.get(id_, [])
+    if not names and id_ in SHOWN_BY_TESTS:
+        return f"[{Path(SHOWN_BY_TESTS[id_]).stem}](../tests/{SHOWN_BY_TESTS[id_]})"
     return ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
 
 

@@ -16,7 +16,7 @@ from grader.checks.judge import judge_early
 from grader.exercise import find_exercise
 from grader.submission import open_submission
 from grader.tests.case import ROOT, Case, make_submission, read_cases
-from grader.tests.catalogue import MISTAKES, PAGE, cases, page
+from grader.tests.catalogue import MISTAKES, PAGE, SHOWN_BY_TESTS, TESTS, cases, page
 from grader.tests.grading import AT_ONCE, Graded, check_report, each, place_of
 from grader.tests.grading_here import Builds, grade_here
 
@@ -37,24 +37,6 @@ LONG = 12
 """Characters: a shorter line of a solution, such as `pass`, gives nothing away."""
 NOWHERE = frozenset({"node-name", "no-answers", "no-numbers", "rejected-file"})
 """What may be about no file at all."""
-
-
-SHOWN_ELSEWHERE = frozenset(
-    {
-        "build-limit",
-        "lobe-gap",
-        "no-commands",
-        "no-timer",
-        "numbers-of-another",
-        "overwhelmed",
-        "package-xml-not-installed",
-        "resource-marker",
-        "slow-stop",
-        "square-gap",
-        "wrong-centre",
-    }
-)
-"""What no ordinary submission leads to here: hostile ones, a class, another colcon; grader/tests/checks shows them."""
 
 
 @pytest.fixture(scope="module")
@@ -130,11 +112,16 @@ def test_there_is_enough_to_learn_from() -> None:
     assert {(case.exercise or case.base)[:2] for case in CASES} == {f"0{step}" for step in range(1, 8)}
 
 
-def test_every_diagnosis_is_shown_by_a_case() -> None:
-    shown = {id_ for case in cases() for id_ in case.diagnosis.values()}
-    assert sorted(DIAGNOSES.keys() - shown - SHOWN_ELSEWHERE) == []
-    assert sorted(set(case_ids()) - DIAGNOSES.keys()) == []
-    assert sorted(SHOWN_ELSEWHERE & set(case_ids())) == []
+def test_every_diagnosis_is_shown_by_a_case_or_a_test() -> None:
+    by_case = {id_ for case in cases() for id_ in case.diagnosis.values()}
+    assert sorted(DIAGNOSES.keys() - by_case - SHOWN_BY_TESTS.keys()) == []
+    assert sorted(by_case - DIAGNOSES.keys()) == []
+    assert sorted(by_case & SHOWN_BY_TESTS.keys()) == [], "the case is enough"
+
+
+@pytest.mark.parametrize(("id_", "file"), SHOWN_BY_TESTS.items())
+def test_a_test_that_shows_a_diagnosis_expects_it_by_its_id(id_: str, file: str) -> None:
+    assert f'"{id_}"' in (TESTS / file).read_text("utf-8")
 
 
 def test_the_authors_page_is_up_to_date() -> None:
@@ -156,10 +143,6 @@ def test_what_the_files_alone_tell_is_known_before_anything_runs(name: str, told
     submission = open_submission(make_submission(case, tmp_path / "in"))
     early = judge_early(Evidence(find_exercise(case.exercise or case.base), submission))
     assert [outcome.id for outcome in early.failed] == told
-
-
-def case_ids() -> list[str]:
-    return [id_ for case in cases() for id_ in case.diagnosis.values()]
 
 
 def failures(of: Graded) -> list[dict[str, Any]]:

@@ -69,6 +69,11 @@ def test_a_rest_between_the_lobes_is_allowed_and_going_on_after_them_too() -> No
             "lobe-not-round",
             "The first lobe, to the left, is not round: it strays 0.20 m from the nearest circle.",
         ),
+        (
+            ((5, 1.0, 0.0), lobe(1), lobe(-1)),
+            "lobe-gap",
+            "The first lobe, to the left, ends 0.48 m beside the turtle's start.",
+        ),
         (((5, 0.0, 0.0),), "not-moving", "The turtle did not drive."),
         ((lobe(1, radius_m=3.0), lobe(-1)), "wall", "The turtle ran into a wall."),
     ],

@@ -40,6 +40,12 @@ def test_each_wrong_value_fails_for_its_own_reason(shape: str, diagnosis: str, s
     assert str(found.where) == f"{NODE_FILE}:{line}"
 
 
+def test_where_nothing_arrives_no_value_is_called_wrong() -> None:
+    found = values("no messages")
+    assert (found.diagnosis, found.seen) == ("no-commands", "No command arrived.")
+    assert found.expected == "linear.x 2.0 m/s and angular.z 1.0 rad/s, all other fields 0."
+
+
 @pytest.mark.parametrize("field", range(6))
 @pytest.mark.parametrize("wrong", [math.nan, math.inf, -math.inf, 2e-6, -2e-6])
 def test_every_field_counts(field: int, wrong: float) -> None:
