@@ -1,10 +1,11 @@
 """The set-up's first half: look at the machine, make .venv; then grader.install fills it. Quick when all is done.
 
-    python3 -m grader.bootstrap (learner | cluster | tests) [--python PYTHON]
+    python3 -m grader.bootstrap (learner | cluster | notebooks | tests) [--python PYTHON]
 
 Like machine.py, this runs under any Python 3 before anything is installed: syntax of Python 3.6.
 """
 
+import argparse
 import fcntl
 import hashlib
 import json
@@ -148,8 +149,26 @@ def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool
     return True
 
 
+def read_arguments(arguments: Sequence[str]) -> argparse.Namespace:
+    """`parts`, by a name of PARTS, and `python`, None unless one was asked for. Exits where they make no sense."""
+    parser = argparse.ArgumentParser(prog="python3 -m grader.bootstrap", description=__doc__.splitlines()[0])
+    parser.add_argument("parts", choices=list(PARTS), help="what .venv is for; what else is in it stays")
+    parser.add_argument("--python", type=asked_python, help="what to make .venv with: a program's name or path")
+    return parser.parse_args(arguments)
+
+
+def asked_python(name: str) -> machine.Python:
+    """The interpreter of this name. Raises ArgumentTypeError where none answers."""
+    python = machine.probe(shutil.which(name) or name)
+    if python is None:
+        message = f"{name} is no Python that runs here"
+        raise argparse.ArgumentTypeError(message)
+    return python
+
+
 def main(arguments: Sequence[str]) -> int:
     """Bring .venv up to date; returns the exit code."""
+    asked = read_arguments(arguments)
     ros = machine.sourced_ros(os.environ, VENV)
     problem = machine.platform_problem(platform.system(), platform.machine(), platform.libc_ver(), ros)
     if problem:
@@ -157,8 +176,7 @@ def main(arguments: Sequence[str]) -> int:
         return MACHINE_BROKEN
     with (ROOT / "requirements.lock").open() as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # A second `make` waits for the first.
-        wanted = machine.probe(shutil.which(arguments[2]) or arguments[2]) if "--python" in arguments else None
-        return set_up(PARTS[arguments[0]], ros, wanted)
+        return set_up(PARTS[asked.parts], ros, asked.python)
 
 
 def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> int:

@@ -4,6 +4,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -221,6 +222,55 @@ def test_a_python_that_cannot_make_an_environment_is_told(
 def test_installers_do_not_see_a_sourced_ros_or_an_active_environment() -> None:
     env = bootstrap.clean_environment({"PYTHONPATH": "/opt/ros/humble", "VIRTUAL_ENV": "/x", "HTTPS_PROXY": "proxy"})
     assert env == {"HTTPS_PROXY": "proxy", "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
+
+
+# --- its command line ---
+
+
+def bootstrapped(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run by the standard library alone (-S), as where nothing is installed yet."""
+    command = [sys.executable, "-S", "-m", "grader.bootstrap", *arguments]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+def test_help_names_every_target() -> None:
+    done = bootstrapped("--help")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert all(target in done.stdout for target in bootstrap.PARTS)
+    assert all(target in (bootstrap.__doc__ or "") for target in bootstrap.PARTS)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], "the following arguments are required: parts"),
+        (["learners"], "invalid choice: 'learners'"),
+        (["learner", "tests"], "unrecognized arguments: tests"),
+        (["learner", "--verbose"], "unrecognized arguments: --verbose"),
+        (["learner", "--python"], "argument --python: expected one argument"),
+        (["learner", "--python", "python9"], "argument --python: python9 is no Python that runs here"),
+    ],
+)
+def test_a_wrong_argument_is_told_with_the_usage(arguments: list[str], said: str) -> None:
+    done = bootstrapped(*arguments)
+    assert done.returncode == 2
+    assert done.stderr.startswith("usage: python3 -m grader.bootstrap ")
+    assert done.stderr.endswith(f"{said}\n") or f"{said} (choose from" in done.stderr
+
+
+@pytest.mark.parametrize("arguments", [["tests"], ["tests", "--python", "python3"], ["--python=python3", "tests"]])
+def test_the_target_and_the_python_asked_for_are_set_up(
+    course: Course, monkeypatch: pytest.MonkeyPatch, arguments: list[str]
+) -> None:
+    asked: list[object] = []
+
+    def set_up(*given: object) -> int:
+        asked.extend(given)
+        return 7
+
+    monkeypatch.setattr(bootstrap, "set_up", set_up)
+    assert bootstrap.main(arguments) == 7
+    assert asked == [TESTS, machine.sourced_ros(os.environ, ROOT), course.python if len(arguments) > 1 else None]
 
 
 # --- make ---
