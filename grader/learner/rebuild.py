@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from grader import workspace
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from grader.ros import Ros
@@ -28,10 +29,20 @@ class Rebuild:
         self.runs = 0
         self._last: tuple[Submission, workspace.Built] | None = None
 
-    def __call__(self, submission: Submission, here: Ros, underlay: Path | None, *, in_cell: bool) -> workspace.Built:
-        """Build the submission, with colcon or without."""
+    def __call__(
+        self,
+        submission: Submission,
+        here: Ros,
+        underlay: Path | None,
+        *,
+        in_cell: bool,
+        tell: Callable[[str], None] = lambda _: None,
+    ) -> workspace.Built:
+        """Build the submission, with colcon or without; `tell` hears where it is without."""
         built = renewed(submission, *self._last) if self._last else None
-        if built is None:
+        if built is not None:
+            tell("Taking the last build, with the modules as they are now")
+        else:
             self.runs += 1
             built = workspace.build(submission, here, underlay, in_cell=in_cell)
         self._last = (submission, built)

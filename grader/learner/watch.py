@@ -7,6 +7,7 @@ then costs little more than the trial itself.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from queue import SimpleQueue
 from threading import Event, Thread
 from typing import TYPE_CHECKING, Literal
@@ -33,7 +34,7 @@ DEBOUNCE_MS = 50
 
 @dataclass(frozen=True)
 class Happened:
-    """What the loop waits for: a save, a key, or the end."""
+    """What the loop waits for: a save (perhaps one that changed nothing), a key, or the end."""
 
     kind: Literal["saved", "key", "end"]
     key: str = ""
@@ -51,37 +52,31 @@ class Events:
     def __init__(self, read_key: Callable[[], str] | None) -> None:
         self._queue: SimpleQueue[Happened] = SimpleQueue()
         self._stop = Event()
-        self._ready = Event()
+        self._saved = Event()
         # One reader for all folders: a second would take keys that were meant for the first.
         if read_key is not None:
             Thread(target=self._keys, args=(read_key,), daemon=True).start()
 
     def watch(self, folder: Path) -> None:
-        """Watch this folder from now on, and no other."""
+        """Watch this folder from now on, and no other; a first save is told once no other can be missed any more."""
         self._stop.set()
-        self._stop, self._ready = Event(), Event()
-        Thread(target=self._watch, args=(folder, self._stop, self._ready), daemon=True).start()
+        self._stop = Event()
+        Thread(target=self._watch, args=(folder, self._stop), daemon=True).start()
 
     def __iter__(self) -> Iterator[Happened]:
-        """Wait for what happens next; saves that came together are one."""
-        while True:
-            happened = self._queue.get()
-            while happened.kind == "saved" and not self._queue.empty():
-                happened = self._queue.get()
-            if happened.kind == "end":
-                return
+        """Wait for what happens next; saves that wait here together are one."""
+        while (happened := self._queue.get()).kind != "end":
+            if happened.kind == "saved":
+                self._saved.clear()
             yield happened
-
-    def await_ready(self) -> None:
-        """Wait until no save can be missed any more."""
-        self._ready.wait()
 
     def close(self) -> None:
         """End the watching."""
         self._stop.set()
         self._queue.put(Happened("end"))
 
-    def _watch(self, folder: Path, stop: Event, ready: Event) -> None:
+    def _watch(self, folder: Path, stop: Event) -> None:
+        begins = True
         for changes in watch(
             folder,
             watch_filter=_Sources(),
@@ -92,9 +87,10 @@ class Events:
             stop_event=stop,
             raise_interrupt=False,
         ):
-            ready.set()
-            if changes and not stop.is_set():
+            if (changes or begins) and not stop.is_set() and not self._saved.is_set():
+                self._saved.set()
                 self._queue.put(Happened("saved"))
+            begins = False
 
     def _keys(self, read_key: Callable[[], str]) -> None:
         while key := read_key():
@@ -112,14 +108,15 @@ class Watched:
         self._options = options
         self._warm: tuple[Plan, Trial] | None = None
         self._wanted: tuple[Plan, Ros, Path | None] | None = None
-        self._digest = ""
+        self._judged = ""
+        """The digest of the last submission, or why there was none."""
 
     def changed(self) -> bool:
-        """Whether the submission is another one than at the last verdict, or cannot be opened now."""
+        """Whether the last verdict is about something else than what is in the folder now."""
         try:
-            return self._open().digest != self._digest
-        except UsageError:
-            return True
+            return self._open().digest != self._judged
+        except UsageError as error:
+            return str(error) != self._judged
 
     def grade(self, tell: Callable[[str], None] = lambda _: None) -> Graded:
         """Grade the folder as it is now.
@@ -127,11 +124,16 @@ class Watched:
         Raises:
             UsageError: there is no package in it (any more).
         """
-        submission = self._open()
-        self._digest = submission.digest
-        self._wanted = None
         try:
-            return grade(self.exercise, submission, self._options, tell, build=self.rebuild, trial=self._next_trial)
+            submission = self._open()
+        except UsageError as error:
+            self._judged = str(error)
+            raise
+        self._judged = submission.digest
+        self._wanted = None
+        build = partial(self.rebuild, tell=tell)
+        try:
+            return grade(self.exercise, submission, self._options, tell, build=build, trial=self._next_trial)
         finally:
             self._warm_up()
 

@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+import io
 import shutil
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
+from functools import partial
 from pathlib import Path
+from queue import SimpleQueue
 from typing import TYPE_CHECKING
 
 import pytest
+from rich.console import Console
 
 from grader import sandbox
+from grader.errors import UsageError
 from grader.exercise import find_exercise
 from grader.grade import Options
 from grader.learner.rebuild import Rebuild
+from grader.learner.screen import _Screen
 from grader.learner.watch import Events, Watched
 from grader.recording import Pose
 from grader.ros import find_ros
@@ -22,8 +31,12 @@ from grader.underlay import ensure
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from grader.submission import Submission
+
 ROOT = Path(__file__).resolve().parents[3]
 STEP = "03-circle-publisher"
+PATIENCE_S = 60.0
+"""Longer than anything takes here that does not hang."""
 
 
 @pytest.fixture
@@ -70,9 +83,11 @@ def test_changed_modules_are_graded_as_they_are_now_without_colcon(package: Path
 def test_what_symlink_install_would_not_see_is_built_anew(package: Path) -> None:
     here = find_ros()
     rebuild = Rebuild()
+    told: list[str] = []
 
     def build() -> dict[str, str]:
-        return rebuild(open_submission(package), here, ensure(here), in_cell=sandbox.usable()).build.entry_points
+        built = rebuild(open_submission(package), here, ensure(here), in_cell=sandbox.usable(), tell=told.append)
+        return built.build.entry_points
 
     build()
     change(package / "setup.py", "draw_circle =", "drive_circle =")
@@ -81,9 +96,11 @@ def test_what_symlink_install_would_not_see_is_built_anew(package: Path) -> None
     (package / "my_robot_controller" / "more.py").write_text("")
     build()
     assert rebuild.runs == 3
+    assert told == []
     (package / "my_robot_controller" / "more.py").write_text("x = 1\n")
     build()
     assert rebuild.runs == 3
+    assert told == ["Taking the last build, with the modules as they are now"]
 
 
 @pytest.mark.parametrize("how", ["write", "rename", "delete", "create"])
@@ -98,15 +115,83 @@ def test_a_save_is_heard_however_the_editor_saves(package: Path, how: str) -> No
     (package / "draw.tmp").write_text("x = 2\n")
     events = Events(None)
     events.watch(package)
-    events.await_ready()
+    heard = iter(events)
+    assert next(heard).kind == "saved"  # from here on none is missed
     saves[how]()
-    assert next(iter(events)).kind == "saved"
+    assert next(heard).kind == "saved"
     events.close()
 
 
 def test_keys_come_in_order_and_the_end_of_the_terminal_ends_the_loop() -> None:
     keys = iter(["h", "r", ""])
     assert [happened.key for happened in Events(lambda: next(keys))] == ["h", "r"]
+
+
+def test_saves_that_wait_are_one_and_a_key_behind_them_takes_none_away(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    saved, told = threading.Event(), threading.Event()
+
+    def watch(*_: object, **__: object) -> Iterator[set[str]]:
+        yield from ({"first"}, {"second"})
+        saved.set()
+
+    def keys() -> Iterator[str]:
+        assert saved.wait(PATIENCE_S)
+        yield "h"
+        told.set()
+        yield ""
+
+    monkeypatch.setattr("grader.learner.watch.watch", watch)
+    events = Events(partial(next, keys()))
+    events.watch(package)
+    assert told.wait(PATIENCE_S)
+    assert [happened.kind for happened in events] == ["saved", "key"]
+
+
+def test_after_two_saves_within_a_grading_the_last_text_alone_is_graded(
+    package: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gradings: SimpleQueue[str] = SimpleQueue()
+    goes_on, keys = SimpleQueue[None](), SimpleQueue[str]()
+
+    def grade(_exercise: object, submission: Submission, *_: object, **__: object) -> None:
+        gradings.put(submission.files["my_robot_controller/draw_circle.py"].decode())
+        goes_on.get(timeout=PATIENCE_S)
+        raise UsageError("This grading was stopped.")  # noqa: EM101
+
+    monkeypatch.setattr("grader.learner.watch.grade", grade)
+    events = Events(partial(keys.get, timeout=PATIENCE_S))
+    events.watch(package)
+    console = Console(file=io.StringIO())
+    screen = _Screen(find_exercise(STEP), package, None, Options(in_cell=False), console)
+    with ThreadPoolExecutor(1) as pool, closing(events):
+        shown = pool.submit(screen.show, events, "")
+        gradings.get(timeout=PATIENCE_S)
+        for texts in (["x = 1\n", "x = 2\n"], ["x = 3\n", "x = 1\n"]):
+            for text in texts:
+                node_of(package).write_text(text)
+            goes_on.put(None)
+            assert gradings.get(timeout=PATIENCE_S) == texts[-1]
+        keys.put("q")
+        goes_on.put(None)
+        assert shown.result(PATIENCE_S) is None
+    assert gradings.empty()
+
+
+def test_a_package_that_was_away_for_a_while_is_graded_again(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("grader.learner.watch.grade", lambda *_, **__: None)
+    watched = Watched(find_exercise(STEP), package, Options(in_cell=False))
+    watched.grade()
+    for name in ("package.xml", "setup.py"):
+        (package / name).rename(package / f"{name}.away")
+    assert watched.changed()
+    with pytest.raises(UsageError, match="package"):
+        watched.grade()
+    assert not watched.changed()
+    for name in ("package.xml", "setup.py"):
+        (package / f"{name}.away").rename(package / name)
+    assert watched.changed()
 
 
 def test_of_several_trials_the_first_is_kept_warm(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
