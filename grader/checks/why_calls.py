@@ -26,7 +26,7 @@ EXPECTED = re.compile(r"Expected <class '[\w.]*\.(?P<wanted>\w+)'>, got <class '
 TEXT_AND_NUMBER = re.compile(
     r"can only concatenate str|unsupported operand type\(s\) for \+|rcutils_log\(\): incompatible"
 )
-MAKERS = {"create_timer": 1, "create_subscription": 2, "create_client": 9, "create_service": 2}
+MAKERS = {"create_timer": 1, "create_subscription": 2, "create_service": 2}
 """Methods of a node that take a callback, and its place among the arguments."""
 MAKE = "An object of it is made by parentheses behind its name."
 WANTS = {

@@ -163,7 +163,7 @@ def _of_own_class(scene: Scene, owner: str, name: str) -> Cause:
             text = "Its __init__ never calls the parent's: super().__init__ is what makes a node of it."
             return Cause("super-init-missing", text, scene.at(made))
         text = "super().__init__ makes the node: nothing of a node can be used before that line."
-        return Cause("super-init-late", text, scene.at(scene.crash.where.line if scene.crash.where else None))
+        return Cause("super-init-late", text)
     lines = [line for attribute, line in attributes_set(own) if attribute == name]
     if lines:
         text = f"self.{shorten(name)} gets its value in line {min(lines)}, which has not been reached yet."
@@ -172,7 +172,7 @@ def _of_own_class(scene: Scene, owner: str, name: str) -> Cause:
     if outside is not None:
         text = f"{name} stands outside of the class: indent it as the other methods are."
         return Cause("method-outside-class", text, scene.at(outside))
-    inside = next((each for each in scene.functions(name) if each.col_offset > own.col_offset), None)
+    inside = next((each for method in methods(own) for each in ast.walk(method) if _is_function(each, name)), None)
     if inside is not None:
         text = f"{name} is indented too far: it stands inside of another method, where nobody else can see it."
         return Cause("method-in-method", text, scene.at(inside))
@@ -182,6 +182,10 @@ def _of_own_class(scene: Scene, owner: str, name: str) -> Cause:
     return _misspelt(name, known) or Cause(
         "attribute-missing", f"Nothing sets self.{shorten(name)}, and no method has that name."
     )
+
+
+def _is_function(node: ast.AST, name: str) -> bool:
+    return isinstance(node, Function) and node.name == name
 
 
 def _attr(function: ast.expr) -> str:

@@ -1,0 +1,46 @@
+"""Crashes made by hand: a node's source, the line where it crashed, and Python's own words for that."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from grader.checks.crash import START, crash_of
+from grader.checks.why_crashed import crash_finding
+from grader.recording import Output
+from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
+from grader.tests.checks.shapes import crashed
+
+CRASHED, LOOK = "# crashed", "# look"
+"""Comments in a source: the line of the exception; the line that the learner is to be led to, if it is another one."""
+
+
+@dataclass(frozen=True)
+class Told:
+    """What is said of a crash: the diagnosis, the line to look at, the cause in words."""
+
+    diagnosis: str | None
+    line: int | None
+    cause: str
+
+
+def line_with(comment: str, source: str) -> int | None:
+    """The line (from 1) that ends with this comment."""
+    lines = [number for number, line in enumerate(source.splitlines(), 1) if line.endswith(comment)]
+    return lines[0] if lines else None
+
+
+def to_look_at(source: str) -> int | None:
+    """The line that is marked to be looked at, else the one that crashed."""
+    return line_with(LOOK, source) or line_with(CRASHED, source)
+
+
+def told(source: str, error: str, files: dict[str, str] | None = None) -> Told:
+    """What is told of a node with this source that ended with this error; `files` lie beside it."""
+    frame = f'  File "/ws/lib/python3.11/site-packages/{NODE_FILE}", line {line_with(CRASHED, source)}, in send\n'
+    text = f"{START}\n{frame if CRASHED in source else ''}    the line itself\n{error}\n"
+    trial = recording([], end=crashed(0.5), stderr=Output(text))
+    given = evidence(trial, submission({NODE_FILE: source, **(files or {})}))
+    crash = crash_of(given)
+    assert crash is not None
+    finding = crash_finding(given, crash, "It crashed.", "It runs.")
+    return Told(finding.diagnosis, None if finding.where is None else finding.where.line, finding.cause)

@@ -1,0 +1,254 @@
+"""Why a call was refused, by Python or by rclpy."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.tests.checks.crashes import to_look_at, told
+
+NODE = """\
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.count = 0
+        {line}  # crashed
+
+    def send(self):
+        pass
+
+    def take(self, msg):
+        pass
+
+    def turn(angle):
+        pass
+"""
+HIDES = """\
+class Driver(Node):
+    def __init__(self):
+        self.count = 0
+        self.send = 3  # look
+        self.create_timer(0.5, self.send)
+
+    def send(self):
+        self.send()  # crashed
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "diagnosis"),
+    [
+        ("self.create_timer(0.5, self.send())", "callback-called"),
+        ("self.create_timer(0.5, callback=self.send())", "callback-called"),
+        ('self.create_subscription(Pose, "/turtle1/pose", self.take(), 10)', "callback-called"),
+        ('self.create_service(Spawn, "/spawn", self.take())', "callback-called"),
+        ("self.create_timer(0.5, make())", "crash"),
+        ("self.create_timer(0.5, self.send)", "crash"),
+        ("self.create_timer(0.5)", "crash"),
+        ("self.create_timer(self.send, 0.5)", "arguments-swapped"),
+        ('self.create_publisher("/turtle1/cmd_vel", Twist, 10)', "arguments-swapped"),
+        ('self.create_publisher(10, "/turtle1/cmd_vel", Twist)', "arguments-swapped"),
+        ('self.create_subscription(Pose, self.take, "/turtle1/pose", 10)', "arguments-swapped"),
+        ('self.create_subscription("/turtle1/pose", turtlesim.Pose, self.take, 10)', "crash"),
+        ('self.create_publisher("/turtle1/cmd_vel", "Twist", 10)', "crash"),
+        ('self.create_publisher(Twist, "/turtle1/cmd_vel")', "crash"),
+        ('self.create_publisher("/turtle1/cmd_vel", Twist)', "crash"),
+        ("self.create_timer(self.count, 0.5)", "crash"),
+        ("self.create_timer(make(), 0.5)", "crash"),
+    ],
+)
+def test_a_line_that_makes_something_shows_what_is_wrong_with_its_arguments(line: str, diagnosis: str) -> None:
+    source = NODE.format(line=line)
+    found = told(source, "TypeError: the words do not matter")
+    assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
+
+
+def test_the_order_is_told_for_the_function_that_was_called() -> None:
+    found = told(NODE.format(line="self.create_timer(self.send, 0.5)"), "TypeError: no")
+    assert found.cause == "create_timer wants, in this order: the period and the method to call."
+    found = told(NODE.format(line="self.create_timer(0.5, self.send())"), "TypeError: no")
+    assert found.cause.startswith("create_timer wants the method itself;")
+
+
+def test_a_call_over_several_lines_is_shown_where_it_begins() -> None:
+    for arguments in ("0.5, self.send()", "self.send, 0.5"):
+        source = NODE.format(line=f"self.create_timer(  # look\n            {arguments})")
+        assert told(source, "TypeError: no").line == to_look_at(source)
+
+
+@pytest.mark.parametrize(
+    ("error", "diagnosis", "look", "words"),
+    [
+        (
+            "Driver.take() missing 1 required positional argument: 'msg'",
+            "callback-parameters",
+            "def take",
+            "Nobody fills in 'msg':",
+        ),
+        (
+            "Node.__init__() missing 1 required positional argument: 'node_name'",
+            "node-name-missing",
+            "",
+            "A node wants its name",
+        ),
+        (
+            "Node.create_publisher() missing 1 required positional argument: 'qos_profile'",
+            "argument-missing",
+            "",
+            "create_publisher wants the type, the topic and the queue size.",
+        ),
+        (
+            "Thread.__init__() missing 2 required positional arguments: 'a' and 'b'",
+            "callback-parameters",
+            "def __init__",
+            "Nobody fills in 'a' and 'b':",
+        ),
+        (
+            "fill() missing 1 required keyword-only argument: 'node_name'",
+            "argument-missing",
+            "",
+            "fill wants more than it gets: 'node_name'.",
+        ),
+        (
+            "Twist.__init__() takes 1 positional argument but 3 were given",
+            "message-arguments",
+            "",
+            "A message is made empty,",
+        ),
+        (
+            "Driver.__init__() takes 1 positional argument but 3 were given",
+            "callback-parameters",
+            "def __init__",
+            "__init__ has no parameter for",
+        ),
+        (
+            "Twist.send() takes 1 positional argument but 2 were given",
+            "callback-parameters",
+            "def send",
+            "send has no parameter for",
+        ),
+        (
+            "Driver.take() takes 2 positional arguments but 3 were given",
+            "callback-parameters",
+            "def take",
+            "take has no parameter for",
+        ),
+        (
+            "Driver.turn() takes 1 positional argument but 2 were given",
+            "self-parameter",
+            "def turn",
+            "turn is a method: its first parameter is self.",
+        ),
+        ("outside() takes 0 positional arguments but 1 was given", "callback-parameters", "def outside", "outside has"),
+        (
+            "RcutilsLogger.info() takes 2 positional arguments but 4 were given",
+            "log-arguments",
+            "",
+            "info takes one text,",
+        ),
+        (
+            "Node.create_timer() takes from 3 to 6 positional arguments but 7 were given",
+            "too-many-arguments",
+            "",
+            "create_timer wants the period and the method to call, and nothing else.",
+        ),
+        ("fill() takes 0 positional arguments but 1 was given", "crash", "", ""),
+        (
+            "Node.create_timer() got an unexpected keyword argument 'period'",
+            "unexpected-keyword",
+            "",
+            "create_timer knows no argument period. It wants the period and the method to call.",
+        ),
+        (
+            "fill() got an unexpected keyword argument 'colour'",
+            "unexpected-keyword",
+            "",
+            "fill knows no argument colour.",
+        ),
+        (
+            "Expected <class 'geometry_msgs.msg._twist.Twist'>, got <class 'float'>",
+            "publish-other",
+            "",
+            "This publisher sends a whole Twist, and was handed a float.",
+        ),
+        (
+            "Expected <class 'geometry_msgs.msg._twist.Twist'>, got <class 'geometry_msgs.msg._twist.Metaclass_Twist'>",
+            "class-for-object",
+            "",
+            "Twist is the class.",
+        ),
+        ("'int' object is not callable", "not-callable", "", "The parentheses call something of the type int,"),
+        ('can only concatenate str (not "int") to str', "text-and-number", "", "A text and a number"),
+        ("Expected QoSProfile or int, but received <class 'str'>", "queue-size", "", "The last argument"),
+        ("'property' object is not iterable", "class-for-object", "", "rclpy.spin was handed It, which is the class."),
+        ("what nobody has seen", "crash", "", ""),
+    ],
+)
+def test_pythons_words_are_explained(error: str, diagnosis: str, look: str, words: str) -> None:
+    source = NODE.format(line="self.drive()") + "\ndef outside():\n    pass\n"
+    lines = [number for number, line in enumerate(source.splitlines(), 1) if look and look in line]
+    found = told(source, f"TypeError: {error}")
+    assert (found.diagnosis, found.line) == (diagnosis, lines[0] if lines else to_look_at(source))
+    assert found.cause.startswith(words)
+    if diagnosis == "unexpected-keyword":
+        assert found.cause == words
+
+
+def test_what_was_spun_is_named() -> None:
+    found = told("rclpy.spin(Driver)  # crashed\n", "TypeError: 'property' object is not iterable")
+    assert (found.diagnosis, "was handed Driver, which" in found.cause) == ("class-for-object", True)
+    assert "was handed It," in told("rclpy.spin()  # crashed\n", "TypeError: 'property' object is not iterable").cause
+
+
+def test_a_value_that_hides_a_method_is_found() -> None:
+    found = told(HIDES, "TypeError: 'int' object is not callable")
+    assert (found.diagnosis, found.line) == ("name-used-twice", to_look_at(HIDES))
+    assert found.cause == "self.send gets a value in line 4, which hides the method of that name."
+
+
+@pytest.mark.parametrize(
+    ("made", "kind", "diagnosis"),
+    [
+        ("self.create_timer(0.5, self.send())", "NoneType", "callback-called"),
+        ('self.create_service(Spawn, "/spawn", self.take())', "NoneType", "callback-called"),
+        ("self.create_timer(0.5, self.send())", "int", "not-callable"),
+        ("self.create_timer(0.5, self.send)", "NoneType", "not-callable"),
+        ("self.create_timer(0.5)", "NoneType", "not-callable"),
+        ("make()(0.5, self.send())", "NoneType", "not-callable"),
+    ],
+)
+def test_nothing_is_called_where_a_callback_was_called(made: str, kind: str, diagnosis: str) -> None:
+    source = f"class Driver(Node):\n    def __init__(self):\n        {made}\n\nrclpy.spin(node)  # crashed\n"
+    found = told(source, f"TypeError: '{kind}' object is not callable")
+    assert (found.diagnosis, found.line) == (diagnosis, 3 if diagnosis == "callback-called" else 5)
+
+
+def test_a_second_init_is_told_with_all_its_lines() -> None:
+    once, error = "rclpy.init()  # crashed\n", "RuntimeError: Context.init() must only be called once"
+    assert told(once, error).cause == "rclpy.init belongs at one place of a program."
+    found = told(f"rclpy.init()\nrclpy.spin(node)\n{once}", error)
+    assert found.diagnosis == "init-twice"
+    assert found.cause.endswith(" It stands in lines 1 and 3.")
+
+
+NOT_CALLABLE = "RuntimeError: callback should be either be callable with one argument or two"
+
+
+@pytest.mark.parametrize(
+    ("line", "error", "diagnosis", "look"),
+    [
+        ("self.go()", "RCLError: create_publisher() called for existing topic name rt/x", "second-type", "crashed"),
+        ("self.go()", "RuntimeError: timer period must be non-negative", "timer-period-negative", "crashed"),
+        ("self.go()", "RuntimeError: something else", "crash", "crashed"),
+        ('self.create_subscription(Pose, "/pose", self.take(), 10)', NOT_CALLABLE, "callback-called", "crashed"),
+        ('self.create_subscription(Pose, "/pose", self.send, 10)', NOT_CALLABLE, "callback-parameters", "def send"),
+        ('self.create_subscription(Pose, "/pose", self.take, 10)', NOT_CALLABLE, "not-callable", "crashed"),
+        ('self.create_subscription(Pose, "/pose", callback=self.send)', NOT_CALLABLE, "not-callable", "crashed"),
+        ('self.create_subscription(Pose, "/pose", make(), 10)', NOT_CALLABLE, "not-callable", "crashed"),
+    ],
+)
+def test_what_rclpy_refuses_is_explained(line: str, error: str, diagnosis: str, look: str) -> None:
+    source = NODE.format(line=line)
+    lines = [number for number, text in enumerate(source.splitlines(), 1) if look in text]
+    found = told(source, error)
+    assert (found.diagnosis, found.line) == (diagnosis, lines[0])
+    assert found.cause != "" or diagnosis == "crash"

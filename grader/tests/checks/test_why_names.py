@@ -1,0 +1,249 @@
+"""Why a name or an attribute was not there."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.tests.checks.crashes import to_look_at, told
+
+NODE = """\
+from rclpy.node import Node
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.count = 0
+
+    def send(self, step=1):
+        {line}  # crashed
+
+def outside():
+    pass
+"""
+
+
+def name_error(name: str) -> str:
+    return f"NameError: name '{name}' is not defined"
+
+
+@pytest.mark.parametrize(
+    ("line", "name", "diagnosis", "words"),
+    [
+        ("print(count)", "count", "missing-self", "count belongs to the object"),
+        ("send()", "send", "missing-self", "send belongs to the object"),
+        ("twist = Twist()", "Twist", "missing-import", "imports Twist; it lives in geometry_msgs.msg."),
+        ("time.sleep(1)", "time", "missing-import", "imports the module time."),
+        ("print(steps)", "steps", "name-misspelt", "There is a name step:"),
+        ("total = totl + 1", "totl", "name-misspelt", "There is a name total:"),
+        ("outsde()", "outsde", "name-misspelt", "There is a name outside:"),
+        ("print(Drivr)", "Drivr", "name-misspelt", "There is a name Driver:"),
+        ("pritn(1)", "pritn", "name-misspelt", "There is a name print:"),
+        ("Nodes()", "Nodes", "name-misspelt", "There is a name Node:"),
+        ("print(ValueErro)", "ValueErro", "name-undefined", "The name gets no value anywhere"),
+        ("print(forward)", "forward", "name-undefined", "The name gets no value anywhere"),
+    ],
+)
+def test_an_unknown_name_is_explained_by_what_there_is(line: str, name: str, diagnosis: str, words: str) -> None:
+    source = NODE.format(line=line)
+    found = told(source, name_error(name))
+    assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
+    assert words in found.cause
+
+
+@pytest.mark.parametrize(
+    ("imported", "name", "guess"),
+    [
+        ("import geometry.shapes", "geometri", "geometry"),
+        ("import geometry as shapes", "shaps", "shapes"),
+        ("from a import velocity", "velocty", "velocity"),
+    ],
+)
+def test_what_is_imported_is_a_name(imported: str, name: str, guess: str) -> None:
+    found = told(f"{imported}\nprint({name})  # crashed", name_error(name))
+    assert (found.diagnosis, f"There is a name {guess}:" in found.cause) == ("name-misspelt", True)
+
+
+def test_a_method_without_self_does_not_know_it() -> None:
+    source = "class Driver:\n    def send():\n        self.count += 1  # crashed\n"
+    assert told(source, name_error("self")).diagnosis == "self-parameter"
+
+
+def test_outside_of_the_class_nothing_belongs_to_self() -> None:
+    source = "class Driver:\n    def drive(self):\n        self.count = 1\n\nprint(drive)  # crashed\n"
+    assert told(source, name_error("drive")).diagnosis != "missing-self"
+
+
+def test_a_name_error_in_other_words_is_no_more_than_that() -> None:
+    text = "NameError: cannot access free variable 'step' where it is not associated with a value"
+    assert told(NODE.format(line="print(step)"), text).diagnosis == "crash"
+
+
+@pytest.mark.parametrize(
+    ("source", "diagnosis"),
+    [
+        (NODE.format(line="count += 1"), "missing-self"),
+        (NODE.format(line="other += 1"), "local-name"),
+        ("def count_up():\n    count += 1  # crashed\n", "local-name"),
+    ],
+)
+def test_a_name_that_is_assigned_below_is_the_functions_own_or_selfs(source: str, diagnosis: str) -> None:
+    name = "other" if "other" in source else "count"
+    error = f"UnboundLocalError: cannot access local variable '{name}' where it is not associated with a value"
+    found = told(source, error)
+    assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
+    assert ("count belongs to the object" in found.cause) == (diagnosis == "missing-self")
+
+
+def test_an_unbound_name_in_other_words_is_local_all_the_same() -> None:
+    assert told(NODE.format(line="count += 1"), "UnboundLocalError: no value").diagnosis == "local-name"
+
+
+@pytest.mark.parametrize(
+    ("error", "diagnosis", "words"),
+    [
+        ("module 'rclpy' has no attribute 'Node'", "import-wrong-place", "Node lives in rclpy.node."),
+        ("module 'math' has no attribute 'Node'", "attribute-missing", "The module math has nothing of that name."),
+        ("module 'rclpy' has no attribute 'spni'", "attribute-misspelt", "There is spin:"),
+        ("module 'rclpy' has no attribute 'Spin'", "attribute-misspelt", "There is spin:"),
+        ("module 'rclpy' has no attribute 'turtle'", "attribute-missing", "The module rclpy has nothing of that name."),
+        ("module 'math' has no attribute 'PI'", "attribute-misspelt", "There is pi:"),
+        ("module 'time' has no attribute 'sleeep'", "attribute-misspelt", "There is sleep:"),
+        ("module 'cv2' has no attribute 'imred'", "attribute-missing", "The module cv2 has nothing of that name."),
+        ("type object 'Twist' has no attribute 'linear'", "class-for-object", "Twist is the class."),
+        ("'Metaclass_Twist' object has no attribute 'linear'", "class-for-object", "Twist is the class."),
+        ("'function' object has no attribute 'now'", "not-called", "the parentheses are missing"),
+        (
+            "'Twist' object has no attribute 'liner'",
+            "message-field",
+            "A Twist has linear and angular. Is linear meant?",
+        ),
+        ("'Twist' object has no attribute 'speed'", "message-field", "A Twist has linear and angular."),
+        ("'Publisher' object has no attribute 'publsh'", "attribute-misspelt", "There is publish:"),
+        ("'Publisher' object has no attribute 'send'", "attribute-missing", "A Publisher has nothing of that name."),
+        ("'RcutilsLogger' object has no attribute 'Info'", "attribute-misspelt", "There is info:"),
+        ("'str' object has no attribute 'speed'", "crash", ""),
+        ("no attribute at all", "crash", ""),
+    ],
+)
+def test_an_unknown_attribute_is_explained_by_what_it_was_looked_for_in(error: str, diagnosis: str, words: str) -> None:
+    source = NODE.format(line="self.drive()")
+    found = told(source, f"AttributeError: {error}")
+    assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
+    assert words in found.cause
+    assert ("meant?" in found.cause) == ("meant?" in words)
+    assert "Metaclass" not in found.cause
+
+
+def test_a_message_made_without_parentheses_is_told_where_it_was_made() -> None:
+    source = "count = 3\nmsg = geometry_msgs.msg.Twist  # look\nmsg.linear.x = 2.0  # crashed\n"
+    found = told(source, "AttributeError: 'property' object has no attribute 'x'")
+    assert (found.diagnosis, found.line) == ("class-for-object", 2)
+    assert "geometry_msgs.msg.Twist is the class." in found.cause
+
+
+def test_a_class_that_was_made_nowhere_is_told_where_it_crashed() -> None:
+    found = told("count = 3\nmsg.linear.x = 2.0  # crashed\n", "AttributeError: 'property' object has no attribute 'x'")
+    assert (found.diagnosis, found.line) == ("class-for-object", 2)
+    assert "It is the class." in found.cause
+
+
+def none_error(name: str) -> str:
+    return f"AttributeError: 'NoneType' object has no attribute '{name}'"
+
+
+@pytest.mark.parametrize(
+    ("first", "diagnosis"),
+    [
+        ("self.pose = None", "none-before-message"),
+        ("self.pose = 3", "crash"),
+        ("self.pose = look_up()", "crash"),
+        ("self.other = None", "crash"),
+    ],
+)
+def test_what_no_message_has_filled_is_none(first: str, diagnosis: str) -> None:
+    source = f"class Driver:\n    def __init__(self):\n        {first}\n    def send(self):\n"
+    source += "        self.other.y = make().x + self.pose.x  # crashed\n"
+    found = told(source, none_error("x"))
+    assert found.diagnosis == diagnosis
+    assert ("self.pose is None until" in found.cause) == (diagnosis == "none-before-message")
+
+
+def test_spin_wants_a_node() -> None:
+    assert told("rclpy.spin(make())  # crashed\n", none_error("executor")).diagnosis == "no-object"
+
+
+OWN = "AttributeError: 'Driver' object has no attribute '{}'"
+TOO_EARLY = """\
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.send()
+        self.count = 0
+    def send(self):
+        self.count += 1  # crashed
+    def again(self):
+        self.count = 2
+"""
+OUTSIDE = """\
+class Driver(Node):
+    def __init__(self):
+        self.create_timer(0.5, self.send)  # crashed
+
+def send(self):  # look
+    pass
+"""
+INSIDE = """\
+class Driver(Node):
+    def __init__(self):
+        self.create_timer(0.5, self.send)  # crashed
+
+        def send(self):  # look
+            pass
+"""
+ELSEWHERE = """\
+class Driver(Node):
+    def __init__(self):
+        self.create_timer(0.5, self.send)  # crashed
+
+class Other(Node):
+    def send(self):
+        pass
+"""
+NO_SUPER = """\
+class Driver(Node):
+    def send(self):
+        pass
+    def __init__(self):  # look
+        print("driver")
+        self.create_timer(0.5, self.send)  # crashed
+"""
+LATE_SUPER = """\
+class Driver(Node):
+    def __init__(self):
+        self.create_timer(0.5, self.send)  # crashed
+        super().__init__("driver")
+"""
+NO_INIT = "class Driver(Node):\n    def send(self):\n        print(self._x)  # crashed\n"
+
+
+@pytest.mark.parametrize(
+    ("source", "name", "diagnosis", "words"),
+    [
+        (TOO_EARLY, "count", "attribute-too-early", "self.count gets its value in line 5,"),
+        (OUTSIDE, "send", "method-outside-class", "send stands outside of the class"),
+        (INSIDE, "send", "method-in-method", "send is indented too far"),
+        (ELSEWHERE, "send", "attribute-missing", "Nothing sets self.send,"),
+        (NO_SUPER, "_timers", "super-init-missing", "never calls the parent's"),
+        (LATE_SUPER, "_timers", "super-init-late", "before that line"),
+        (NO_INIT, "_x", "attribute-missing", "Nothing sets self._x,"),
+        (ELSEWHERE, "publish", "node-publishes", "A node has no method publish"),
+        (ELSEWHERE, "create_timmer", "attribute-misspelt", "There is create_timer:"),
+        (TOO_EARLY, "agian", "attribute-misspelt", "There is again:"),
+        (TOO_EARLY, "conut", "attribute-misspelt", "There is count:"),
+        (TOO_EARLY, "velocity", "attribute-missing", "Nothing sets self.velocity,"),
+    ],
+)
+def test_what_a_node_lacks_is_explained_by_its_class(source: str, name: str, diagnosis: str, words: str) -> None:
+    found = told(source, OWN.format(name))
+    assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
+    assert words in found.cause
