@@ -10,7 +10,7 @@ import numpy as np
 
 from grader.checks.circle import Circle, fit_circle
 from grader.checks.kind import Kind, choice, number
-from grader.checks.path import MOVED_M, moved_otherwise
+from grader.checks.path import not_driven
 from grader.checks.tolerance import Band, unless_starved
 from grader.checks.track import RESTS_M, STRAIGHT_RAD
 from grader.outcome import Finding, failed, passed
@@ -69,11 +69,9 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
     expected = f"An eight: a full circle of radius {params.radius_m:.1f} m to one side, then one to the other."
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     track = evidence.track
-    moved = moved_otherwise(evidence, expected)
-    if moved is not None:
-        return moved
-    if not track.finite or track.length_m <= MOVED_M:
-        return failed("not-moving", "The turtle did not drive.", expected, where=where)
+    still = not_driven(evidence, expected, where)
+    if still is not None:
+        return still
     if track.wall.any():
         return failed("wall", "The turtle ran into a wall.", expected, "The lobes are too large.", where=where)
     lobes = lobes_of(track)

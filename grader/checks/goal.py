@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from grader.checks.kind import Kind, number
-from grader.checks.path import MOVED_M, moved_otherwise
+from grader.checks.path import MOVED_M, not_driven
 from grader.checks.tolerance import Band
 from grader.outcome import Finding, failed, passed
 
@@ -34,12 +34,10 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     """The turtle drives to the goal and stops there."""
     expected = f"The turtle stops within {params.tolerance_m:g} m of x={params.x_m:g} y={params.y_m:g}."
     where = evidence.place("publish")
-    moved = moved_otherwise(evidence, expected)
-    if moved is not None:
-        return moved
+    still = not_driven(evidence, expected, where)
+    if still is not None:
+        return still
     track = evidence.track
-    if not track.finite or track.length_m <= MOVED_M:
-        return failed("not-moving", "The turtle did not drive.", expected, where=where)
     away = np.hypot(track.x - params.x_m, track.y - params.y_m)
     end, nearest = float(away[-1]), float(away.min())
     close = Band.at_most(params.tolerance_m)

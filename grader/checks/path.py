@@ -78,6 +78,14 @@ def moved_otherwise(evidence: Evidence, expected: str) -> Finding | None:
     return failed("intervention", seen, expected, cause, where=evidence.place("create_client", "ActionClient"))
 
 
+def not_driven(evidence: Evidence, expected: str, where: Where | None) -> Finding | None:
+    """A failed finding where commands did not move the turtle: nothing did, or something else."""
+    moved = moved_otherwise(evidence, expected)
+    if moved is not None or (evidence.track.finite and evidence.track.length_m > MOVED_M):
+        return moved
+    return failed("not-moving", "The turtle did not drive.", expected, where=where)
+
+
 def _no_circle(evidence: Evidence, track: Track, expected: str) -> Finding | None:
     """What makes a way no circle at all, the most telling reason first."""
     if not track.finite:

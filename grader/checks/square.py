@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from grader.checks.kind import Kind, choice, number
-from grader.checks.path import MOVED_M, moved_otherwise
+from grader.checks.path import not_driven
 from grader.checks.tolerance import Band, unless_starved
 from grader.checks.track import RESTS_M
 from grader.outcome import Finding, failed, passed
@@ -74,11 +74,9 @@ def square(evidence: Evidence, params: Square) -> Finding:
     expected = f"Four straight sides of {params.side_m:.1f} m, with a turn of 90 degrees on the spot after each."
     where = evidence.place("publish")
     track = evidence.track
-    moved = moved_otherwise(evidence, expected)
-    if moved is not None:
-        return moved
-    if not track.finite or track.length_m <= MOVED_M:
-        return failed("not-moving", "The turtle did not drive.", expected, where=where)
+    still = not_driven(evidence, expected, where)
+    if still is not None:
+        return still
     if track.wall.any():
         return failed("wall", "The turtle ran into a wall.", expected, "Some side is too long.", where=where)
     sides = sides_of(track)
