@@ -174,7 +174,7 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
     if Band.around(truth, truth * params.tolerance_percent / 100.0).holds(given):
         return passed(f"{given:g} Hz is right.")
     diagnosis, cause = "wrong-answer", "`ros2 topic hz` counts messages a second."
-    if given and Band.around(truth, truth * params.tolerance_percent / 100.0).holds(1.0 / given):
+    if Band.around(truth, truth * params.tolerance_percent / 100.0).holds(1.0 / given):
         diagnosis, cause = (
             "period-for-rate",
             "This is the time between two messages in seconds; the rate is 1 divided by it.",

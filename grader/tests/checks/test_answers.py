@@ -56,7 +56,8 @@ def test_the_file_is_looked_at_before_its_answers(answers: str | None, diagnosis
     assert (finding.status, finding.diagnosis) == (Status.FAILED, diagnosis)
     if diagnosis == "unknown-answer":
         assert finding.seen == "answers.toml answers nade, which nobody asked."
-        assert str(finding.where) == "answers.toml:3"
+    line = {"unknown-answer": "answers.toml:3", "no-answers": "None"}.get(str(diagnosis), "answers.toml")
+    assert str(finding.where) == line
 
 
 @pytest.mark.parametrize("answer", ['"left"', '"  LEFT "', '"to the   Left"'])
@@ -80,9 +81,13 @@ def test_no_answer_and_one_of_another_form_are_told(kind: Kind[Any]) -> None:
         values |= {"items": ("a",)}
     else:
         values |= {"type_ends": "/String"} if kind is RATE else TOPIC
-    assert found(kind, given('other = "a"'), **values).diagnosis == "no-answer"
+    for answers in ('other = "a"', None):
+        nothing = found(kind, given(answers), **values)
+        assert (nothing.diagnosis, str(nothing.where)) == ("no-answer", "answers.toml")
     other = "1.5" if kind is not RATE else '"4"'
-    assert found(kind, given(f"name = {other}"), **values).diagnosis == "answer-form"
+    finding = found(kind, given(f"name = {other}"), **values)
+    assert (finding.diagnosis, str(finding.where)) == ("answer-form", "answers.toml:2")
+    assert finding.seen == f"name is {other}."
 
 
 @pytest.mark.parametrize(
@@ -99,7 +104,7 @@ def test_a_list_is_compared_whatever_its_order(answer: str, told: str | None, di
     finding = judged(LIST, answer, items=("x", "y"))
     assert (finding.status is Status.PASSED, finding.diagnosis) == (told is None, diagnosis)
     if told:
-        assert finding.seen == told
+        assert (finding.seen, str(finding.where)) == (told, "answers.toml:2")
 
 
 @pytest.mark.parametrize(
@@ -119,6 +124,11 @@ def test_a_list_is_compared_whatever_its_order(answer: str, told: str | None, di
         ('"String"', {"find": "type", "node": "/kitchen/cook"}, "type-without-package"),
         ('["/waiter", "/kitchen/cook"]', NODES, None),
         ('["/waiter"]', NODES, "list-incomplete"),
+        ('"kitchen/cook"', {"find": "node", "among": "publisher", "type_ends": "/String"}, "no-slash"),
+        ('"/rosout"', {"find": "topic", "among": "publisher", "type_starts": "rcl_"}, "answer-another"),
+        ('"/waiter"', {"find": "node", "type_starts": "rcl_"}, None),
+        ('"/cups"', {"find": "topic", "type_starts": "std_", "type_ends": "/Float32"}, "answer-another"),
+        ('"/nowhere"', TOPIC, "wrong-answer"),
     ],
 )
 def test_the_truth_is_the_graph_as_it_was_recorded(answer: str, values: dict[str, str], diagnosis: str | None) -> None:
@@ -141,7 +151,11 @@ def test_another_graph_has_other_right_answers() -> None:
         ("4.1", None),
         ("3.8", None),
         ("5", "wrong-answer"),
+        ("4.19", None),
+        ("4.21", "wrong-answer"),
         ("0.25", "period-for-rate"),
+        ("0.2386", "period-for-rate"),
+        ("0.2378", "wrong-answer"),
         ("-4", "wrong-answer"),
     ],
 )

@@ -7,7 +7,7 @@ import pytest
 from grader.checks.eight import EIGHT
 from grader.outcome import Finding, Status
 from grader.recording import Pose
-from grader.tests.checks.made import TICK_S, every, evidence, found, legs, recording
+from grader.tests.checks.made import NODE_FILE, TICK_S, every, evidence, found, legs, recording
 
 TICKS = 40
 TURN = 2.0 * math.pi / (TICKS * TICK_S)  # rad/s, a circle in so many ticks
@@ -83,6 +83,7 @@ def test_each_other_way_is_told_with_its_lobe_and_by_how_much(
 ) -> None:
     finding = eight(*parts, first="left")
     assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
+    assert str(finding.where) == f"{NODE_FILE}:{10 if diagnosis == 'lobe-angle' else 15}"
 
 
 def test_either_side_may_come_first_where_the_exercise_allows_it() -> None:

@@ -7,7 +7,7 @@ import pytest
 from grader.checks.goal import GOAL
 from grader.outcome import Finding, Status
 from grader.recording import Pose
-from grader.tests.checks.made import TICK_S, evidence, found, legs, recording
+from grader.tests.checks.made import NODE_FILE, TICK_S, evidence, found, legs, recording
 
 Leg = tuple[int, float, float]
 START = Pose(3.0, 5.0, 0.0)
@@ -58,6 +58,7 @@ def test_whoever_stops_near_enough_has_arrived(way_m: float) -> None:
 def test_whoever_is_not_there_is_told_where_they_are(parts: tuple[Leg, ...], diagnosis: str, seen: str) -> None:
     finding = goal(*parts)
     assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
+    assert str(finding.where) == f"{NODE_FILE}:16"
 
 
 def test_a_turtle_at_the_wall_learns_about_angles() -> None:

@@ -88,7 +88,8 @@ def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: 
     ],
 )
 def test_a_silent_log_is_explained_by_the_source(node: str, stdout: str, diagnosis: str) -> None:
-    assert in_format((), node=node, stdout=stdout).diagnosis == diagnosis
+    finding = in_format((), node=node, stdout=stdout)
+    assert (finding.diagnosis, finding.where is not None) == (diagnosis, True)
 
 
 def test_a_crash_explains_a_silent_log() -> None:
@@ -120,6 +121,16 @@ def test_the_counter(numbers: tuple[int, ...], diagnosis: str | None, seen: str)
     trial = recording([], log=hello(*numbers))
     finding = found(LOG_COUNTER, evidence(trial), format=HELLO, counts="counter")
     assert (finding.diagnosis, finding.seen) == (diagnosis, seen)
+    assert str(finding.where) == ("None" if diagnosis is None else NODE_FILE)
+    assert ("Log first, then count." in finding.cause) == (numbers[0] == 1)
+
+
+def test_one_line_counts_nothing_and_two_do() -> None:
+    for log, diagnosis in ((hello(0), "too-few-log-lines"), (hello(0, 1), None)):
+        trial = recording([], log=log)
+        finding = found(LOG_COUNTER, evidence(trial, submission({NODE_FILE: LOGS})), format=HELLO, counts="counter")
+        assert (finding.diagnosis, finding.where is not None) == (diagnosis, diagnosis is not None)
+        assert finding.expected in ('"Hello 0", then "Hello 1", and so on.', "")
 
 
 @pytest.mark.parametrize(("every_s", "status"), [(1.0, "passed"), (0.5, "failed"), (2.0, "failed")])

@@ -10,7 +10,7 @@ import pytest
 from grader.checks.log_pose import LOG_DISTANCE, LOG_POSITION
 from grader.outcome import Finding, Status
 from grader.recording import LogLine
-from grader.tests.checks.made import evidence, found, legs, recording
+from grader.tests.checks.made import NODE_FILE, evidence, found, legs, node, recording
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,6 +18,11 @@ if TYPE_CHECKING:
     from grader.recording import Floats, Recording
 
 FORMAT = "x={x:.2f} y={y:.2f} distance={distance:.2f}"
+PACKAGE = node(
+    ("        msg = Twist()", "        way = math.hypot(1.0, 2.0)\n        self.get_logger().info(f'{way}')")
+)
+LOGS = {"position": 14, "distance": 13}
+"""The lines of that package that each kind of mistake leads to."""
 WAY = legs((40, 1.0, 0.7), (15, 0.0, 0.0), (30, -0.9, 0.5))
 DRIVE = recording(WAY)
 TIMES = np.arange(1.0, 10.0)
@@ -44,11 +49,11 @@ def logged(said: Said, stalls: tuple[tuple[float, float], ...] = ()) -> Recordin
 
 
 def position(said: Said) -> Finding:
-    return found(LOG_POSITION, evidence(logged(said)), format=FORMAT)
+    return found(LOG_POSITION, evidence(logged(said), PACKAGE), format=FORMAT)
 
 
 def distance(said: Said) -> Finding:
-    return found(LOG_DISTANCE, evidence(logged(said)), format=FORMAT)
+    return found(LOG_DISTANCE, evidence(logged(said), PACKAGE), format=FORMAT)
 
 
 @pytest.mark.parametrize("lag_s", [0.0, 0.016, 0.1])
@@ -95,6 +100,7 @@ def test_each_other_number_fails_for_its_own_reason(name: str) -> None:
     change, subject, diagnosis = WRONG[name]
     finding = {"position": position, "distance": distance}[subject](change(truth()))
     assert (finding.status, finding.diagnosis) == (Status.FAILED, diagnosis)
+    assert str(finding.where) == f"{NODE_FILE}:{LOGS[subject]}"
     assert finding.cause
 
 
@@ -118,8 +124,49 @@ def test_one_wrong_line_is_enough() -> None:
 
 def test_too_few_lines_are_not_compared() -> None:
     trial = logged(truth())
-    few = recording([], log=trial.log[:2])
-    assert found(LOG_POSITION, evidence(few), format=FORMAT).diagnosis == "too-few-log-lines"
+    for kind in (LOG_POSITION, LOG_DISTANCE):
+        few = found(kind, evidence(recording(WAY, log=trial.log[:2]), PACKAGE), format=FORMAT)
+        assert (few.diagnosis, str(few.where)) == ("too-few-log-lines", f"{NODE_FILE}:14")
+        enough = found(kind, evidence(recording(WAY, log=trial.log[:3]), PACKAGE), format=FORMAT)
+        assert enough.status is Status.PASSED
+
+
+def test_what_is_off_by_less_than_the_tolerance_is_right() -> None:
+    x, y, way = truth()
+    assert position((x + 0.01, y, way)).status is Status.PASSED
+    assert position((x + 0.08, y, way)).status is Status.FAILED
+    assert distance((x, y, way + 0.03)).status is Status.PASSED
+    assert distance((x, y, way + 0.12)).status is Status.FAILED
+
+
+def test_a_way_that_is_nearly_another_one_is_only_wrong() -> None:
+    x, y, way = truth()
+    chords = np.cumsum(np.hypot(np.diff(x, prepend=DRIVE.start.x), np.diff(y, prepend=DRIVE.start.y)))
+    assert distance((x, y, chords * 1.2)).diagnosis == "wrong-distance"
+    assert (
+        distance((x, y, way + np.hypot(DRIVE.start.x, DRIVE.start.y) + np.linspace(0.7, 3.0, 9))).diagnosis
+        == "wrong-distance"
+    )
+    assert distance((x, y, np.minimum(way, way[2]))).diagnosis == "wrong-distance"
+
+
+def test_the_worst_line_is_shown() -> None:
+    x, y, way = truth()
+    off = way.copy()
+    off[3] -= 0.5
+    off[6] += 0.4
+    assert distance((x, y, off)).seen.startswith("At 4 s the line says")
+
+
+def test_a_line_before_the_first_frame_speaks_of_the_start() -> None:
+    early = LogLine(0.0, "INFO", "pose_subscriber", "x=9.00 y=9.00 distance=9.00")
+    trial = recording(WAY, log=(early, *logged(truth()).log))
+    start = trial.frames
+    finding = found(LOG_POSITION, evidence(trial), format=FORMAT)
+    assert finding.seen.endswith(f"the turtle was at x={start.x[0]:.2f} y={start.y[0]:.2f}.")
+    late = LogLine(99.0, "INFO", "pose_subscriber", "x=9.00 y=9.00 distance=9.00")
+    after = found(LOG_POSITION, evidence(recording(WAY, log=(*logged(truth()).log, late))), format=FORMAT)
+    assert (after.status, "At 99 s" in after.seen) in ((Status.FAILED, True), (Status.PASSED, False))
 
 
 def test_lines_that_a_stall_delayed_do_not_count_and_without_others_nobody_is_blamed() -> None:

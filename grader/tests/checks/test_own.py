@@ -70,5 +70,21 @@ def test_a_way_by_somebody_elses_numbers_is_wrong(student: str, way: str) -> Non
     assert [found(kind, other).diagnosis for kind in (CIRCLE, RATE)] == [way, "wrong-rate"]
 
 
+@pytest.mark.parametrize(
+    ("share", "status"), [(1.2, Status.PASSED), (1.4, Status.FAILED), (0.85, Status.PASSED), (0.75, Status.FAILED)]
+)
+def test_one_interval_may_be_a_little_longer_or_shorter_than_the_own_period(share: float, status: Status) -> None:
+    period_s = 1.0 / ALICE.rate_hz
+    way = every(period_s, ALICE.radius_m, 1.0)
+    moved = [(t_s + (share - 1.0) * period_s * (index >= 20), v, w) for index, (t_s, v, w) in enumerate(way)]
+    assert found(RATE, replace(given(ALICE), recording=recording(moved))).status is status
+
+
+@pytest.mark.parametrize(("first_s", "diagnosis"), [(2.9, None), (3.5, "late-start")])
+def test_the_first_command_may_come_three_seconds_late(first_s: float, diagnosis: str | None) -> None:
+    way = every(1.0 / ALICE.rate_hz, ALICE.radius_m, 1.0, first_s=first_s)
+    assert found(RATE, replace(given(ALICE), recording=recording(way))).diagnosis == diagnosis
+
+
 def test_without_numbers_there_is_nothing_to_judge_the_way_by() -> None:
     assert [found(kind, given(None)).diagnosis for kind in (CIRCLE, RATE)] == ["no-numbers"] * 2

@@ -101,10 +101,83 @@ def test_a_misspelt_dependency_is_shown() -> None:
     assert found.cause == 'It has "geometry_msg": is that a typing error?'
 
 
-def test_what_was_left_out_of_the_submission_is_told() -> None:
-    given = evidence(package=submission(rejected=("data: a link that leaves the package", "x", "y")))
+@pytest.mark.parametrize(
+    ("more", "seen"),
+    [
+        ((), "Left out: data: a link that leaves the package."),
+        (("x",), "Left out: data: a link that leaves the package (and 1 more)."),
+        (("x", "y"), "Left out: data: a link that leaves the package (and 2 more)."),
+    ],
+)
+def test_what_was_left_out_of_the_submission_is_told(more: tuple[str, ...], seen: str) -> None:
+    given = evidence(package=submission(rejected=("data: a link that leaves the package.", *more)))
     found = finding("files", given)
-    assert found.seen == "Left out: data: a link that leaves the package (and 2 more)."
+    assert (found.diagnosis, found.seen) == ("rejected-file", seen)
+
+
+@pytest.mark.parametrize(
+    ("files", "diagnosis", "where", "cause"),
+    [
+        (
+            {"package.xml": f"{PACKAGE_XML}<more/>"},
+            "xml-malformed",
+            "package.xml:15",
+            "After the last tag, </package>, nothing may follow.",
+        ),
+        (
+            xml("</depend>\n  <depend>turtle", "</depends>\n  <depend>turtle"),
+            "xml-malformed",
+            "package.xml:9",
+            "<depend> in line 9 is not closed by a tag of the same name with a slash.",
+        ),
+        (
+            xml("MIT", "M & T"),
+            "xml-malformed",
+            "package.xml:7",
+            "Each <tag> ends with a </tag> of the same name, the inner one before the outer one.",
+        ),
+        (
+            xml("<depend>rclpy</depend>", "<run_depend>rclpy</run_depend>"),
+            "package-xml-old-tag",
+            "package.xml:8",
+            "<run_depend> is of format 1, that of ROS 1; format 3 has <exec_depend>, and <depend> for all.",
+        ),
+    ],
+)
+def test_a_package_xml_that_cannot_be_read_is_explained(
+    files: dict[str, str | bytes | None], diagnosis: str, where: str, cause: str
+) -> None:
+    found = of("package-xml", files)
+    assert (found.diagnosis, str(found.where), found.cause) == (diagnosis, where, cause)
+
+
+@pytest.mark.parametrize("files", [{"package.xml": None}, {"package.xml": "<package>"}])
+def test_without_a_package_xml_nothing_is_declared(files: dict[str, str | bytes | None]) -> None:
+    found = of("dependencies", files)
+    assert (found.diagnosis, str(found.where)) == ("package-xml-invalid", "package.xml")
+
+
+@pytest.mark.parametrize(
+    ("files", "cause"),
+    [
+        (xml("my_robot_controller", "my-robot"), "A ROS 2 package's name has underscores, not dashes."),
+        (xml("my_robot_controller", "my_robot"), ""),
+        (setup_py('"my_robot_controller"', '"my-robot"'), "A ROS 2 package's name has underscores, not dashes."),
+        (
+            {INIT: None, NODE_FILE: None, "my_robot_control/x.py": "", "my_robot_controllers/a/b.py": "", "x.py": ""},
+            "There is a folder my_robot_control.",
+        ),
+        ({INIT: None, NODE_FILE: None, "quaff/x.py": ""}, ""),
+    ],
+)
+def test_another_name_is_explained(files: dict[str, str | bytes | None], cause: str) -> None:
+    found = of("package-name", files)
+    assert (found.status, found.cause) == (Status.FAILED, cause)
+
+
+def test_a_setup_py_that_says_no_name_contradicts_nobody() -> None:
+    for text in (None, "setup()\n", "setup(\n"):
+        assert of("package-name", {"setup.py": text}).status is Status.PASSED
 
 
 SETUP_TRACEBACK = """\
@@ -180,8 +253,94 @@ def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
         "resource-marker",
         "Not installed: the marker resource/my_robot_controller.",
     )
+    assert str(found.where) == "setup.py:5"
     no_xml = tuple(path for path in BUILD.installed if "package.xml" not in path)
-    assert of("installed", build=replace(BUILD, installed=no_xml)).diagnosis == "package-xml-not-installed"
+    found = of("installed", build=replace(BUILD, installed=no_xml))
+    assert (found.diagnosis, str(found.where)) == ("package-xml-not-installed", "setup.py:5")
+    nothing = of("installed", {"setup.py": None}, replace(BUILD, installed=()))
+    assert (nothing.diagnosis, str(nothing.where)) == ("resource-marker", "setup.py")
+    assert nothing.seen == "Not installed: the marker resource/my_robot_controller and package.xml."
+
+
+@pytest.mark.parametrize(
+    ("files", "package", "name"),
+    [
+        ({}, "my_robot", "my_robot"),
+        (xml("<name>my_robot_controller", "<name>by_package_xml"), None, "by_package_xml"),
+        ({"package.xml": None, **setup_py('"my_robot_controller"', '"by_setup_py"')}, None, "by_setup_py"),
+        ({"package.xml": "<package>", **setup_py('"my_robot_controller"', '"by_setup_py"')}, None, "by_setup_py"),
+        ({"package.xml": None, "setup.py": None}, None, "my_robot_controller"),
+        ({"package.xml": None, "setup.py": "setup()\n"}, None, "my_robot_controller"),
+    ],
+)
+def test_the_package_is_looked_for_by_the_name_that_colcon_knows(
+    files: dict[str, str | bytes | None], package: str | None, name: str
+) -> None:
+    found = of("installed", files, replace(BUILD, package=package, installed=()))
+    assert found.seen == f"Not installed: the marker resource/{name} and package.xml."
+    both = (f"share/ament_index/resource_index/packages/{name}", f"share/{name}/package.xml")
+    assert of("installed", files, replace(BUILD, package=package, installed=both)).status is Status.PASSED
+
+
+OTHER_TYPE = "colcon goes by package.xml, which is not that of an ament_python package."
+
+
+@pytest.mark.parametrize(
+    ("files", "cause"),
+    [
+        ({}, ""),
+        (xml("ament_python", "ament_cmake"), OTHER_TYPE),
+        ({"package.xml": None}, ""),
+        ({"package.xml": "<package>"}, ""),
+    ],
+)
+def test_colcon_may_take_the_package_for_one_of_another_kind(files: dict[str, str | bytes | None], cause: str) -> None:
+    failed = of("build", files, replace(NOTHING, exit_code=1))
+    assert (failed.diagnosis, failed.cause, failed.seen) == (
+        "build-failed",
+        cause,
+        "`colcon build` failed (exit code 1).",
+    )
+    nothing = of("build", files, replace(NOTHING, installed=()))
+    assert nothing.cause == (cause or "The argument packages of setup() says which folders to install.")
+
+
+def test_a_build_without_a_setup_py_is_shown_at_package_xml_if_there_is_one() -> None:
+    assert of("build", {"setup.py": None, "package.xml": None}).where is None
+
+
+@pytest.mark.parametrize(
+    ("files", "build", "diagnosis", "cause"),
+    [
+        ({INIT: None}, BARE, "missing-init", "find_packages in setup.py finds only such folders."),
+        ({INIT: None, **setup_py("find_packages(", "list_of(")}, BARE, "missing-init", ""),
+        ({INIT: None, **setup_py("find_packages(", "list_of(")}, LINKED, None, ""),
+        ({INIT: None, "other/__init__.py": "", "other/x.py": ""}, BARE, "nothing-installed", "The argument packages"),
+        ({INIT: None, "test/x.py": ""}, BARE, "missing-init", "find_packages in setup.py finds only such folders."),
+        ({}, LINKED, None, ""),
+        ({"deep/down/x.py": ""}, BUILD, None, ""),
+    ],
+)
+def test_folders_that_are_no_packages_explain_that_nothing_was_installed(
+    files: dict[str, str | bytes | None], build: Build, diagnosis: str | None, cause: str
+) -> None:
+    found = of("build", files, build)
+    assert found.diagnosis == diagnosis
+    assert found.cause.startswith(cause)
+
+
+@pytest.mark.parametrize(
+    ("text", "diagnosis"),
+    [
+        ("draw_circle", "entry-point-no-function"),
+        ("draw_circle = a b:main", "entry-point-format"),
+        ("draw_circle = a/b.py:main", "entry-point-slash"),
+        ("a = b:c d = e:f", "entry-point-comma"),
+    ],
+)
+def test_a_text_that_is_no_entry_point_is_explained_by_its_signs(text: str, diagnosis: str) -> None:
+    found = of("build", setup_py(POINT, text), replace(NOTHING, exit_code=1))
+    assert (found.diagnosis, str(found.where)) == (diagnosis, "setup.py:14")
 
 
 def test_a_node_under_another_file_name_that_no_entry_point_leads_to_is_shown() -> None:

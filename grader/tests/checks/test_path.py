@@ -7,7 +7,7 @@ import pytest
 from grader.checks.path import CircleParams, expected_centre
 from grader.outcome import Finding, Status
 from grader.recording import Pose
-from grader.tests.checks.made import every, evidence, finding, node, recording
+from grader.tests.checks.made import NODE_FILE, every, evidence, finding, node, recording
 from grader.tests.checks.shapes import SHAPES
 
 
@@ -55,6 +55,9 @@ def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
 def test_each_other_way_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:
     found = circle(shape)
     assert (found.status, found.diagnosis, found.seen) == (Status.FAILED, diagnosis, seen)
+    publishes = diagnosis in ("stopped-early", "stops-and-goes", "ended-early")
+    line = "" if diagnosis == "intervention" else ":16" if publishes else ":15"
+    assert str(found.where) == f"{NODE_FILE}{line}"
 
 
 def test_a_polygon_with_sides_nearly_as_short_as_steps_fails_too() -> None:

@@ -40,6 +40,8 @@ def rate(shape: str, *changes: tuple[str, str]) -> Finding:
 def test_each_wrong_rhythm_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:
     found = rate(shape)
     assert (found.status, found.diagnosis, found.seen) == (Status.FAILED, diagnosis, seen)
+    lines = {"wrong-rate": 10, "crash": 14}
+    assert str(found.where) == f"{NODE_FILE}:{lines.get(diagnosis, 16)}"
 
 
 def test_the_right_rate_is_told_as_the_nominal_one() -> None:

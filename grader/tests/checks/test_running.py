@@ -94,7 +94,7 @@ def test_another_name_is_shown(names: tuple[str, ...], seen: str) -> None:
 
 def test_a_namespace_is_told_as_such() -> None:
     found = finding("node-name", evidence(recording([], graphs=(graph(("/robot/draw_circle",)),))))
-    assert found.diagnosis == "node-namespace"
+    assert (found.diagnosis, str(found.where)) == ("node-namespace", f"{NODE_FILE}:8")
 
 
 def test_a_node_that_took_the_simulators_name_is_the_submissions() -> None:
@@ -135,7 +135,7 @@ def test_a_subscription_in_place_of_a_publisher_is_told() -> None:
     listening = Endpoint("subscription", "/draw_circle", TOPIC, "geometry_msgs/msg/Twist")
     seen = graph(topic=None)
     found = finding("topic", evidence(recording([], graphs=(replace(seen, endpoints=(*seen.endpoints, listening)),))))
-    assert found.diagnosis == "subscription-instead"
+    assert (found.diagnosis, str(found.where)) == ("subscription-instead", NODE_FILE)
 
 
 def test_a_second_type_beside_twist_fails_the_type_alone() -> None:

@@ -7,7 +7,7 @@ import pytest
 from grader.checks.square import SQUARE
 from grader.outcome import Finding, Status
 from grader.recording import Pose
-from grader.tests.checks.made import TICK_S, evidence, found, legs, recording
+from grader.tests.checks.made import NODE_FILE, TICK_S, evidence, found, legs, recording
 
 TICKS = 10
 Leg = tuple[int, float, float]
@@ -74,6 +74,7 @@ def test_each_other_way_is_told_with_its_side_or_corner_and_by_how_much(
 ) -> None:
     finding = square(parts, Pose(4.0, 4.0, 0.0))
     assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
+    assert str(finding.where) == f"{NODE_FILE}:16"
 
 
 def test_clockwise_is_right_where_the_exercise_allows_it() -> None:
