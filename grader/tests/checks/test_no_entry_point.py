@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.build import Build
 from grader.checks.judge import judge_early
 from grader.outcome import Finding, Status
 from grader.tests.checks.made import BUILD, NODE, NODE_FILE, SETUP_PY, evidence, finding, submission
+
+if TYPE_CHECKING:
+    from grader.build import Build
 
 POINT = '            "draw_circle = my_robot_controller.draw_circle:main",\n'
 NOTHING = replace(BUILD, executables=(), entry_points={})
@@ -86,9 +89,11 @@ def test_comments_that_are_no_entry_point_are_none() -> None:
     assert twice.diagnosis == "entry-point-commented"
 
 
-@pytest.mark.parametrize("build", [{"entry_points": {"draw_cirle": "a.b:c"}}, {"executables": ("draw_cirle",)}])
-def test_an_executable_of_nearly_that_name_is_named(build: dict[str, dict[str, str] | tuple[str, ...]]) -> None:
-    got = found(setup_py(POINT.replace("draw_circle =", "draw_cirle =")), replace(NOTHING, **build))
+@pytest.mark.parametrize(
+    "build", [replace(NOTHING, entry_points={"draw_cirle": "a.b:c"}), replace(NOTHING, executables=("draw_cirle",))]
+)
+def test_an_executable_of_nearly_that_name_is_named(build: Build) -> None:
+    got = found(setup_py(POINT.replace("draw_circle =", "draw_cirle =")), build)
     assert (got.diagnosis, str(got.where)) == ("entry-point-name", "setup.py:14")
     assert got.seen == "There is no executable draw_circle; there is draw_cirle."
 

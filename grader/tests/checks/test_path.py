@@ -1,13 +1,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
-from grader.checks.path import CircleParams, expected_centre
+from grader.checks.path import CIRCLE, CircleParams, expected_centre
 from grader.outcome import Finding, Status
 from grader.recording import Pose
-from grader.tests.checks.made import NODE_FILE, every, evidence, finding, node, recording
+from grader.tests.checks.made import NODE_FILE, Timed, every, evidence, finding, legs, node, recording
+from grader.tests.checks.made import found as found_by
 from grader.tests.checks.shapes import SHAPES
 
 
@@ -58,6 +60,66 @@ def test_each_other_way_fails_for_its_own_reason(shape: str, diagnosis: str, see
     publishes = diagnosis in ("stopped-early", "stops-and-goes", "ended-early")
     line = "" if diagnosis == "intervention" else ":16" if publishes else ":15"
     assert str(found.where) == f"{NODE_FILE}{line}"
+
+
+@pytest.mark.parametrize(
+    ("way", "diagnosis"),
+    [
+        (legs((60, 0.6, 0.0), (15, 0.6, 2.0)), "straight-line"),
+        (legs((20, 0.6, 0.0), (55, 0.6, 0.6)), "not-round"),
+        (legs((30, 0.6, 0.0), (8, 0.0, 2.0), (30, 0.6, 0.0)), "polygon"),
+    ],
+)
+def test_a_way_with_straight_parts_is_told_by_their_number(way: list[Timed], diagnosis: str) -> None:
+    found = finding("circle", evidence(recording(way)))
+    assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:15")
+
+
+def test_a_way_that_is_not_round_is_explained_by_the_commands_or_by_the_end() -> None:
+    assert circle("spiral").cause == "The commands change on the way; a circle needs the same command all the time."
+    frames = SHAPES["spiral"]().frames
+    steady = replace(SHAPES["crash"](), frames=frames)
+    assert finding("circle", evidence(steady)).cause == f"The node crashed: ZeroDivisionError at {NODE_FILE}:14."
+
+
+def test_two_turns_may_be_asked_for() -> None:
+    short = found_by(CIRCLE, evidence(SHAPES["good"]()), radius_m=2.0, turns=2.0)
+    assert (short.diagnosis, short.seen) == ("too-short", "The turtle drove 1.51 of a turn.")
+    assert short.expected == "A circle of radius 2.0 m, counter-clockwise, at least 2 turns."
+
+
+def test_commands_that_differ_ask_for_no_size() -> None:
+    way = [(t_s, 5.0 + t_s, 1.0) for t_s, _, _ in every(0.5, 0.0, 0.0)]
+    found = finding("circle", evidence(recording(way)))
+    assert (found.diagnosis, found.cause) == ("wall", "")
+    unsteady = [(t_s, 1.0, 0.5 + 0.0001 * t_s) for t_s, _, _ in every(0.5, 0.0, 0.0)]
+    short = finding("circle", evidence(recording(unsteady)))
+    assert (short.diagnosis, short.cause) == ("too-short", "")
+
+
+def test_a_large_circle_is_one_and_a_huge_one_is_straight() -> None:
+    for radius_m, diagnosis in ((45.0, "wrong-radius"), (60.0, "straight-line")):
+        found = finding("circle", evidence(recording(every(0.5, 0.5, 0.5 / radius_m), start=Pose(1.0, 5.0, 0.0))))
+        assert found.diagnosis == diagnosis
+
+
+@pytest.mark.parametrize(
+    ("linear", "angular", "diagnosis"),
+    [
+        (0.006, 0.0, "straight-line"),
+        (0.004, 0.0, "not-moving"),
+        (0.0, 0.012, "turns-on-the-spot"),
+        (0.0, 0.009, "not-moving"),
+    ],
+)
+def test_how_little_is_nothing(linear: float, angular: float, diagnosis: str) -> None:
+    found = finding("circle", evidence(recording(every(0.5, linear, angular))))
+    assert found.diagnosis == diagnosis
+
+
+def test_zeros_in_one_field_are_not_all() -> None:
+    only_turning = [(0.5, 0.0, 0.005), (1.0, 0.0, 0.0)]
+    assert finding("circle", evidence(recording(only_turning))).cause == ""
 
 
 def test_a_polygon_with_sides_nearly_as_short_as_steps_fails_too() -> None:

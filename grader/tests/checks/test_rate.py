@@ -6,8 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.checks.log import LOG_RATE
+from grader.checks.rate import RATE
 from grader.outcome import Finding, Status
+from grader.recording import LogLine
 from grader.tests.checks.made import NODE_FILE, every, evidence, finding, node, recording
+from grader.tests.checks.made import found as found_by
 from grader.tests.checks.shapes import SHAPES
 
 TIMER = "self.create_timer(0.5, self.send)"
@@ -54,6 +58,177 @@ def test_an_uneven_rhythm_names_the_worst_interval() -> None:
     found = rate("uneven")
     assert found.diagnosis == "uneven-rate"
     assert found.seen.startswith("Commands came unevenly: 0.71 s passed between two of them")
+
+
+def test_three_commands_are_a_rate() -> None:
+    three = finding("rate", evidence(recording(every(0.5, 2.0, 1.0, until_s=1.7))))
+    assert (three.diagnosis, three.seen) == (
+        "stopped-early",
+        "The last command came at 1.5 s, 8.5 s before the end.",
+    )
+
+
+def test_commands_that_all_come_at_once_have_no_rate() -> None:
+    found = finding("rate", evidence(recording([(0.5, 2.0, 1.0)] * 4)))
+    assert (found.status, found.seen) == (Status.FAILED, "4 commands arrived, one every 0.00 ms.")
+
+
+@pytest.mark.parametrize(
+    ("moved_s", "diagnosis"), [(0.14, None), (0.16, "uneven-rate"), (-0.09, None), (-0.11, "uneven-rate")]
+)
+def test_each_interval_has_limits_of_its_own(moved_s: float, diagnosis: str | None) -> None:
+    times = [0.5 * index + (moved_s if index >= 10 else 0.0) for index in range(1, 20)]
+    made = recording([(t_s, 2.0, 1.0) for t_s in times])
+    limits = {"rate_hz": 2.0, "min_interval_s": 0.4, "max_interval_s": 0.65}
+    found = found_by(RATE, evidence(made), **limits)
+    assert found.diagnosis == diagnosis
+    if diagnosis:
+        assert (
+            found.seen
+            == f"Commands came unevenly: {0.5 + moved_s:.2f} s passed between two of them, 4.5 s after the start."
+        )
+
+
+def test_the_interval_that_is_worst_either_way_is_shown() -> None:
+    times = [0.5, 1.0, 1.1, 1.6, 2.1, 2.9, *(3.4 + 0.5 * index for index in range(13))]
+    found = finding("rate", evidence(recording([(t_s, 2.0, 1.0) for t_s in times])))
+    assert (found.diagnosis, found.seen.split(":")[1].split(" s ")[0]) == ("uneven-rate", " 0.10")
+
+
+@pytest.mark.parametrize(
+    ("changes", "diagnosis", "line", "cause"),
+    [
+        ((), "uneven-rate", 16, ""),
+        (
+            (("        msg = Twist()", "        time.sleep(0.1); msg = Twist()"),),
+            "uneven-rate",
+            16,
+            "The method that calls publish sometimes takes longer than the period.",
+        ),
+        (
+            (("publish(msg)", "publish(msg); self.publisher.publish(msg)"),),
+            "uneven-rate",
+            16,
+            "More than one line calls publish, or more than one timer runs.",
+        ),
+        (
+            ((TIMER, f"{TIMER}; {TIMER}"),),
+            "uneven-rate",
+            16,
+            "More than one line calls publish, or more than one timer runs.",
+        ),
+        (
+            (("        msg = Twist()", f"        {TIMER}; msg = Twist()"),),
+            "timer-in-callback",
+            13,
+            "send makes one more timer",
+        ),
+    ],
+)
+def test_an_uneven_rhythm_is_explained_by_the_source(
+    changes: tuple[tuple[str, str], ...], diagnosis: str, line: int, cause: str
+) -> None:
+    found = rate("uneven", *changes)
+    assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:{line}")
+    assert found.cause.startswith(cause)
+    assert bool(found.cause) == bool(cause)
+
+
+@pytest.mark.parametrize(
+    ("first", "line", "cause"),
+    [
+        ("self.count = 0", 17, ""),
+        ("time.sleep(3)", 9, "The node sleeps before it begins."),
+        ("self.client.wait_for_service()", 17, "Something before it waits, such as wait_for_service."),
+    ],
+)
+def test_a_late_start_is_explained_by_the_source(first: str, line: int, cause: str) -> None:
+    found = rate("late", ('super().__init__("draw_circle")\n', f'super().__init__("draw_circle")\n        {first}\n'))
+    assert (found.diagnosis, str(found.where), found.cause) == ("late-start", f"{NODE_FILE}:{line}", cause)
+
+
+@pytest.mark.parametrize(
+    ("period", "diagnosis"),
+    [
+        ("1.0", "timer-period"),
+        ("1.08", "timer-period"),
+        ("0.92", "timer-period"),
+        ("1.2", "wrong-rate"),
+        ("0.8", "wrong-rate"),
+    ],
+)
+def test_a_timer_explains_a_rate_that_is_nearly_its_own(period: str, diagnosis: str) -> None:
+    found = rate("one hertz", (TIMER, f"self.create_timer({period}, self.send)"))
+    assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:10")
+
+
+@pytest.mark.parametrize(
+    ("length", "diagnosis"),
+    [("1.08", "sleep-period"), ("0.92", "sleep-period"), ("1.2", "wrong-rate"), ("LENGTH", "wrong-rate")],
+)
+def test_a_sleep_explains_a_rate_that_is_nearly_its_own(length: str, diagnosis: str) -> None:
+    found = rate("one hertz", (f"self.timer = {TIMER}", f"time.sleep({length})"))
+    assert (found.diagnosis, str(found.where)) == (
+        diagnosis,
+        f"{NODE_FILE}:{10 if diagnosis == 'sleep-period' else 16}",
+    )
+
+
+def test_a_sleep_of_which_nothing_is_known_explains_nothing() -> None:
+    found = rate("one hertz", ("        msg = Twist()", "        time.sleep(LENGTH); msg = Twist()"))
+    assert (found.diagnosis, str(found.where)) == ("wrong-rate", f"{NODE_FILE}:10")
+
+
+def test_several_timers_with_other_periods_are_told() -> None:
+    found = rate("four hertz", (TIMER, f"{TIMER}\n        self.other = {TIMER}"))
+    assert (found.diagnosis, str(found.where)) == ("several-timers", f"{NODE_FILE}:11")
+
+
+@pytest.mark.parametrize(
+    ("period_s", "diagnosis"), [(2.15, "rate-for-period"), (1.85, "rate-for-period"), (2.25, "timer-period")]
+)
+def test_the_rate_as_a_period_is_told_when_it_is_nearly_that(period_s: float, diagnosis: str) -> None:
+    made = recording(every(period_s, 2.0, 1.0))
+    found = finding("rate", evidence(made, node((TIMER, f"self.create_timer({period_s}, self.send)"))))
+    assert found.diagnosis == diagnosis
+
+
+def test_a_loop_without_a_pause_is_told_with_its_line() -> None:
+    loop = (f"self.timer = {TIMER}", "while True: self.publisher.publish(Twist())")
+    assert (rate("ten kilohertz", loop).diagnosis, str(rate("ten kilohertz", loop).where)) == (
+        "loop-without-pause",
+        f"{NODE_FILE}:10",
+    )
+    slow = recording([(index / 3.9, 2.0, 1.0) for index in range(1, 39)])
+    assert finding("rate", evidence(slow, node(loop))).diagnosis == "wrong-rate"
+    quick = recording([(index / 4.3, 2.0, 1.0) for index in range(1, 43)])
+    assert finding("rate", evidence(quick, node(loop))).diagnosis == "loop-without-pause"
+
+
+@pytest.mark.parametrize(
+    ("shape", "diagnosis", "seen"),
+    [
+        ("ends at once", "ends-at-once", "0 commands arrived in 10 s. The node ended by itself at its start."),
+        (
+            "crash at the start",
+            "crash",
+            "0 commands arrived in 10 s. The node crashed at its start: ZeroDivisionError: division by zero.",
+        ),
+    ],
+)
+def test_too_few_commands_are_explained_by_the_end(shape: str, diagnosis: str, seen: str) -> None:
+    found = rate(shape)
+    assert (found.diagnosis, found.seen) == (diagnosis, seen)
+
+
+def test_log_lines_have_names_of_their_own() -> None:
+    nothing = LogLine(1.0, "INFO", "draw_circle", "Hello 1")
+    limits = {"rate_hz": 1.0, "min_interval_s": 0.8, "max_interval_s": 1.2}
+    some = [evidence(recording([], log=(nothing,) * amount)) for amount in (1, 2)]
+    assert [found_by(LOG_RATE, given, format="Hello {counter}", **limits).diagnosis for given in some] == [
+        "logged-once",
+        "too-few-log-lines",
+    ]
 
 
 def test_a_timer_with_that_period_is_pointed_at() -> None:

@@ -26,6 +26,10 @@ def round_(sides: tuple[float, ...] = (2.0,) * 4, corners: tuple[float, ...] = (
     return [leg for length, turn in zip(sides, corners, strict=True) for leg in (side(length), corner(turn))]
 
 
+GAP = round_((2.1, 2.1, 1.9, 1.9), (96.0, 96.0, 96.0, 90.0))
+"""Each side and corner is right, and together they are not: it ends 0.62 m beside the start."""
+
+
 def square(parts: list[Leg], start: Pose | None = None, **values: str) -> Finding:
     return found(SQUARE, evidence(recording(legs(*parts), start)), side_m=2.0, **values)
 
@@ -63,7 +67,7 @@ def test_a_square_is_one(parts: list[Leg], start: Pose | None) -> None:
         ([(5, 0.0, 0.0)], "not-moving", "The turtle did not drive."),
         (round_((7.5, 2.0, 2.0, 2.0)), "wall", "The turtle ran into a wall."),
         (
-            round_((2.1, 2.1, 1.9, 1.9), (96.0, 96.0, 96.0, 90.0)),
+            GAP,
             "square-gap",
             "The fourth side ends 0.62 m beside the start.",
         ),
@@ -96,3 +100,28 @@ def test_a_way_that_was_driven_by_other_means_is_none() -> None:
 def test_a_side_near_the_edge_is_for_wall_time_to_judge(length: float, near: bool, status: str) -> None:
     finding = square(round_((2.0, length, 2.0, 2.0)))
     assert (finding.near_edge, finding.status.value) == (near, status)
+
+
+@pytest.mark.parametrize(
+    ("parts", "off", "per_s"),
+    [
+        (round_((2.0, 2.0, 2.3, 2.0)), 0.15, 2.3 / (TICKS * TICK_S)),
+        (round_(corners=(90.0, 60.0, 90.0, 90.0)), 23.0, 90.0 / (TICKS * TICK_S)),
+        (GAP, 0.22, 4.0 * 2.1 / (TICKS * TICK_S)),
+    ],
+)
+def test_what_stalls_of_the_machine_may_have_done_is_not_judged(parts: list[Leg], off: float, per_s: float) -> None:
+    for share, status in ((1.05, Status.ERROR), (0.95, Status.FAILED)):
+        stalled = recording(legs(*parts), Pose(4.0, 4.0, 0.0), clock="wall", stalls=((1.0, 1.0 + share * off / per_s),))
+        assert found(SQUARE, evidence(stalled), side_m=2.0).status is status
+
+
+def test_the_corner_after_the_last_side_is_nobodys_business() -> None:
+    parts = [*round_()[:-1], corner(40.0), side(1.0), corner(), side(1.0)]
+    assert square(parts).status is Status.PASSED
+
+
+def test_curves_are_a_share_of_the_whole_way() -> None:
+    curve = (2, 2.0, 0.4)
+    few = [leg for _ in range(4) for leg in (side(1.9), curve, corner(90.0 - math.degrees(0.8 * TICK_S)))]
+    assert square(few, Pose(4.0, 4.0, 0.0)).diagnosis == "curves"

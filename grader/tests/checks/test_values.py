@@ -4,8 +4,10 @@ import math
 
 import pytest
 
+from grader.checks.values import VALUES
 from grader.outcome import Finding, Status
 from grader.tests.checks.made import NODE_FILE, every, evidence, finding, recording
+from grader.tests.checks.made import found as found_by
 from grader.tests.checks.shapes import SHAPES, fields
 
 
@@ -44,6 +46,60 @@ def test_where_nothing_arrives_no_value_is_called_wrong() -> None:
     found = values("no messages")
     assert (found.diagnosis, found.seen) == ("no-commands", "No command arrived.")
     assert found.expected == "linear.x 2.0 m/s and angular.z 1.0 rad/s, all other fields 0."
+
+
+@pytest.mark.parametrize(
+    ("linear", "angular", "diagnosis", "line"),
+    [
+        ((2.0, 0.0, 0.0), (0.0, 0.0, 0.0), "wrong-value", 15),
+        ((2.0, 0.0, 0.0), (0.0, 1.0, 0.0), "wrong-field", 13),
+        ((2.0, 0.0, 3.0), (0.0, 0.0, 1.0), "wrong-value", 13),
+        ((-2.0, 0.0, 0.0), (0.0, 0.0, 1.0), "wrong-sign", 14),
+        ((2.0, 0.0, 0.0), (0.0, 0.0, math.radians(1.0)), "degrees", 15),
+        ((math.degrees(2.0), 0.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
+        ((2.0, 0.0, 0.0), (math.inf, 0.0, -1.0), "not-a-number", 13),
+        ((1.0, 0.0, 0.0), (0.0, 0.0, 2.01), "wrong-value", 14),
+        ((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
+        ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
+        ((1.0, 2.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
+    ],
+)
+def test_a_command_tells_which_mistake_it_is(
+    linear: tuple[float, float, float], angular: tuple[float, float, float], diagnosis: str, line: int
+) -> None:
+    found = finding("values", evidence(fields(linear, angular)))
+    assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:{line}")
+
+
+def test_where_turning_is_as_fast_as_driving_nothing_can_be_swapped() -> None:
+    given = evidence(recording(every(0.5, 1.0, 1.0)))
+    assert found_by(VALUES, given, linear_x_m_s=1.0, angular_z_rad_s=1.0).status is Status.PASSED
+    other = evidence(recording(every(0.5, 1.0, 0.5)))
+    assert found_by(VALUES, other, linear_x_m_s=1.0, angular_z_rad_s=1.0).diagnosis == "wrong-value"
+
+
+def test_a_turtle_that_should_stand_still_and_drives_is_wrong() -> None:
+    still = found_by(VALUES, evidence(recording(every(0.5, 0.0, 0.0))))
+    assert (still.status, still.seen) == (Status.PASSED, "Every command says All fields 0.")
+    moving = found_by(VALUES, evidence(recording(every(0.5, 1.0, 0.0))))
+    assert (moving.diagnosis, moving.expected) == ("wrong-value", "All fields 0.")
+
+
+def test_a_field_in_the_wrong_place_is_told_with_what_it_does() -> None:
+    assert values("linear.y").cause.endswith("the turtle drives along linear.x only.")
+    assert values("angular.x").cause.endswith("on a plane a robot turns about the axis that points up.")
+
+
+def test_some_wrong_commands_of_a_known_kind_keep_their_name() -> None:
+    some = [*every(0.5, 2.0, 1.0)[:-1], (9.504, 2.0, -1.0)]
+    found = finding("values", evidence(recording(some)))
+    assert (found.diagnosis, found.seen) == ("wrong-sign", "1 of 19 commands was wrong: angular.z -1.0 rad/s.")
+    two = [*every(0.5, 2.0, 1.0)[:-2], (9.0, 2.0, 1.5), (9.504, 2.0, 1.25)]
+    found = finding("values", evidence(recording(two)))
+    assert (found.diagnosis, found.seen) == (
+        "values-change",
+        "2 of 19 commands were wrong: angular.z 1.5 rad/s in the first of them.",
+    )
 
 
 @pytest.mark.parametrize("field", range(6))
