@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.tests.mutation.recordings import Recorded
 
 CHECKS = ROOT / "grader" / "checks"
-MAKES_DIAGNOSES = re.compile(r"\bfailed\(|diagnosis")
+MAKES_DIAGNOSES = re.compile(r"\b(failed|Cause)\(|diagnosis")
 NOT_THESE = frozenset({"judge.py", "kind.py", "kinds.py"})
 """They carry diagnoses from one place to another, and make none."""
 WORST = 0.10
@@ -44,17 +44,25 @@ def main(argv: Sequence[str] | None = None) -> int:
     asked = _arguments(argv)
     begun = time.monotonic()
     files = [path.resolve() for path in asked.files] or diagnosis_files()
-    materials = _materials(make=not asked.recorded)
-    _tell(f"{len(materials)} cases, {len(files)} files")
     mutants = [mutant for file in files for mutant in mutants_of(file)][:: asked.every]
     equal = equivalent.read()
     counted = [mutant for mutant in mutants if not equivalent.is_known(mutant, equal)]
-    by_case = _unnoticed(counted, judging.touched(materials.values(), files), _by_cases(materials), asked.jobs)
-    _tell(f"{len(by_case)} of {len(counted)} are noticed by no case")
-    survivors = by_case if asked.cases else _unnoticed(by_case, unit.touched(files), unit.fail, asked.jobs)
+    by_case = counted if asked.units else _unnoticed_by_cases(counted, files, asked)
+    survivors = (
+        by_case if asked.cases else _unnoticed(by_case, judging.who_runs, unit.touched(files), unit.fail, asked.jobs)
+    )
     _print(files, counted, by_case, survivors, len(mutants) - len(counted))
     _tell(f"{time.monotonic() - begun:.0f} s")
     return 1 if len(survivors) > WORST * len(counted) else 0
+
+
+def _unnoticed_by_cases(mutants: Sequence[Mutant], files: Sequence[Path], asked: argparse.Namespace) -> list[Mutant]:
+    materials = _materials(make=not asked.recorded)
+    _tell(f"{len(materials)} cases, {len(files)} files")
+    lines = judging.touched(materials.values(), files)
+    survived = _unnoticed(mutants, judging.asked, lines, _by_cases(materials), asked.jobs)
+    _tell(f"{len(survived)} of {len(mutants)} are noticed by no case")
+    return survived
 
 
 def _materials(*, make: bool) -> dict[str, judging.Material]:
@@ -86,12 +94,16 @@ def _by_cases(materials: Mapping[str, judging.Material]) -> Callable[[Iterable[s
 
 
 def _unnoticed(
-    mutants: Sequence[Mutant], lines: judging.Lines, notice: Callable[[Iterable[str]], bool], at_once: int
+    mutants: Sequence[Mutant],
+    ask: Callable[[Mutant, judging.Lines], Iterable[str]],
+    lines: judging.Lines,
+    notice: Callable[[Iterable[str]], bool],
+    at_once: int,
 ) -> list[Mutant]:
-    """The mutants that nobody who runs their lines notices."""
+    """The mutants that nobody notices of those who are to be asked."""
 
     def job(mutant: Mutant) -> judging.Job:
-        names = judging.who_runs(mutant, lines)
+        names = ask(mutant, lines)
         return judging.Job(mutant, lambda: notice(names))
 
     survived: list[Mutant] = []
@@ -112,7 +124,9 @@ def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help="only these (all that make diagnoses)")
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count() or 1, help="at once (one a processor)")
     parser.add_argument("--recorded", action="store_true", help="judge by the recordings that are there, make none")
-    parser.add_argument("--cases", action="store_true", help="leave the tests of single checks out, which take longest")
+    only = parser.add_mutually_exclusive_group()
+    only.add_argument("--cases", action="store_true", help="leave the tests of single checks out, which take longest")
+    only.add_argument("--units", action="store_true", help="leave the cases out, and their recordings")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="only each Nth mutant: an estimate")
     return parser.parse_args(argv)
 
@@ -133,7 +147,7 @@ def _print(
     share, cases = (len(each) / len(mutants) if mutants else 0.0 for each in (survivors, by_case))
     print(
         f"\n{len(mutants)} mutants, {len(mutants) - len(survivors)} killed, {len(survivors)} survived: {share:.1%}\n"
-        f"By the cases alone {cases:.1%} would survive; {known} more are known to change nothing."
+        f"Without the tests of single checks {cases:.1%} would; {known} more are known to change nothing."
     )
 
 

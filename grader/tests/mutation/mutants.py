@@ -1,4 +1,9 @@
-"""Mutants: one file of the grader, changed in one place; by the operators of mutmut and two of our own."""
+"""Mutants: one file of the grader, changed in one place; by the operators of mutmut and some of our own.
+
+What decides is changed, and what is only said is not: no text, no choice between two texts, no number that is shown.
+Left alone are also declarations, the parameters of a kind of check with their defaults, and what tells a value near an
+edge, which decides about the clock; the tests of these are in grader/tests/checks.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +20,8 @@ from libcst.metadata import (
 )
 from mutmut.mutation import mutators
 
+from grader.checks.diagnoses import DIAGNOSES
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
@@ -28,9 +35,14 @@ LEFT_OUT = {
     mutators.operator_match,
 }
 """What a finding says in words is not what it diagnoses, and is tested elsewhere; a match goes over several lines."""
+IDS = frozenset(DIAGNOSES)
+"""A text that is one of them is no mere text."""
 WORDS = frozenset({"shorten", "a_list", "count", "shown"})
 """Functions that make words: numbers in their arguments change no diagnosis."""
 STRINGS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
+MAKERS = {"failed": None, "Cause": 2}
+"""What makes a diagnosis of its id, its first argument; and where the place to look at may stand without a keyword."""
+OTHER = cst.SimpleString('"another"')
 KINDS = OUT, ALWAYS, NAME, PLACE, DETAIL = ("taken out", "always", "other name", "no place", "detail")
 """What a change does to the code of a diagnosis; a detail is what mutmut's operators change."""
 Change = tuple[str, cst.CSTNode, cst.CSTNode]
@@ -97,16 +109,18 @@ def _changes(node: cst.CSTNode) -> Iterator[Change]:
         yield ALWAYS, node.test, cst.Name("True")
     if isinstance(node, cst.Return | cst.Expr | cst.AugAssign | cst.Continue | cst.Break):
         yield OUT, node, cst.Pass()
-    if isinstance(node, cst.Call) and isinstance(node.func, cst.Name) and node.func.value == "failed":
-        yield from _diagnosis_changes(node)
+    if isinstance(node, cst.Call) and isinstance(node.func, cst.Name) and node.func.value in MAKERS:
+        yield NAME, node.args[0].value, OTHER
+        yield from ((PLACE, place, cst.Name("None")) for place in _places(node, MAKERS[node.func.value]))
+    if _is_id(node):
+        yield NAME, node, OTHER
 
 
-def _diagnosis_changes(call: cst.Call) -> Iterator[Change]:
-    """Another diagnosis; no place to look at."""
-    yield NAME, call.args[0].value, cst.SimpleString('"another"')
-    for argument in call.args:
-        if argument.keyword is not None and argument.keyword.value == "where":
-            yield PLACE, argument.value, cst.Name("None")
+def _places(call: cst.Call, index: int | None) -> Iterator[cst.BaseExpression]:
+    """The arguments of a call that are the place to look at: by their name, or at this index."""
+    for number, argument in enumerate(call.args):
+        if number == index if argument.keyword is None else argument.keyword.value == "where":
+            yield argument.value
 
 
 def _is_words(assignment: cst.Assign) -> bool:
@@ -114,9 +128,20 @@ def _is_words(assignment: cst.Assign) -> bool:
     value, target = assignment.value, assignment.targets[0].target
     if isinstance(target, cst.Name) and target.value.startswith("near"):
         return True
-    if isinstance(value, cst.IfExp):
-        return isinstance(value.body, STRINGS) and isinstance(value.orelse, STRINGS)
-    return isinstance(value, STRINGS)
+    return _is_text(value) or _chooses_text(value)
+
+
+def _is_text(value: cst.CSTNode) -> bool:
+    """Whether it is a text to be read, and no diagnosis."""
+    return isinstance(value, STRINGS) and not _is_id(value)
+
+
+def _is_id(node: cst.CSTNode) -> bool:
+    return isinstance(node, cst.SimpleString) and node.evaluated_value in IDS
+
+
+def _chooses_text(value: cst.CSTNode) -> bool:
+    return isinstance(value, cst.IfExp) and _is_text(value.body) and _is_text(value.orelse)
 
 
 def _statement(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> cst.CSTNode | None:
@@ -129,7 +154,7 @@ def _statement(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) ->
 
 def _idle(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool:
     """Whether the node only declares something, or only says it in words."""
-    if _is_docstring(node, parents):
+    if _is_docstring(node, parents) or _chooses_text(node):
         return True
     before, here = node, parents.get(node)
     while here is not None:
@@ -138,6 +163,8 @@ def _idle(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool
         if isinstance(here, cst.Annotation | cst.Decorator | cst.FormattedString | cst.ImportFrom | cst.ClassDef):
             return True
         if isinstance(here, cst.Call) and isinstance(here.func, cst.Name) and here.func.value in (*WORDS, "Kind"):
+            return True
+        if _chooses_text(here):
             return True
         if isinstance(here, cst.Arg) and here.keyword is not None and here.keyword.value == "near_edge":
             return True
