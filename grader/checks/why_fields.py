@@ -28,7 +28,8 @@ def why_field(scene: Scene) -> Cause | None:
     field, wanted = match["field"], match["type"]
     if wanted not in FLOAT:
         return Cause("field-type", f"The field {field} is itself a {wanted}, with parts of its own: set those.")
-    return _why_no_float(field, _resolved(scene, _assigned(scene, field)))
+    value = _assigned(scene, field)
+    return _why_no_float(field, value and _resolved(scene, value))
 
 
 def _why_no_float(field: str, value: ast.expr | None) -> Cause:
@@ -67,8 +68,7 @@ def _assigned(scene: Scene, field: str) -> ast.expr | None:
     return None
 
 
-def _resolved(scene: Scene, value: ast.expr | None) -> ast.expr | None:
-    """The expression, or the one that its name stands for."""
-    name = dotted(value) if value is not None else None
-    found = scene.module.names.get(name) if name is not None and scene.module is not None else None
-    return found if found is not None else value
+def _resolved(scene: Scene, value: ast.expr) -> ast.expr:
+    """The expression, which stands in the scene, or the one that its name stands for."""
+    assert scene.module is not None
+    return scene.module.names.get(dotted(value) or "") or value

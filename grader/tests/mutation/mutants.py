@@ -86,13 +86,24 @@ def mutants_of(file: Path) -> list[Mutant]:
         if statement is None or _idle(node, parents):
             continue
         place = _lines(statement, positions)
-        for kind, old, new in _changes(node):
+        for kind, old, new in () if _says_nothing(node, parents) else _changes(node):
             lead = "if " if isinstance(node, cst.If) else ""
             change = f"{lead}{_told(wrapper.module, old)} -> {lead}{_told(wrapper.module, new)}"
             source = spliced(old, new)
             found.setdefault(source, Mutant(file, *place, kind, change, source, _at_import(statement, parents)))
     found.pop(text, None)
     return sorted(found.values(), key=lambda mutant: mutant.line)
+
+
+def _says_nothing(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool:
+    """Whether it is the `return None` at the end of a function, which it would return all the same."""
+    if not (isinstance(node, cst.Return) and isinstance(node.value, cst.Name) and node.value.value == "None"):
+        return False
+    line = parents[node]
+    block = parents[line]
+    return (
+        isinstance(parents[block], cst.FunctionDef) and isinstance(block, cst.IndentedBlock) and block.body[-1] is line
+    )
 
 
 def _changes(node: cst.CSTNode) -> Iterator[Change]:

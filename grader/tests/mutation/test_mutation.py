@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import multiprocessing
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
 from grader.tests.case import CASES, ROOT, read_case
 from grader.tests.mutation import equivalent, judging
-from grader.tests.mutation.mutants import Mutant, mutants_of
+from grader.tests.mutation.mutants import DETAIL, Mutant, mutants_of
 from grader.tests.mutation.recordings import Recorded, recordings
 
 if TYPE_CHECKING:
@@ -48,6 +49,27 @@ def test_what_decides_is_changed_and_words_and_declarations_are_not(tmp_path: Pa
     assert (12, "if value > LIMIT -> if False") in found
     assert (13, '"too-large" -> "another"') in found
     assert (13, 'return failed("too-large", seen, where=where) -> pass') in found
+
+
+CHOICES = """
+def check(value):
+    told = "it is large" if value > 1 else "it is small"
+    told = "what is said"
+    diagnosis = "no-slash" if value > 2 else "capitals"
+    diagnosis = "no-slash"
+    if value > 3:
+        return None
+    Cause(diagnosis, told, value)
+    return None
+"""
+
+
+def test_ids_are_changed_wherever_they_stand_and_what_is_said_nowhere(tmp_path: Path) -> None:
+    found = changes(tmp_path, CHOICES)
+    assert sorted({line for line, _ in found}) == [5, 6, 7, 8, 9]
+    assert [line for line, change in found if change == '"no-slash" -> "another"'] == [5, 6]
+    assert (5, '"capitals" -> "another"') in found
+    assert {(9, 'diagnosis -> "another"'), (9, "value -> None")} < set(found)
 
 
 def test_a_mutant_is_python_with_one_change(tmp_path: Path) -> None:
@@ -99,6 +121,15 @@ def _noticed(recorded: list[Recorded], mutants: Sequence[Mutant]) -> dict[str, b
 def test_a_case_notices_that_its_diagnosis_was_taken_out(recorded: list[Recorded]) -> None:
     found = noticed(recorded, 'return "no-slash"')
     assert all(found.values()), found
+
+
+def test_of_those_that_see_a_file_alike_three_are_asked(tmp_path: Path) -> None:
+    file = tmp_path / "a.py"
+    mutant = Mutant(file, 3, 3, DETAIL, "", "")
+    deep, flat = {"a", "b", "c", "d", "e"}, {"f"}
+    lines = {(file, 1): {*deep, *flat, "g"}, (file, 3): {*deep, *flat}, (file, 4): deep, (tmp_path / "b.py", 1): {"a"}}
+    assert judging.asked(mutant, lines) == ["a", "b", "c", "f"]
+    assert judging.asked(replace(mutant, at_import=True), lines) == ["a", "b", "c", "d", "e", "f", "g"]
 
 
 def test_what_no_case_runs_survives(recorded: list[Recorded]) -> None:
