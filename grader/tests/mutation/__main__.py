@@ -26,6 +26,8 @@ CHECKS = ROOT / "grader" / "checks"
 MAKES_DIAGNOSES = re.compile(r"\b(failed|Cause)\(|diagnosis")
 NOT_THESE = frozenset({"judge.py", "kind.py", "kinds.py"})
 """They carry diagnoses from one place to another, and make none."""
+ALIKE_CASES, ALIKE_TESTS = 3, 12
+"""So many of those that run the same lines of a file are asked about its mutants; tests differ more than cases do."""
 WORST = 0.10
 """More survivors than this share fail the run."""
 
@@ -48,9 +50,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     equal = equivalent.read()
     counted = [mutant for mutant in mutants if not equivalent.is_known(mutant, equal)]
     by_case = counted if asked.units else _unnoticed_by_cases(counted, files, asked)
-    survivors = (
-        by_case if asked.cases else _unnoticed(by_case, judging.who_runs, unit.touched(files), unit.fail, asked.jobs)
-    )
+    survivors = by_case if asked.cases else _unnoticed(by_case, unit.touched(files), ALIKE_TESTS, unit.fail, asked.jobs)
     _print(files, counted, by_case, survivors, len(mutants) - len(counted))
     _tell(f"{time.monotonic() - begun:.0f} s")
     return 1 if len(survivors) > WORST * len(counted) else 0
@@ -60,7 +60,7 @@ def _unnoticed_by_cases(mutants: Sequence[Mutant], files: Sequence[Path], asked:
     materials = _materials(make=not asked.recorded)
     _tell(f"{len(materials)} cases, {len(files)} files")
     lines = judging.touched(materials.values(), files)
-    survived = _unnoticed(mutants, judging.asked, lines, _by_cases(materials), asked.jobs)
+    survived = _unnoticed(mutants, lines, ALIKE_CASES, _by_cases(materials), asked.jobs)
     _tell(f"{len(survived)} of {len(mutants)} are noticed by no case")
     return survived
 
@@ -95,15 +95,15 @@ def _by_cases(materials: Mapping[str, judging.Material]) -> Callable[[Iterable[s
 
 def _unnoticed(
     mutants: Sequence[Mutant],
-    ask: Callable[[Mutant, judging.Lines], Iterable[str]],
     lines: judging.Lines,
+    alike: int,
     notice: Callable[[Iterable[str]], bool],
     at_once: int,
 ) -> list[Mutant]:
-    """The mutants that nobody notices of those who are to be asked."""
+    """The mutants that nobody notices of those who run their lines, `alike` of those who do so alike."""
 
     def job(mutant: Mutant) -> judging.Job:
-        names = ask(mutant, lines)
+        names = judging.asked(mutant, lines, alike)
         return judging.Job(mutant, lambda: notice(names))
 
     survived: list[Mutant] = []

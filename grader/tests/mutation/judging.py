@@ -34,8 +34,6 @@ Lines = dict[tuple["Path", int], set[str]]
 
 PACKAGE = "grader.checks"
 SURVIVED, KILLED = 0, 1
-ALIKE = 3
-"""So many cases that run the same lines of a file are asked about its mutants."""
 LIMIT_S = 60
 """CPU time after which a mutant is one that never ends, which is noticed as well; a loaded machine changes nothing."""
 
@@ -151,8 +149,8 @@ def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
     return {name for number in numbers for name in lines.get((mutant.file, number), ())}
 
 
-def asked(mutant: Mutant, lines: Lines) -> list[str]:
-    """Of those who run the mutant's lines, at most `ALIKE` that run the same lines of its file.
+def asked(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
+    """Of those who run the mutant's lines, at most so many that are alike: that run the same lines of its file.
 
     Hundreds of cases pass a check in the same way. So a mutant may seem to survive that one of the others would notice,
     never the other way round.
@@ -165,10 +163,10 @@ def asked(mutant: Mutant, lines: Lines) -> list[str]:
         if file == mutant.file:
             for name in who & runs.keys():
                 runs[name].add(line)
-    chosen: dict[frozenset[int], list[str]] = {}
+    groups: dict[frozenset[int], list[str]] = {}
     for name, ran in runs.items():
-        chosen.setdefault(frozenset(ran), []).append(name)
-    return [name for alike in chosen.values() for name in alike[:ALIKE]]
+        groups.setdefault(frozenset(ran), []).append(name)
+    return [name for group in groups.values() for name in group[:alike]]
 
 
 def install(mutant: Mutant) -> None:

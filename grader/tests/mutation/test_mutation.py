@@ -128,8 +128,8 @@ def test_of_those_that_see_a_file_alike_three_are_asked(tmp_path: Path) -> None:
     mutant = Mutant(file, 3, 3, DETAIL, "", "")
     deep, flat = {"a", "b", "c", "d", "e"}, {"f"}
     lines = {(file, 1): {*deep, *flat, "g"}, (file, 3): {*deep, *flat}, (file, 4): deep, (tmp_path / "b.py", 1): {"a"}}
-    assert judging.asked(mutant, lines) == ["a", "b", "c", "f"]
-    assert judging.asked(replace(mutant, at_import=True), lines) == ["a", "b", "c", "d", "e", "f", "g"]
+    assert judging.asked(mutant, lines, 3) == ["a", "b", "c", "f"]
+    assert judging.asked(replace(mutant, at_import=True), lines, 3) == ["a", "b", "c", "d", "e", "f", "g"]
 
 
 def test_what_no_case_runs_survives(recorded: list[Recorded]) -> None:
