@@ -59,7 +59,7 @@ def _script(evidence: Evidence) -> Cause | None:
     script = next(iter(found), None)
     if script is None:
         return None
-    first = files[script].split(b"\n", 1)[0].decode("utf-8", "replace")
+    first = files[script].partition(b"\n")[0].decode("utf-8", "replace")
     if not (first.startswith("#!") and "python" in first and not first.endswith("\r")):
         text = (
             f'{script} is installed as a script, and its first line, "{shorten(first, 40)}", does not lead to Python.'

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 INCOMPATIBLE = "incompatible QoS"
 """What rclpy logs of two ends of a topic that cannot talk to each other."""
-ASYNC = ("spin_until_future_complete", "call")
 ALWAYS = ("True", "1", "rclpy.ok()")
 
 

@@ -85,6 +85,7 @@ def test_comments_that_are_no_entry_point_are_none() -> None:
         assert found(setup_py(f"            # {comment}\n")).diagnosis == "entry-point-missing"
     text = '            "# draw_circle = in a text",\n'
     assert found(setup_py(text)).diagnosis != "entry-point-commented"
+    assert found(setup_py("            # draw_circle =\n")).diagnosis == "entry-point-commented"
     twice = found(setup_py("            # draw_circle = my_robot_controller.draw_circle:main = x\n"))
     assert twice.diagnosis == "entry-point-commented"
 

@@ -52,6 +52,7 @@ SUBSCRIBES = 'self.create_subscription(Pose, "/turtle1/pose", self.send, 10)'
     [
         (SUBSCRIBES, "publish(msg)", FRAME_S, True),
         ('self.create_subscription(Pose, "/pose", qos_profile=1, callback=self.send)', "publish(msg)", FRAME_S, True),
+        (SUBSCRIBES.replace("self.send", "self.driver.send"), "publish(msg)", FRAME_S, True),
         (SUBSCRIBES, "publish(msg)", 1.09 * FRAME_S, True),
         (SUBSCRIBES, "publish(msg)", 0.91 * FRAME_S, True),
         (SUBSCRIBES, "publish(msg)", 1.11 * FRAME_S, False),
