@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import signal
+import sys
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +16,7 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
+from grader.ros import FASTDDS_PROFILE
 from grader.ros2.failure import Ros2Error
 
 if TYPE_CHECKING:
@@ -27,6 +30,9 @@ DEADLINE_S = 3.0
 """For participants that are there (their ports are open) but say nothing, as a stopped process."""
 NOTHING_THERE_S = 0.5
 """How long to listen where it cannot be known whether anybody is there: as long as the real one does."""
+LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
+"""How the nodes of the commands hear others of this machine."""
+_RANGE, _PROFILE = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"
 _POLL_S = 0.01
 _WAKE_S = 0.1
 """Python's own handling of Ctrl-C waits for calls into rclpy to return."""
@@ -44,6 +50,8 @@ def cli_node(name: str | None = None) -> Iterator[Node]:
         Ros2Error: it could not be made: say, the domain id is wrong.
     """
     _check_domain()
+    _leave_shared_memory_out()
+    _leave_generator_out()
     # No log file for a look at the graph. Signals stay Python's, since rclpy's shut down in the middle of a verb.
     arguments = ["--ros-args", "--disable-external-lib-logs"]
     try:
@@ -67,6 +75,27 @@ def cli_node(name: str | None = None) -> Iterator[Node]:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         node.destroy_node()
         rclpy.try_shutdown()
+
+
+def _leave_shared_memory_out() -> None:
+    """Under LOCALHOST, rmw_fastrtps adds shared memory whatever a profile says; loopback.xml says why not here."""
+    if os.environ.get(_RANGE) == "LOCALHOST" and os.environ.get(_PROFILE) == str(FASTDDS_PROFILE):
+        os.environ.update({_RANGE: "SYSTEM_DEFAULT", _PROFILE: str(LOOPBACK_PROFILE)})
+
+
+def _this_machine_only() -> bool:
+    return os.environ.get(_RANGE) == "LOCALHOST" or os.environ.get(_PROFILE) == str(LOOPBACK_PROFILE)
+
+
+def _leave_generator_out() -> None:
+    """Import rosidl_generator_py without its templates and parser, a seventh of what a verb computes before it listens.
+
+    Message modules take one small function from it, and it does without the rest where `em` is not installed.
+    """
+    if "em" not in sys.modules:
+        sys.modules["em"] = None  # type: ignore[assignment]
+        importlib.import_module("rosidl_generator_py")
+        del sys.modules["em"]
 
 
 def _check_domain() -> None:
@@ -137,7 +166,7 @@ def _complete(node: Node, waited_s: float) -> bool:
     heard = {bytes(endpoint.endpoint_gid[:12]) for endpoint in endpoints}
     if any(endpoint.node_name == _UNKNOWN for endpoint in endpoints):
         return False
-    if expected is None or os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE") != "LOCALHOST":
+    if expected is None or not _this_machine_only():
         return waited_s >= NOTHING_THERE_S and len(heard) >= (expected or 0)
     return len(heard) >= expected
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -12,7 +13,6 @@ from grader.tests.ros2.world import World, world
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 
 @pytest.fixture(scope="module")
@@ -125,6 +125,18 @@ def test_ctrl_c_ends_a_verb_quietly(command: str, ready: str | None, still: Worl
             assert running.process.poll() is None
     assert running.stop() == 2
     assert "Traceback" not in "\n".join(running.lines)
+
+
+def test_a_verb_hears_by_loopback_and_nothing_else(still: World) -> None:
+    running = still.start("ros2 topic hz /turtle1/pose", "average rate")
+    process = Path("/proc", str(running.process.pid))
+    assert "/dev/shm/fastrtps_" not in (process / "maps").read_text()
+    sockets = {link.readlink().name for link in (process / "fd").iterdir() if link.is_symlink()}
+    rows = [row.split() for row in (process / "net/udp").read_text().splitlines()[1:]]
+    addresses = {row[1].partition(":")[0] for row in rows if f"socket:[{row[9]}]" in sockets}
+    multicast = "0100FFEF"
+    assert addresses - {multicast} == {"0100007F"}
+    running.stop()
 
 
 def test_whoever_is_stopped_leaves_the_graph(still: World) -> None:
