@@ -74,6 +74,8 @@ def test_a_command_tells_which_mistake_it_is(
 def test_where_turning_is_as_fast_as_driving_nothing_can_be_swapped() -> None:
     given = evidence(recording(every(0.5, 1.0, 1.0)))
     assert found_by(VALUES, given, linear_x_m_s=1.0, angular_z_rad_s=1.0).status is Status.PASSED
+    aside = evidence(fields((1.0, 3.0, 0.0), (0.0, 0.0, 1.0)))
+    assert found_by(VALUES, aside, linear_x_m_s=1.0, angular_z_rad_s=1.0).diagnosis == "wrong-value"
     other = evidence(recording(every(0.5, 1.0, 0.5)))
     assert found_by(VALUES, other, linear_x_m_s=1.0, angular_z_rad_s=1.0).diagnosis == "wrong-value"
 

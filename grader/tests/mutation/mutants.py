@@ -1,8 +1,8 @@
 """Mutants: one file of the grader, changed in one place; by the operators of mutmut and some of our own.
 
 What decides is changed, and what is only said is not: no text, no choice between two texts, no number that is shown.
-Left alone are also declarations, the parameters of a kind of check with their defaults, and what tells a value near an
-edge, which decides about the clock; the tests of these are in grader/tests/checks.
+Left alone are also declarations, the parameters of a kind of check with their defaults, the `strict` of zip, and what
+tells a value near an edge, which decides about the clock; the tests of these are in grader/tests/checks.
 """
 
 from __future__ import annotations
@@ -177,7 +177,7 @@ def _idle(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool
             return True
         if _chooses_text(here):
             return True
-        if isinstance(here, cst.Arg) and here.keyword is not None and here.keyword.value == "near_edge":
+        if isinstance(here, cst.Arg) and here.keyword is not None and here.keyword.value in ("near_edge", "strict"):
             return True
         before, here = here, parents.get(here)
     return False
