@@ -90,7 +90,8 @@ def bad_entry_point(point: EntryPoint) -> Finding:
 
 def _broken(evidence: Evidence) -> Finding:
     build, setup = evidence.built, evidence.setup_py
-    bad = next((point for point in (setup.entry_points if setup else None) or () if point.target is None), None)
+    assert setup is not None
+    bad = next((point for point in setup.entry_points or () if point.target is None), None)
     if bad is not None:
         return bad_entry_point(bad)
     log = SETUP_PY_FRAME.sub(r'\g<before>"setup.py"', build.log)
