@@ -42,6 +42,11 @@ class Module:
         """The names that are assigned, with their expressions."""
         return {} if self.tree is None else single_names(self.tree)
 
+    @property
+    def body(self) -> list[ast.stmt]:
+        """The statements of the top level."""
+        return [] if self.tree is None else self.tree.body
+
     @cached_property
     def nodes(self) -> tuple[ast.AST, ...]:
         """Every node of the tree."""

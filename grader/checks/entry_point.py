@@ -80,7 +80,6 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
         cause = "A module is named without the ending .py."
         return failed("entry-point-py", seen, expected, cause, where=line(evidence))
     if module_name in evidence.exercise.package or "." not in module_name:
-        guess = None
         cause = "The folder comes first, then a point, then the file without its .py."
     else:
         guess = nearest(module_name, modules)
@@ -138,11 +137,7 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
 
 def _is_top_level(module: Module, call: ast.Call) -> bool:
     """Whether the call is rclpy.init or rclpy.spin, outside of every function."""
-    top = [
-        node
-        for node in (module.tree.body if module.tree is not None else [])
-        if isinstance(node, ast.Expr | ast.Assign)
-    ]
+    top = [node for node in module.body if isinstance(node, ast.Expr | ast.Assign)]
     return dotted(call.func) in ("rclpy.init", "rclpy.spin") and any(call in ast.walk(node) for node in top)
 
 
@@ -157,7 +152,7 @@ def early(evidence: Evidence, _: NoParams) -> Finding | None:
 
 def _bindings(module: Module, name: str) -> Iterator[ast.stmt]:
     """The statements of the module's top level (blocks of if, try and with opened) that give the name a value."""
-    waiting = list(module.tree.body) if module.tree is not None else []
+    waiting = list(module.body)
     while waiting:
         node = waiting.pop(0)
         if _binds(node, name):

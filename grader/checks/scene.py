@@ -73,8 +73,7 @@ class Scene:
 
     def top_functions(self) -> list[Function]:
         """The functions of the module's top level."""
-        tree = self.module.tree if self.module is not None else None
-        return [node for node in (tree.body if tree is not None else []) if isinstance(node, Function)]
+        return [node for node in (self.module.body if self.module is not None else []) if isinstance(node, Function)]
 
     def functions(self, name: str) -> list[Function]:
         """Every function or method of this name."""

@@ -90,6 +90,7 @@ def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: 
 def test_a_silent_log_is_explained_by_the_source(node: str, stdout: str, diagnosis: str) -> None:
     finding = in_format((), node=node, stdout=stdout)
     assert (finding.diagnosis, finding.where is not None) == (diagnosis, True)
+    assert finding.seen == ("The lines are printed, and not logged." if stdout else "The node logged nothing.")
 
 
 def test_a_crash_explains_a_silent_log() -> None:

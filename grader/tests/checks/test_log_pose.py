@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from grader.checks.log_pose import LOG_DISTANCE, LOG_POSITION
 from grader.outcome import Finding, Status
 from grader.recording import LogLine
-from grader.tests.checks.made import NODE_FILE, evidence, found, legs, node, recording
+from grader.tests.checks.made import NODE_FILE, evidence, found, frames, legs, node, recording
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -62,8 +63,19 @@ def test_the_truth_is_right_also_when_it_is_a_little_old(lag_s: float) -> None:
     assert distance(truth(lag_s)).seen == "Each line says how far the turtle has driven."
 
 
-def test_what_is_a_second_old_is_wrong() -> None:
+def test_what_is_a_second_old_or_half_a_second_ahead_is_wrong() -> None:
     assert position(truth(1.0)).diagnosis == "wrong-position"
+    assert position(truth(-0.5)).diagnosis == "wrong-position"
+
+
+def test_lines_after_the_last_frame_speak_of_that() -> None:
+    trial = logged(truth())
+    short = replace(trial, frames=frames(trial.commands, trial.start, 7.0))
+    x, y = short.frames.x[-1], short.frames.y[-1]
+    last = replace(trial.log[-1], text=f"x={x:.2f} y={y:.2f} distance=0.00")
+    for line, diagnosis in ((last, None), (trial.log[-1], "wrong-position")):
+        given = evidence(replace(short, log=(*trial.log[:6], line)))
+        assert found(LOG_POSITION, given, format=FORMAT).diagnosis == diagnosis
 
 
 WRONG: dict[str, tuple[Callable[[Said], Said], str, str]] = {
@@ -144,7 +156,7 @@ def test_a_way_that_is_nearly_another_one_is_only_wrong() -> None:
     chords = np.cumsum(np.hypot(np.diff(x, prepend=DRIVE.start.x), np.diff(y, prepend=DRIVE.start.y)))
     assert distance((x, y, chords * 1.2)).diagnosis == "wrong-distance"
     assert (
-        distance((x, y, way + np.hypot(DRIVE.start.x, DRIVE.start.y) + np.linspace(0.7, 3.0, 9))).diagnosis
+        distance((x, y, way + np.hypot(DRIVE.start.x, DRIVE.start.y) + np.linspace(0.7, 1.3, 9))).diagnosis
         == "wrong-distance"
     )
     assert distance((x, y, np.minimum(way, way[2]))).diagnosis == "wrong-distance"
@@ -159,7 +171,7 @@ def test_the_worst_line_is_shown() -> None:
 
 
 def test_a_line_before_the_first_frame_speaks_of_the_start() -> None:
-    early = LogLine(0.0, "INFO", "pose_subscriber", "x=9.00 y=9.00 distance=9.00")
+    early = LogLine(-0.5, "INFO", "pose_subscriber", "x=9.00 y=9.00 distance=9.00")
     trial = recording(WAY, log=(early, *logged(truth()).log))
     start = trial.frames
     finding = found(LOG_POSITION, evidence(trial), format=FORMAT)

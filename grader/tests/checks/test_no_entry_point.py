@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.checks.judge import judge_early
+from grader.checks.building import BUILDS
+from grader.checks.entry_point import ENTRY_POINT
 from grader.outcome import Finding, Status
 from grader.tests.checks.made import BUILD, NODE, NODE_FILE, SETUP_PY, evidence, finding, submission
 
@@ -194,6 +195,7 @@ def test_a_module_that_was_not_installed_is_none_unless_it_is_linked() -> None:
     [
         ("", "empty-file", ""),
         ("# nothing yet\n", "empty-file", ""),
+        ("pass\n", "entry-point-function", None),
         ('"""Only this."""\n', "entry-point-function", None),
         ("import rclpy\nnode = rclpy.init()\nrclpy.spin(node)\n", "top-level-code", ":2"),
         ("import rclpy\ndef mian():\n    rclpy.init()\n", "entry-point-function", None),
@@ -232,5 +234,6 @@ def test_a_file_that_is_too_long_to_be_parsed_is_believed() -> None:
     ],
 )
 def test_a_module_that_python_cannot_read_is_known_before_anything_is_built(files: Files, told: list[str]) -> None:
-    early = judge_early(evidence(package=submission(files), build=None))
-    assert [outcome.id for outcome in early.failed if outcome.id in ("entry-point", "build")] == told
+    given = evidence(package=submission(files), build=None)
+    early = {"entry-point": ENTRY_POINT.judge_early(given, {}), "build": BUILDS.judge_early(given, {})}
+    assert [name for name, finding in early.items() if finding is not None] == told

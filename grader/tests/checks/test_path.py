@@ -77,6 +77,8 @@ def test_a_way_with_straight_parts_is_told_by_their_number(way: list[Timed], dia
 
 def test_a_way_that_is_not_round_is_explained_by_the_commands_or_by_the_end() -> None:
     assert circle("spiral").cause == "The commands change on the way; a circle needs the same command all the time."
+    two = [(t_s, 1.0 + (t_s > 5.0), 1.0) for t_s, _, _ in every(0.5, 0.0, 0.0)]
+    assert finding("circle", evidence(recording(two))).cause == circle("spiral").cause
     frames = SHAPES["spiral"]().frames
     steady = replace(SHAPES["crash"](), frames=frames)
     assert finding("circle", evidence(steady)).cause == f"The node crashed: ZeroDivisionError at {NODE_FILE}:14."
@@ -120,6 +122,8 @@ def test_how_little_is_nothing(linear: float, angular: float, diagnosis: str) ->
 def test_zeros_in_one_field_are_not_all() -> None:
     only_turning = [(0.5, 0.0, 0.005), (1.0, 0.0, 0.0)]
     assert finding("circle", evidence(recording(only_turning))).cause == ""
+    only_driving = [(0.5, 0.002, 0.0), (1.0, 0.0, 0.0)]
+    assert finding("circle", evidence(recording(only_driving))).cause == ""
 
 
 def test_a_polygon_with_sides_nearly_as_short_as_steps_fails_too() -> None:
@@ -129,6 +133,8 @@ def test_a_polygon_with_sides_nearly_as_short_as_steps_fails_too() -> None:
 def test_the_reason_for_the_size_is_what_was_commanded() -> None:
     found = circle("radius 2.2")
     assert found.cause == "The radius is linear.x divided by angular.z: 2.2 / 1.0 = 2.2 m."
+    tight = finding("circle", evidence(recording(every(0.5, 1.0, 0.8))))
+    assert tight.cause == "The radius is linear.x divided by angular.z: 1.0 / 0.8 = 1.25 m."
     assert circle("wall").cause == "The radius is linear.x divided by angular.z: 6.0 / 1.0 = 6.0 m."
     assert circle("straight into the wall").cause == "angular.z is 0, so the turtle drives straight on."
 

@@ -210,6 +210,7 @@ def test_a_value_that_hides_a_method_is_found() -> None:
     [
         ("self.create_timer(0.5, self.send())", "NoneType", "callback-called"),
         ('self.create_service(Spawn, "/spawn", self.take())', "NoneType", "callback-called"),
+        ("self.node.create_timer(0.5, self.send())", "NoneType", "callback-called"),
         ("self.create_timer(0.5, self.send())", "int", "not-callable"),
         ("self.create_timer(0.5, self.send)", "NoneType", "not-callable"),
         ("self.create_timer(0.5)", "NoneType", "not-callable"),
@@ -241,6 +242,18 @@ NOT_CALLABLE = "RuntimeError: callback should be either be callable with one arg
         ("self.go()", "RuntimeError: something else", "crash", "crashed"),
         ('self.create_subscription(Pose, "/pose", self.take(), 10)', NOT_CALLABLE, "callback-called", "crashed"),
         ('self.create_subscription(Pose, "/pose", self.send, 10)', NOT_CALLABLE, "callback-parameters", "def send"),
+        (
+            'self.create_subscription(Pose, "/pose", self.driver.send, 10)',
+            NOT_CALLABLE,
+            "callback-parameters",
+            "def send",
+        ),
+        (
+            'self.create_subscription(Pose, "/pose", self.send, qos_profile=10)',
+            NOT_CALLABLE,
+            "callback-parameters",
+            "def send",
+        ),
         ('self.create_subscription(Pose, "/pose", self.take, 10)', NOT_CALLABLE, "not-callable", "crashed"),
         ('self.create_subscription(Pose, "/pose", callback=self.send)', NOT_CALLABLE, "not-callable", "crashed"),
         ('self.create_subscription(Pose, "/pose", make(), 10)', NOT_CALLABLE, "not-callable", "crashed"),

@@ -136,10 +136,12 @@ def _places(call: cst.Call, index: int | None) -> Iterator[cst.BaseExpression]:
 
 def _is_words(assignment: cst.Assign) -> bool:
     """Whether a name gets a text, or nearness to an edge, which decides about the clock and not what is diagnosed."""
-    value, target = assignment.value, assignment.targets[0].target
-    if isinstance(target, cst.Name) and target.value.startswith("near"):
-        return True
-    return _is_text(value) or _chooses_text(value)
+    return _is_nearness(assignment) or _is_text(assignment.value) or _chooses_text(assignment.value)
+
+
+def _is_nearness(assignment: cst.Assign) -> bool:
+    target = assignment.targets[0].target
+    return isinstance(target, cst.Name) and target.value.startswith("near")
 
 
 def _is_text(value: cst.CSTNode) -> bool:
@@ -175,7 +177,7 @@ def _idle(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool
             return True
         if isinstance(here, cst.Call) and isinstance(here.func, cst.Name) and here.func.value in (*WORDS, "Kind"):
             return True
-        if _chooses_text(here):
+        if _chooses_text(here) or (isinstance(here, cst.Assign) and _is_nearness(here)):
             return True
         if isinstance(here, cst.Arg) and here.keyword is not None and here.keyword.value in ("near_edge", "strict"):
             return True
