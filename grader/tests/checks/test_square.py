@@ -54,6 +54,8 @@ def test_a_square_is_one(parts: list[Leg], start: Pose | None) -> None:
         (round_((2.0, 2.0, 2.3, 2.0)), "side-length", "The third side is 2.30 m long: 0.30 m too long."),
         (round_((2.0, 1.5, 2.0, 2.0)), "side-length", "The second side is 1.50 m long: 0.50 m too short."),
         (round_(corners=(90.0, 60.0, 90.0, 90.0)), "corner-angle", "The second corner turns by 60 degrees."),
+        (round_(corners=(90.0, 90.0, 60.0, 90.0)), "corner-angle", "The third corner turns by 60 degrees."),
+        (round_(corners=(90.0, 90.0, 98.0, 90.0)), "corner-angle", "The third corner turns by 98 degrees."),
         (round_(corners=(105.0,) * 4), "corner-angle", "The first corner turns by 105 degrees."),
         (round_(corners=(90.0, -90.0, 90.0, 90.0)), "corner-angle", "The second corner turns by -90 degrees."),
         (round_(corners=(-90.0,) * 4), "wrong-sense", "The turtle turns to the wrong side at its corners."),
@@ -79,6 +81,12 @@ def test_each_other_way_is_told_with_its_side_or_corner_and_by_how_much(
     finding = square(parts, Pose(4.0, 4.0, 0.0))
     assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
     assert str(finding.where) == f"{NODE_FILE}:16"
+
+
+def test_a_corner_may_be_off_by_seven_degrees_and_a_square_small() -> None:
+    assert square(round_(corners=(90.0, 83.5, 90.0, 90.0))).status is Status.PASSED
+    small = recording(legs(*round_((0.8,) * 4)))
+    assert found(SQUARE, evidence(small), side_m=0.8).status is Status.PASSED
 
 
 def test_clockwise_is_right_where_the_exercise_allows_it() -> None:
@@ -111,7 +119,7 @@ def test_a_side_near_the_edge_is_for_wall_time_to_judge(length: float, near: boo
     ],
 )
 def test_what_stalls_of_the_machine_may_have_done_is_not_judged(parts: list[Leg], off: float, per_s: float) -> None:
-    for share, status in ((1.05, Status.ERROR), (0.95, Status.FAILED)):
+    for share, status in ((1.02, Status.ERROR), (0.98, Status.FAILED)):
         stalled = recording(legs(*parts), Pose(4.0, 4.0, 0.0), clock="wall", stalls=((1.0, 1.0 + share * off / per_s),))
         assert found(SQUARE, evidence(stalled), side_m=2.0).status is status
 
