@@ -61,6 +61,12 @@ def test_whoever_is_not_there_is_told_where_they_are(parts: tuple[Leg, ...], dia
     assert str(finding.where) == f"{NODE_FILE}:16"
 
 
+def test_whoever_is_no_nearer_in_the_end_has_driven_away_and_without_a_wall_none_is_told_of() -> None:
+    assert goal(ahead(1.0), ahead(-0.97)).diagnosis == "away-from-goal"
+    nearer = goal(ahead(1.0), ahead(-0.9))
+    assert (nearer.diagnosis, "wall" in nearer.cause) == ("not-there", False)
+
+
 def test_a_turtle_at_the_wall_learns_about_angles() -> None:
     finding = goal((10, 0.0, -QUARTER / 3), ahead(6.0), start=Pose(1.0, 1.0, 0.0))
     assert (finding.diagnosis, "atan2(sin(a), cos(a))" in finding.cause) == ("not-there", True)
