@@ -1,5 +1,10 @@
-"""Mutation run: is each piece of the code that makes diagnoses needed by some case?
+"""Mutation run: is each piece of the code that makes diagnoses needed by some case or test?
 
-`python -m grader.tests.mutation` changes that code in one place at a time and judges the cases again, from recordings
-that are made once. A change that no case notices is printed: a case is missing, or the code is not needed.
+`python -m grader.tests.mutation` changes that code in one place at a time: a diagnosis is taken out or gets another
+name, its place is lost, a condition always or never holds, a number or a comparison is another. Then it judges the
+cases again, from recordings that are made once, and asks the tests in grader/tests/checks about what no case noticed.
+What nobody notices is printed: a case or a test is missing, or the code is not needed.
+
+What is left alone stands in mutants.py (words, above all) and, change by change, in equivalent.toml. The modules that
+only read (code.py, scene.py, setup_py.py, track.py, ...) make no diagnosis, and are not changed.
 """
