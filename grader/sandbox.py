@@ -92,6 +92,9 @@ def room(argv: Sequence[str], view: View, *, env: Mapping[str, str], cwd: Path |
     command = [_bwrap(), "--unshare-net", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--hostname", "grader"]
     command += ["--die-with-parent", "--size", str(ROOM_DISK), "--tmpfs", "/tmp", "--perms", "0777", "--dir", str(HOME)]
     command += [*_disk(view), *(["--dir", "/proc"] if os.geteuid() == 0 else ["--proc", "/proc"])]
+    # LTTng, which rclpy loads, keeps a file here; where it cannot, its threads wait for any child of the process, and
+    # take the exit code of a node that ends just then.
+    command += ["--size", str(ROOM_DISK), "--perms", "1777", "--tmpfs", "/dev/shm"]
     return [*_ordinary(command), *_environment(env), "--chdir", str(cwd or HOME), "--", *_stay_ordinary(), *argv]
 
 

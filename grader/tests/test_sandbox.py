@@ -57,6 +57,12 @@ print(json.dumps([sorted(name for name in os.listdir("/proc") if name.isdigit())
     assert set(top) <= expected | {Path(path).parts[1] for path in (sys.prefix, sys.base_prefix)}
 
 
+def test_a_room_has_shared_memory_since_lttng_else_waits_for_other_threads_children() -> None:
+    argv = ["sh", "-c", "touch /dev/shm/lttng-ust-wait-6 && mount | grep -c ' /dev/shm .*size=262144k'"]
+    done = subprocess.run(sandbox.room(argv, SEEN, env=ENV), capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
+
+
 def test_of_a_hidden_folder_a_cell_sees_only_what_is_named(tmp_path: Path) -> None:
     """An installed grader lies beside the libraries that a node needs, and of it a cell needs the launcher."""
     package = tmp_path / "site-packages" / "grader"
