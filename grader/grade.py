@@ -139,8 +139,7 @@ class _Grading:
                     evidence = self._build(evidence, here, extra)
                     stage = "trial"
                     if wants_trial(evidence):
-                        ready = trial or self._trial(clock, here, extra)
-                        with ready:
+                        with nullcontext(trial) if trial else self._trial(clock, here, extra) as ready:
                             evidence = self._try_twice(evidence, ready, clock, why, here, extra)
                 evidence = self._further_trials(evidence, here, extra)
         except MachineError as error:
@@ -180,9 +179,8 @@ class _Grading:
         return "simulated", "the node waits only for ROS time and messages, so its seconds need not be waited for"
 
     def _build(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
-        self.tell("Building with colcon")
         with self._timed("build"):
-            built = self.builder(self.submission, here, extra, in_cell=self.options.in_cell)
+            built = self.builder(self.submission, here, extra, in_cell=self.options.in_cell, tell=self.tell)
         self.tree = built.tree
         return dataclasses.replace(evidence, build=built.build)
 

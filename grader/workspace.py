@@ -24,7 +24,7 @@ from grader.system_calls import call_filter
 from grader.tar_stream import Member, read_tar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from grader.submission import Submission
 
@@ -62,12 +62,15 @@ class Built:
     tree: bytes
 
 
-def build(submission: Submission, here: ros.Ros, underlay: Path | None, *, in_cell: bool) -> Built:
-    """Build the submission's package; `underlay` is the prefix of the turtlesim interfaces.
+def build(
+    submission: Submission, here: ros.Ros, underlay: Path | None, *, in_cell: bool, tell: Callable[[str], None]
+) -> Built:
+    """Build the submission's package; `underlay` is the prefix of the turtlesim interfaces; `tell` hears of it.
 
     Raises:
         MachineError: the sandbox or colcon itself does not work here.
     """
+    tell("Building with colcon")
     with _workspace(in_cell=in_cell) as (workspace, home):
         env = ros.environment(here, home=home, underlay=underlay)
         env |= {"WS": str(workspace), "PYTHON": str(here.python)}

@@ -36,15 +36,15 @@ class Rebuild:
         underlay: Path | None,
         *,
         in_cell: bool,
-        tell: Callable[[str], None] = lambda _: None,
+        tell: Callable[[str], None],
     ) -> workspace.Built:
-        """Build the submission, with colcon or without; `tell` hears where it is without."""
+        """Build the submission, with colcon or without; `tell` hears which."""
         built = renewed(submission, *self._last) if self._last else None
         if built is not None:
             tell("Taking the last build, with the modules as they are now")
         else:
             self.runs += 1
-            built = workspace.build(submission, here, underlay, in_cell=in_cell)
+            built = workspace.build(submission, here, underlay, in_cell=in_cell, tell=tell)
         self._last = (submission, built)
         return built
 

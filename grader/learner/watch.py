@@ -7,7 +7,6 @@ then costs little more than the trial itself.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from queue import SimpleQueue
 from threading import Event, Thread
 from typing import TYPE_CHECKING, Literal
@@ -131,9 +130,8 @@ class Watched:
             raise
         self._judged = submission.digest
         self._wanted = None
-        build = partial(self.rebuild, tell=tell)
         try:
-            return grade(self.exercise, submission, self._options, tell, build=build, trial=self._next_trial)
+            return grade(self.exercise, submission, self._options, tell, build=self.rebuild, trial=self._next_trial)
         finally:
             self._warm_up()
 

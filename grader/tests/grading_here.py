@@ -21,6 +21,7 @@ from grader.tests.case import make_submission
 from grader.tests.grading import EXERCISE, Graded
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from grader.grade import ClockChoice
@@ -36,7 +37,15 @@ class Builds:
         self._lock = threading.Lock()
         self._known: dict[object, _Kept] = {}
 
-    def __call__(self, submission: Submission, here: Ros, underlay: Path | None, *, in_cell: bool) -> workspace.Built:
+    def __call__(
+        self,
+        submission: Submission,
+        here: Ros,
+        underlay: Path | None,
+        *,
+        in_cell: bool,
+        tell: Callable[[str], None],
+    ) -> workspace.Built:
         """Build the submission, with colcon or without."""
         with self._lock:
             kept = self._known.setdefault(_alike(submission), _Kept(threading.Lock()))
@@ -44,7 +53,7 @@ class Builds:
             again = renewed(submission, *kept.first) if kept.first else None
             if again is not None:
                 return again
-            built = workspace.build(submission, here, underlay, in_cell=in_cell)
+            built = workspace.build(submission, here, underlay, in_cell=in_cell, tell=tell)
             kept.first = kept.first or (submission, built)
             return built
 

@@ -96,11 +96,11 @@ def test_what_symlink_install_would_not_see_is_built_anew(package: Path) -> None
     (package / "my_robot_controller" / "more.py").write_text("")
     build()
     assert rebuild.runs == 3
-    assert told == []
+    assert told == ["Building with colcon"] * 3
     (package / "my_robot_controller" / "more.py").write_text("x = 1\n")
     build()
     assert rebuild.runs == 3
-    assert told == ["Taking the last build, with the modules as they are now"]
+    assert told[3:] == ["Taking the last build, with the modules as they are now"]
 
 
 @pytest.mark.parametrize("how", ["write", "rename", "delete", "create"])
