@@ -103,3 +103,24 @@ def test_a_way_that_was_driven_by_other_means_is_none() -> None:
 def test_a_lobe_near_the_edge_of_its_size_is_for_wall_time_to_judge(radius_m: float, near: bool, status: str) -> None:
     finding = eight(lobe(1), lobe(-1, radius_m=radius_m))
     assert (finding.near_edge, finding.status.value) == (near, status)
+
+
+@pytest.mark.parametrize(
+    ("parts", "off", "per_s"),
+    [
+        ((lobe(1, degrees=315.0), lobe(-1)), 33.0, math.degrees(TURN)),
+        ((lobe(1, degrees=396.0), lobe(-1)), 24.0, math.degrees(TURN)),
+        (((5, 1.0, 0.0), lobe(1), lobe(-1)), 0.28, TURN),
+    ],
+)
+def test_what_stalls_of_the_machine_may_have_done_is_not_judged(
+    parts: tuple[tuple[int, float, float], ...], off: float, per_s: float
+) -> None:
+    for share, status in ((1.02, Status.ERROR), (0.98, Status.FAILED)):
+        stalled = recording(legs(*parts), clock="wall", stalls=((1.0, 1.0 + share * off / per_s),))
+        assert found(EIGHT, evidence(stalled), radius_m=1.0).status is status
+
+
+@pytest.mark.parametrize(("ticks", "diagnosis"), [(1, None), (3, "wrong-side-first")])
+def test_a_small_bend_is_no_lobe(ticks: int, diagnosis: str | None) -> None:
+    assert eight((ticks, TURN, -TURN), lobe(1), lobe(-1), first="left").diagnosis == diagnosis
