@@ -21,6 +21,8 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
     if evidence.code.node_file not in {module.file for module in evidence.code.modules if module.tree is not None}:
         return Finding(Status.SKIPPED, "Not judged, since the node's file cannot be read.")
     cause = "In a loop of its own a node hears nothing from other nodes; a timer leaves the waiting to rclpy.spin."
+    if evidence.code.calls("create_rate"):
+        cause = "What create_rate gives only wakes up while another thread spins the node; a timer needs no thread."
     return failed(
         "no-timer",
         "No timer is used.",

@@ -39,6 +39,14 @@ def test_a_node_without_a_timer_is_shown_what_takes_its_place() -> None:
     loops = NODE.replace("self.create_timer(0.5, self.send)", "None")
     finding = found(USES_TIMER, evidence(package=submission({NODE_FILE: loops})))
     assert (finding.diagnosis, str(finding.where)) == ("no-timer", f"{NODE_FILE}:16")
+    assert "a node hears nothing" in finding.cause
+
+
+def test_whoever_has_a_rate_is_not_told_that_the_node_hears_nothing() -> None:
+    rate = NODE.replace("self.create_timer(0.5, self.send)", "self.create_rate(2)")
+    finding = found(USES_TIMER, evidence(package=submission({NODE_FILE: rate})))
+    assert finding.diagnosis == "no-timer"
+    assert "create_rate" in finding.cause
 
 
 @pytest.mark.parametrize(("text", "words"), [(None, "which file is the node's"), ("def (:\n", "cannot be read")])
