@@ -4,7 +4,7 @@ import os
 
 
 def main():
-    os.mkdir("/tmp/hostile-406")
+    os.makedirs("/tmp/hostile-406", exist_ok=True)
     for count in range(300_000):
         os.close(os.open(f"/tmp/hostile-406/{count}", os.O_CREAT | os.O_WRONLY))
     print("TRA" "CE 300000 files")
