@@ -26,7 +26,7 @@ def in_ros(tmp_path_factory: pytest.TempPathFactory) -> InRos:
     return InRos(here, underlay.ensure(here), home)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def gradings(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gradings]:
-    """All cases that this session's tests mark with `clocks`, graded side by side."""
+    """All cases that this module's tests mark with `clocks`, graded side by side."""
     yield from gradings_of(request, tmp_path_factory)

@@ -41,7 +41,7 @@ class Graded:
 
 
 class Gradings:
-    """Grades the cases that this session asks for, `AT_ONCE` at once."""
+    """Grades the cases that a module asks for, `AT_ONCE` at once."""
 
     def __init__(self, wanted: list[tuple[Case, str]], folder: Path, pool: ThreadPoolExecutor) -> None:
         self._futures: dict[tuple[Path, str], Future[Graded]] = {
@@ -79,9 +79,11 @@ def grade(case: Case, clock: str, folder: Path) -> Graded:
 
 
 def gradings_of(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gradings]:
-    """The fixture `gradings`: all that this session's tests which use it mark with `clocks`."""
+    """The fixture `gradings`: all that the module's tests which use it mark with `clocks`."""
     wanted: dict[tuple[Path, str], tuple[Case, str]] = {}
     for item in request.session.items:
+        if item.path != request.path:
+            continue
         case = getattr(item, "callspec", None) and item.callspec.params.get("case")  # type: ignore[attr-defined]
         if isinstance(case, Case) and "gradings" in item.fixturenames:  # type: ignore[attr-defined]
             for mark in item.iter_markers("clocks"):
