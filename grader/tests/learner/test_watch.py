@@ -161,7 +161,7 @@ def test_after_two_saves_within_a_grading_the_last_text_alone_is_graded(
         raise UsageError("This grading was stopped.")  # noqa: EM101
 
     monkeypatch.setattr("grader.learner.watch.grade", grade)
-    events = Events(partial(keys.get, timeout=PATIENCE_S))
+    events = Events(keys.get)
     events.watch(package)
     console = Console(file=io.StringIO())
     screen = _Screen(find_exercise(STEP), package, None, Options(in_cell=False), console)
