@@ -139,6 +139,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "no-node": "the program runs, and no node appears",
         "no-spin": "rclpy.spin is missing",
         "spin-once": "rclpy.spin_once instead of rclpy.spin",
+        "spin-once-waits": "rclpy.spin_once waits for ever",
         "ends-at-once": "the program ends at its start",
         "ended-early": "the program ends before Ctrl-C",
         "ignores-ctrl-c": "the node goes on after Ctrl-C",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks import ros_names
 from grader.checks.cause import Cause
-from grader.checks.constants import dotted, evaluate
+from grader.checks.constants import dotted, evaluate, number
 from grader.checks.timers import timer_fault
 from grader.checks.why_ended import SPINS, named_only
 from grader.outcome import Where
@@ -40,7 +40,11 @@ def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
     if fault is not None:
         return Cause(fault.diagnosis, fault.cause, fault.where)
     return (
-        named_only(evidence, "rclpy.spin") or _stuck(evidence) or _never_called(evidence, sends) or _no_spin(evidence)
+        named_only(evidence, "rclpy.spin")
+        or _stuck(evidence)
+        or _never_called(evidence, sends)
+        or _no_spin(evidence)
+        or _nothing_to_spin(evidence)
     )
 
 
@@ -48,6 +52,17 @@ def _no_spin(evidence: Evidence) -> Cause | None:
     if any(evidence.code.calls(name) for name in SPINS):
         return None
     return Cause("no-spin", "Without rclpy.spin no timer is ever called.", evidence.code.start)
+
+
+def _nothing_to_spin(evidence: Evidence) -> Cause | None:
+    """spin_once without a limit, in a node that nothing ever wakes."""
+    if any(evidence.code.calls(name) for name in ("create_timer", "create_subscription", "create_service")):
+        return None
+    for call in evidence.code.calls("spin_once"):
+        if not any(number(call.argument(place, "timeout_sec"), call.module.names) is not None for place in (0, 2)):
+            text = "spin_once waits for something to do, and this node has no timer; timeout_sec would limit the wait."
+            return Cause("spin-once-waits", text, call.where)
+    return None
 
 
 def _stuck(evidence: Evidence) -> Cause | None:

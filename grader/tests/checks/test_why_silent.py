@@ -104,7 +104,7 @@ def test_a_method_that_sends_nothing_need_not_be_called() -> None:
     [
         ("rclpy.spin", ("not-called", 1)),
         ("rclpy.spin(node)", None),
-        ("rclpy.spin_once(node)", None),
+        ("rclpy.spin_once(node, timeout_sec=1.0)", None),
         ("rclpy.shutdown()", ("no-spin", None)),
     ],
 )
@@ -159,3 +159,35 @@ def test_ends_that_do_not_go_together_are_told_by_rclpy() -> None:
         cause = why_qos(loud)
         assert cause is not None
         assert (cause.diagnosis, str(cause.where)) == ("qos-mismatch", f"{NODE_FILE}:4")
+
+
+LOOP = """\
+node = rclpy.create_node("driver")
+publisher = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+{made}
+while rclpy.ok():
+    publisher.publish(Twist())
+    {spun}
+"""
+
+
+@pytest.mark.parametrize(
+    ("made", "spun", "waits"),
+    [
+        ("pass", "rclpy.spin_once(node)  # look", True),
+        ("pass", "executor.spin_once()  # look", True),
+        ("pass", "rclpy.spin_once(node, timeout_sec=0.5)", False),
+        ("pass", "rclpy.spin_once(node, None, 0.5)", False),
+        ("pass", "executor.spin_once(0.5)", False),
+        ("timer = node.create_timer(0.5, send)", "rclpy.spin_once(node)", False),
+        ("heard = node.create_subscription(Pose, '/turtle1/pose', hear, 10)", "rclpy.spin_once(node)", False),
+    ],
+)
+def test_what_nothing_wakes_waits_for_ever_in_spin_once(made: str, spun: str, *, waits: bool) -> None:
+    source = LOOP.format(made=made, spun=spun)
+    told = silence(source)
+    if waits:
+        assert told is not None
+        assert (told[0], told[2]) == ("spin-once-waits", line_with(LOOK, source))
+    else:
+        assert told is None
