@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks import ros_names
 from grader.checks.cause import Cause
-from grader.checks.constants import dotted, evaluate, number
+from grader.checks.constants import dotted, evaluate
 from grader.checks.timers import timer_fault
 from grader.checks.why_ended import SPINS, named_only
 from grader.outcome import Where
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 INCOMPATIBLE = "incompatible QoS"
 """What rclpy logs of two ends of a topic that cannot talk to each other."""
+WAKES = ("create_timer", "create_subscription", "create_service", "create_client", "ActionServer", "ActionClient")
+"""What gives a node something to do in spin_once."""
 ALWAYS = ("True", "1", "rclpy.ok()")
 
 
@@ -56,10 +58,13 @@ def _no_spin(evidence: Evidence) -> Cause | None:
 
 def _nothing_to_spin(evidence: Evidence) -> Cause | None:
     """spin_once without a limit, in a node that nothing ever wakes."""
-    if any(evidence.code.calls(name) for name in ("create_timer", "create_subscription", "create_service")):
+    if any(evidence.code.calls(name) for name in WAKES):
         return None
     for call in evidence.code.calls("spin_once"):
-        if not any(number(call.argument(place, "timeout_sec"), call.module.names) is not None for place in (0, 2)):
+        # rclpy's takes the node and its executor first; an executor's own method takes the limit alone.
+        of_rclpy = dotted(call.node.func) in ("rclpy.spin_once", "spin_once")
+        limit = call.argument(2 if of_rclpy else 0, "timeout_sec")
+        if limit is None or (isinstance(limit, ast.Constant) and limit.value is None):
             text = "spin_once waits for something to do, and this node has no timer; timeout_sec would limit the wait."
             return Cause("spin-once-waits", text, call.where)
     return None

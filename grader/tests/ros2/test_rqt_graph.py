@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import os
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +14,8 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
-from grader.tests.ros2.world import HANG_S, SOLUTION, World, world
+from grader.tests.ros2.world import SOLUTION, World, world
+from grader.tests.waiting import until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -97,7 +97,7 @@ def before_a_screen(tutorial: World, tmp_path: Path) -> Iterator[World]:
 
 def test_where_there_is_a_browser_the_graph_is_shown_live_until_ctrl_c(before_a_screen: World, tmp_path: Path) -> None:
     graph = before_a_screen.start("rqt_graph", "http://127.0.0.1:")
-    until_opened(tmp_path / "opened")
+    until(lambda: (tmp_path / "opened").exists() and bool((tmp_path / "opened").read_text()))
     address = (tmp_path / "opened").read_text().strip()
     (told,) = graph.lines
     printed = told.removeprefix("The graph, live until Ctrl-C: ")
@@ -117,13 +117,6 @@ def test_where_there_is_a_browser_the_graph_is_shown_live_until_ctrl_c(before_a_
     assert not any("rqt_graph" in label or "view" in label for label in labels)
     assert graph.stop() == 0
     assert not any("Traceback" in line for line in graph.lines)
-
-
-def until_opened(file: Path) -> None:
-    deadline = time.monotonic() + HANG_S
-    while not file.exists() or not file.read_text():
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
 
 
 def test_where_the_browser_cannot_be_started_it_is_text(before_a_screen: World) -> None:

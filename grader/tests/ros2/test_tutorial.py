@@ -15,6 +15,7 @@ import pytest
 
 from grader import ros
 from grader.tests.ros2.world import HANG_S, SOLUTION, golden
+from grader.tests.waiting import until_gone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -207,22 +208,8 @@ def test_a_lost_terminal_leaves_no_process_behind(terminals: list[Terminal], dom
             os.waitpid(terminal.shell.pid, 0)
     terminals.clear()
     for pid in there:
-        wait_until_gone(pid)
+        until_gone(int(pid))
     assert not process_ids(domain)
-
-
-def wait_until_gone(pid: str) -> None:
-    """Wait for the end of a process that is not a child of ours."""
-    import select
-
-    try:
-        descriptor = os.pidfd_open(int(pid))
-    except ProcessLookupError:
-        return
-    try:
-        assert select.select([descriptor], [], [], HANG_S)[0], f"process {pid} is still there"
-    finally:
-        os.close(descriptor)
 
 
 def test_users_of_one_machine_have_domains_of_their_own() -> None:

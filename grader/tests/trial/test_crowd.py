@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.tests.trial.program import python
 from grader.trial import crowd
 from grader.trial.crowd import Others, Stalls, is_crowded
 
 if TYPE_CHECKING:
+    import subprocess
     from collections.abc import Iterator
 
 WORK_S = 0.5
@@ -34,12 +34,8 @@ for _ in sys.stdin:
 def program(work_s: float) -> Iterator[subprocess.Popen[str]]:
     """A program that works for so long (s of CPU time) whenever it gets a line, all of them on one processor."""
     code = WORKS.format(processor=min(os.sched_getaffinity(0)), work_s=work_s)
-    pipe = subprocess.PIPE
-    with subprocess.Popen([sys.executable, "-c", code], stdin=pipe, stdout=pipe, text=True) as process:
-        assert process.stdout is not None
-        assert process.stdout.readline() == "ready\n"
+    with python(code) as process:
         yield process
-        process.kill()
 
 
 def begin(process: subprocess.Popen[str]) -> None:

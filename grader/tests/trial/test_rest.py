@@ -2,30 +2,12 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-from contextlib import contextmanager
-from typing import TYPE_CHECKING
-
 import pytest
 
+from grader.tests.trial.program import python
 from grader.trial.rest import GoneError, Threads
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
 WAITS_ON_A_LINE = "import sys; print('ready', flush=True); sys.stdin.readline(); print('woken', flush=True); "
-
-
-@contextmanager
-def python(code: str) -> Iterator[subprocess.Popen[str]]:
-    """A Python that printed "ready"."""
-    pipe = subprocess.PIPE
-    with subprocess.Popen([sys.executable, "-c", code], stdin=pipe, stdout=pipe, text=True) as process:
-        assert process.stdout is not None
-        assert process.stdout.readline() == "ready\n"
-        yield process
-        process.kill()
 
 
 def until_asleep(threads: Threads) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import signal
-import time
 from typing import TYPE_CHECKING
 
 import pexpect
@@ -13,9 +12,10 @@ import pytest
 
 from grader.simulator.turtle import FRAME_S
 from grader.tests.ros2.world import HANG_S, World, world
+from grader.tests.waiting import until
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from grader.tests.ros2.world import Running
 
@@ -90,7 +90,7 @@ def test_the_terminal_is_left_as_it_was(alone: World, how: str) -> None:
         shell.sendline("fg")
         shell.expect(TELEOP)
         # As soon as keys are read one by one again.
-        _wait_until(lambda: not shell.getecho())
+        until(lambda: not shell.getecho())
     if how.startswith("SIG"):
         os.kill(job, signal.Signals[how])
     else:
@@ -102,20 +102,13 @@ def test_the_terminal_is_left_as_it_was(alone: World, how: str) -> None:
     assert (alone.home / "after").read_text() == (alone.home / "before").read_text()
 
 
-def _wait_until(there: Callable[[], bool]) -> None:
-    deadline = time.monotonic() + HANG_S
-    while not there():
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-
-
 def test_it_ends_when_the_terminal_is_lost(alone: World) -> None:
     keys = terminal(alone, TELEOP)
     keys.expect("Q quits")
     # Not `close`, which would kill it.
     keys.ptyproc.fileobj.close()
     keys.ptyproc.closed = keys.closed = True
-    _wait_until(lambda: not keys.isalive())
+    until(lambda: not keys.isalive())
     # It ended by itself.
     assert keys.signalstatus is None
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import re
 import socket
-import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -16,9 +15,10 @@ from websockets.typing import Origin
 
 from grader.tests.browser import browser_or_reason, launched, violations
 from grader.tests.ros2.world import HANG_S, SOLUTION, World, world
+from grader.tests.waiting import until
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from playwright.sync_api import Browser, Page
 
@@ -78,14 +78,6 @@ def opened(browser: Browser, url: str) -> Page:
     tab.goto(url)
     tab.get_by_role("status").get_by_text("Live").wait_for()
     return tab
-
-
-def until(there: Callable[[], bool]) -> None:
-    """Wait for something to be seen."""
-    deadline = time.monotonic() + HANG_S
-    while not there():
-        assert time.monotonic() < deadline
-        time.sleep(0.2)
 
 
 def drawn(page: Page) -> int:

@@ -1,0 +1,34 @@
+"""Wait for what a test has set going: for the event, with a deadline beyond which something hangs."""
+
+from __future__ import annotations
+
+import os
+import select
+import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+HANG_S = 60.0
+_POLL_S = 0.05
+
+
+def until(there: Callable[[], bool]) -> None:
+    """Wait for something to be seen."""
+    deadline = time.monotonic() + HANG_S
+    while not there():
+        assert time.monotonic() < deadline
+        time.sleep(_POLL_S)
+
+
+def until_gone(pid: int) -> None:
+    """Wait for the end of a process that is not a child of ours."""
+    try:
+        descriptor = os.pidfd_open(pid)
+    except ProcessLookupError:
+        return
+    try:
+        assert select.select([descriptor], [], [], HANG_S)[0], f"process {pid} is still there"
+    finally:
+        os.close(descriptor)
