@@ -20,14 +20,14 @@ TESTS = Path(__file__).parent
 PAGE = TESTS.parent / "checks" / "README.md"
 MISTAKES = CASES.parent / "mistakes"
 SHOWN_BY_TESTS = {
-    "build-limit": "checks/test_package.py",
+    "build-limit": "checks/test_building.py",
     "lobe-gap": "checks/test_eight.py",
     "no-commands": "checks/test_values.py",
     "no-timer": "checks/test_running.py",
     "numbers-of-another": "checks/test_own.py",
     "overwhelmed": "checks/test_judge.py",
-    "package-xml-not-installed": "checks/test_package.py",
-    "resource-marker": "checks/test_package.py",
+    "package-xml-not-installed": "checks/test_building.py",
+    "resource-marker": "checks/test_building.py",
     "slow-stop": "checks/test_running.py",
     "square-gap": "checks/test_square.py",
     "wrong-centre": "checks/test_path.py",
