@@ -141,11 +141,14 @@ def _graded(submitted: Path, size: int, out: Path, options: list[str], also: lis
 
 
 def _alone(command: list[str]) -> Cost:
-    """The cost of a command whose work is done by others."""
+    """The cost of a command whose work is done by others, of which only those that have ended are counted."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     begun = time.monotonic()
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     wall_s = time.monotonic() - begun
+    # What a sandbox leaves is reaped by us (measure.cost has made us its subreaper): only then it counts.
+    while os.waitpid(-1, os.WNOHANG)[0]:
+        pass
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return Cost(wall_s, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, 0.0)
 
