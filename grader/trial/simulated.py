@@ -16,6 +16,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
 from grader.simulator.turtle import FRAME_S
+from grader.trial.patience import HandshakePatience, TickPatience
 from grader.trial.rest import DoubtError, GoneError, Threads
 from grader.trial.stage import Stage
 
@@ -28,12 +29,8 @@ if TYPE_CHECKING:
 
 QUIET_S = 0.03
 """How long discovery must be silent before it counts as over."""
-HANDSHAKE_S = 20.0
 WAKE_S = 1.0
 """How long to wait for the node to notice /clock: a create_rate node never wakes at 0."""
-TICK_CPU_S = 1.0
-"""A node that works longer than this on one frame never rests. CPU time, so that a loaded machine changes nothing."""
-TICK_S = 30.0
 MOST_CPU = 2.0
 """A node that needs this times the scenario in CPU time cannot keep up with the wall either: let it show there."""
 GRAPH_EVERY = 31
@@ -45,22 +42,6 @@ WAITS_EVERY = 7
 ENDING_S = 0.5
 """How long a node that sleeps may take to turn out to be ending (s of wall time)."""
 _POLL_S = 0.00005
-
-
-class _Patience:
-    """How long node and simulator may answer each other at one instant; CPU time is asked for late: it costs."""
-
-    def __init__(self, node: Threads) -> None:
-        self._node = node
-        self._deadline = time.monotonic() + TICK_S
-        self._cpu_s: float | None = None
-
-    def ended(self) -> bool:
-        """Whether the node has worked too long; counts from the first time it is asked."""
-        if self._cpu_s is None:
-            self._cpu_s = self._node.run_time_s()
-            return False
-        return time.monotonic() > self._deadline or self._node.run_time_s() - self._cpu_s > TICK_CPU_S
 
 
 class SimulatedTrial(Stage):
@@ -135,7 +116,7 @@ class SimulatedTrial(Stage):
         self._ours = Threads(os.getpid(), dds=True)
         self._handled: tuple[bytes, ...] = ()
 
-    def _rest(self, patience: _Patience) -> bool:
+    def _rest(self, patience: TickPatience) -> bool:
         """Wait until nothing more can happen at this instant; false when the node never rests."""
         before = look = None
         equal = 0
@@ -163,7 +144,7 @@ class SimulatedTrial(Stage):
 
     def _settle(self) -> None:
         """Let the node and the simulator answer each other until both rest."""
-        patience = _Patience(self._node)
+        patience = TickPatience(self._node)
         while True:
             if not self._rest(patience):
                 self._doubt("the node never comes to rest: it works without waiting")
@@ -179,12 +160,13 @@ class SimulatedTrial(Stage):
 
     def _handshake(self) -> None:
         self._watch()
-        deadline = time.monotonic() + HANDSHAKE_S
+        patience = HandshakePatience(time.monotonic())
         while not self._found_each_other():
             if self.node.ended():
                 raise GoneError
-            self.node.read_output(0.0)
-            if time.monotonic() > deadline:
+            asleep, worked_s = self._node.look().asleep, self._node.run_time_s()
+            wrote = self.node.read_output(0.0)
+            if patience.ended(time.monotonic(), asleep=asleep, wrote=wrote, worked_s=worked_s):
                 self._doubt("the node did not come to rest before the clock could start")
                 return
         self._watch()  # threads name themselves only once they run
