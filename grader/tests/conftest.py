@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import signal
 from typing import TYPE_CHECKING
 
 import pytest
@@ -13,6 +14,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.tests.grading import Gradings
+
+# Started in the background of a script, tests have Ctrl-C ignored, and all that they start would inherit that.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
 """Submissions, some of which bring tests of their own."""
