@@ -31,6 +31,8 @@ def shell(of: World, **env: str) -> pexpect.spawn:
         env={**of.env, **COLOURS, **env},
         cwd=of.home,
         encoding="utf-8",
+        # Ctrl-C may cut a picture within a character; it is on the other screen, which is then left.
+        codec_errors="replace",
         timeout=HANG_S,
         dimensions=(36, 120),
     )
