@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import pexpect
 import pytest
 
-from grader.tests.ros2.world import HANG_S, World, world
+from grader.tests.ros2.world import World, world
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

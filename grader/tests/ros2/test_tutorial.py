@@ -14,8 +14,8 @@ import pexpect
 import pytest
 
 from grader import ros
-from grader.tests.ros2.world import HANG_S, SOLUTION, golden
-from grader.tests.waiting import until_gone
+from grader.tests.ros2.world import SOLUTION, golden
+from grader.tests.waiting import HANG_S, until_gone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader import machine, ros, underlay
-from grader.tests.ros2.world import HANG_S, World
+from grader.tests.ros2.world import World
+from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,8 +11,8 @@ import pexpect
 import pytest
 
 from grader.simulator.turtle import FRAME_S
-from grader.tests.ros2.world import HANG_S, World, world
-from grader.tests.waiting import until
+from grader.tests.ros2.world import World, world
+from grader.tests.waiting import HANG_S, until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

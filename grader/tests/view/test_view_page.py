@@ -14,8 +14,8 @@ from websockets.sync.client import connect
 from websockets.typing import Origin
 
 from grader.tests.browser import browser_or_reason, launched, violations
-from grader.tests.ros2.world import HANG_S, SOLUTION, World, world
-from grader.tests.waiting import until
+from grader.tests.ros2.world import SOLUTION, World, world
+from grader.tests.waiting import HANG_S, until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
