@@ -1,0 +1,143 @@
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.errors import UsageError
+from grader.submission import open_submission
+from grader.tests.submission.folder import PACKAGE, make
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def test_a_package_folder_is_the_submission(package: Path) -> None:
+    submission = open_submission(package)
+    assert submission.name == str(package)
+    assert submission.package_dir == package.resolve()
+    assert submission.files == {path: str(data).encode() for path, data in PACKAGE.items()}
+    assert submission.rejected == ()
+
+
+def test_a_folder_around_one_package_is_the_submission_too(package: Path) -> None:
+    around = open_submission(package.parent.parent)
+    assert around.package_dir == package.resolve()
+    assert around.files == open_submission(package).files
+    assert around.digest == open_submission(package).digest
+
+
+@pytest.mark.parametrize("path", [".", "pkg/..", "pkg/"])
+def test_the_name_is_the_users_and_the_folder_is_absolute(
+    package: Path, path: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(package)
+    if path == "pkg/":
+        monkeypatch.chdir(package.parent)
+    submission = open_submission(path)
+    assert submission.name == path
+    assert submission.package_dir == package.resolve()
+
+
+@pytest.mark.parametrize("only", ["package.xml", "setup.py"])
+def test_one_of_the_two_files_makes_a_package(tmp_path: Path, only: str) -> None:
+    make(tmp_path, {f"src/one/{only}": ""})
+    assert open_submission(tmp_path).package_dir == (tmp_path / "src/one").resolve()
+
+
+def test_what_lies_below_a_package_belongs_to_it(package: Path) -> None:
+    make(package / "copy", PACKAGE)
+    submission = open_submission(package.parent)
+    assert submission.package_dir == package.resolve()
+    assert "copy/package.xml" in submission.files
+
+
+@pytest.mark.parametrize(
+    "other", ["build/pkg", "install/pkg/share/pkg", "log/latest", ".git/x", "venv", "__pycache__", "ignored"]
+)
+def test_what_tools_leave_behind_holds_no_package(package: Path, other: str) -> None:
+    make(package.parent / other, {"package.xml": "", "setup.py": ""})
+    make(package.parent, {"venv/pyvenv.cfg": "", "ignored/COLCON_IGNORE": ""})
+    assert open_submission(package.parent).package_dir == package.resolve()
+
+
+def refused(path: Path | str) -> str:
+    with pytest.raises(UsageError) as caught:
+        open_submission(path)
+    assert caught.value.exit_code == 2
+    return str(caught.value)
+
+
+def test_no_such_folder_names_the_part_that_exists(tmp_path: Path) -> None:
+    message = refused(tmp_path / "nope" / "pkg")
+    assert f"no folder {tmp_path}/nope/pkg" in message
+    assert f"right as far as {tmp_path}" in message
+
+
+def test_a_path_through_a_file_is_no_folder(package: Path) -> None:
+    assert "no folder" in refused(package / "setup.py" / "x")
+
+
+def test_a_node_file_is_answered_with_its_package(package: Path) -> None:
+    message = refused(package / "pkg" / "node.py")
+    assert "node.py is a file" in message
+    assert message.endswith(f"give its folder: {package.resolve()}.")
+
+
+def test_an_archive_is_to_be_unpacked(tmp_path: Path) -> None:
+    make(tmp_path, {"work.zip": "PK"})
+    assert "Unpack it" in refused(tmp_path / "work.zip")
+
+
+def test_a_link_to_nowhere_is_named(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to("gone")
+    assert "link to a place that does not exist" in refused(tmp_path / "link")
+
+
+def test_no_package_says_what_is_there(tmp_path: Path) -> None:
+    make(tmp_path, {"draw_circle.py": "", "notes/a.txt": ""})
+    message = refused(tmp_path)
+    assert message.startswith("There is no package in ")
+    assert "It holds draw_circle.py, notes/." in message
+
+
+def test_an_empty_folder_is_called_empty(tmp_path: Path) -> None:
+    assert "empty" in refused(tmp_path)
+
+
+def test_inside_of_the_package_the_folder_around_is_proposed(package: Path) -> None:
+    assert refused(package / "pkg").endswith(f"The folder around it, {package.resolve()}, is one: give that.")
+
+
+@pytest.mark.parametrize("name", ["Package.xml", "package.xml.txt", "SETUP.PY"])
+def test_a_name_that_is_nearly_right_is_named(tmp_path: Path, name: str) -> None:
+    make(tmp_path, {f"pkg/{name}": ""})
+    message = refused(tmp_path)
+    assert f"pkg/{name} is nearly one" in message
+
+
+def test_a_linked_package_is_named_and_not_followed(tmp_path: Path, package: Path) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "pkg").symlink_to(package)
+    message = refused(tmp_path / "mine")
+    assert "pkg is a link" in message
+
+
+def test_a_folder_that_colcon_ignores_is_named(tmp_path: Path) -> None:
+    make(tmp_path / "pkg", {**PACKAGE, "COLCON_IGNORE": ""})
+    assert "COLCON_IGNORE" in refused(tmp_path)
+    assert open_submission(tmp_path / "pkg").files  # named outright, it is what the user wants
+
+
+def test_several_packages_are_listed(tmp_path: Path) -> None:
+    for name in ("two", "one"):
+        make(tmp_path / "src" / name, PACKAGE)
+    message = refused(tmp_path)
+    assert f"holds 2 packages: {tmp_path}/src/one, {tmp_path}/src/two." in message
+    assert message.endswith(f"for example {tmp_path}/src/one.")
+
+
+def test_too_many_folders_end_the_search(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("grader.package_search.MAX_FOLDERS", 3)
+    make(tmp_path, {f"{number}/a": "" for number in range(4)})
+    assert "more than 3 folders" in refused(tmp_path)
