@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 
     from grader.tests.grading import Gradings
 
-# Started in the background of a script, tests have Ctrl-C ignored, and all that they start would inherit that.
+# Started in the background of a script or by nohup, tests have signals ignored, and all that they start would too.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
 """Submissions, some of which bring tests of their own."""
