@@ -118,38 +118,42 @@ class SimulatedTrial(Stage):
 
     def _rest(self, patience: TickPatience) -> bool:
         """Wait until nothing more can happen at this instant; false when the node never rests."""
-        before = look = None
+        before: tuple[bytes, ...] | None = None
         equal = 0
         while True:
             # The main thread works longest as a rule: as long as it does, the others need no look.
-            busy = not self._node.main_asleep()
-            look = None if busy else (self._node.look(), self._ours.look())
-            if look is None or not (look[0].asleep and look[1].asleep):
-                equal = 0
-                if patience.ended():
-                    return False
+            if not self._node.main_asleep():
+                before = None
                 time.sleep(_POLL_S)
-            elif look == before:
-                equal += 1
-                if equal >= (1 if look[0].counted else 2):
+            elif before is None:
+                before, equal = self._node.runs() + self._ours.runs(), 0
+                continue
+            else:
+                node, ours = self._node.look(), self._ours.look()
+                runs = node.runs + ours.runs
+                asleep = node.asleep and ours.asleep
+                if asleep and runs == before:
+                    equal += 1
+                    if equal < (1 if node.counted else 3):
+                        continue
                     if not self.node.read_output(self._now_s):
                         return True
-                    equal = 0
-            else:
-                equal = 0
-                # Threads that wake and sleep without end are seen asleep each time.
-                if before is not None and patience.ended():
-                    return False
-            before = look
+                before, equal = runs, 0
+                if not asleep:
+                    time.sleep(_POLL_S)
+            # Threads that wake and sleep without end are seen asleep each time.
+            if patience.ended(time.monotonic()):
+                return False
 
     def _settle(self) -> None:
         """Let the node and the simulator answer each other until both rest."""
-        patience = TickPatience(self._node)
+        patience = TickPatience(self._node, time.monotonic())
+        time.sleep(_POLL_S)  # the clock has just ticked: before the node has woken, a look would be in vain
         while True:
             if not self._rest(patience):
                 self._doubt("the node never comes to rest: it works without waiting")
                 return
-            runs = self._ours.look().runs
+            runs = self._ours.runs()
             # Our receiving threads have not run since the last time: nothing has come that is not handled yet.
             if runs == self._handled:
                 return
@@ -182,12 +186,12 @@ class SimulatedTrial(Stage):
         """Wait for 30 ms without anything new; true when the node waits for its clock and discovery is silent."""
         quiet = Threads(self.node.pid, dds=True)
         try:
-            before = quiet.look().runs
+            before = quiet.runs()
             silent_s = time.monotonic()
             while time.monotonic() - silent_s < QUIET_S:
                 if self.spin(0.004):
                     return False
-                if quiet.look().runs != before:
+                if quiet.runs() != before:
                     return False
         finally:
             quiet.close()
@@ -201,13 +205,13 @@ class SimulatedTrial(Stage):
         """Publish time 0 until the node has woken twice for it: then both sides know each other."""
         rest = Threads(self.node.pid, dds=False)
         try:
-            before = rest.look().runs
+            before = rest.runs()
             wakes = 0
             deadline = time.monotonic() + WAKE_S
             while wakes < 2 and time.monotonic() < deadline:
                 self._publish_clock(0.0)
                 self._settle()
-                runs = rest.look().runs
+                runs = rest.runs()
                 wakes += runs != before
                 before = runs
                 if wakes < 2:
@@ -216,7 +220,7 @@ class SimulatedTrial(Stage):
             rest.close()
 
     def _doubt_sleepers(self) -> None:
-        timed = [wait for wait in self._node.waits() if wait.timed and not wait.thread.startswith("dds.")]
+        timed = [wait for wait in self._node.waits() if wait.timed]
         sleeping = [wait for wait in timed if wait.call in ("nanosleep", "clock_nanosleep")]
         if sleeping and not self._is_ending():
             self._doubt("the node sleeps on wall time")

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, cast
+
 import pytest
 
-from grader.trial.patience import HandshakePatience
+from grader.trial.patience import TICK_S, HandshakePatience, TickPatience
+
+if TYPE_CHECKING:
+    from grader.trial.rest import Threads
 
 LOOK_S = 0.5
 
@@ -37,3 +42,24 @@ def test_only_sleep_and_work_are_counted(
     least_s: float, most_s: float, asleep: float, wrote: bool, share: float
 ) -> None:
     assert least_s < waited(asleep=asleep, wrote=wrote, share=share) <= most_s
+
+
+class Worker:
+    """A process as `TickPatience` sees it: what CPU time (s) it tells when asked, one value after the other."""
+
+    def __init__(self, *told_s: float) -> None:
+        self._told_s = list(told_s)
+
+    def run_time_s(self) -> float:
+        return self._told_s.pop(0)
+
+
+def test_a_node_that_works_on_at_one_instant_ends_patience() -> None:
+    patience = TickPatience(cast("Threads", Worker(7.0, 7.0, 7.9, 8.1)), 0.0)
+    assert not patience.ended(0.01)  # too soon to ask: the worker has four answers only
+    assert [patience.ended(now_s) for now_s in (0.1, 0.11, 0.2, 0.21, 0.3)] == [False, False, False, False, True]
+
+
+def test_whoever_only_wakes_and_sleeps_ends_it_by_time() -> None:
+    patience = TickPatience(cast("Threads", Worker(7.0, 7.0, 7.0)), 0.0)
+    assert [patience.ended(now_s) for now_s in (TICK_S - 1.0, TICK_S + 1.0)] == [False, True]
