@@ -1,10 +1,11 @@
 """Submissions that are right, and unlike ours: full marks, and nothing said against them but advice.
 
-`make test` leaves those out that live by wall time and take ten seconds.
+`make test` grades each third, and none of those that live by wall time and take ten seconds.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
@@ -16,7 +17,11 @@ if TYPE_CHECKING:
     from grader.tests.case import Case
     from grader.tests.grading import Gradings
 
-UNUSUAL = read_cases(CASES.parent / "unusual")
+EVERY = 3
+UNUSUAL = tuple(
+    replace(case, sample=case.sample and number % EVERY == 0)
+    for number, case in enumerate(read_cases(CASES.parent / "unusual"))
+)
 
 
 @pytest.mark.clocks("auto")
