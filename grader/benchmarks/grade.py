@@ -216,9 +216,11 @@ def _family(pids: list[int]) -> set[int]:
         if pid in found:
             continue
         found.add(pid)
-        for file in Path(f"/proc/{pid}/task").glob("*/children"):
-            with suppress(OSError):
-                waiting += map(int, file.read_text().split())
+        # Any of them may end meanwhile.
+        with suppress(OSError):
+            for file in Path(f"/proc/{pid}/task").glob("*/children"):
+                with suppress(OSError):
+                    waiting += map(int, file.read_text().split())
     return found
 
 
