@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
 ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
 """Every node publishes on these, or the grader does."""
+START_S = 0.2
+"""How long the first moment lasts: discovery takes about a tenth of a second."""
 
 
 def end_s(recording: Recording) -> float:
@@ -20,9 +22,14 @@ def end_s(recording: Recording) -> float:
 
 
 def commands(recording: Recording) -> tuple[Command, ...]:
-    """The commands that arrived before SIGINT, by arrival."""
+    """The commands that arrived before SIGINT, by arrival.
+
+    None, if none came after the first moment: what a node sends before the two sides have found each other is lost as
+    a rule, and heard where the machine happens to delay the node. That must not decide about a report.
+    """
     until = end_s(recording)
-    return tuple(command for command in recording.commands if command.t_s < until)
+    found = tuple(command for command in recording.commands if command.t_s < until)
+    return found if any(command.t_s > START_S for command in found) else ()
 
 
 def nodes(recording: Recording) -> tuple[str, ...]:

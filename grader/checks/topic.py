@@ -114,7 +114,7 @@ def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
 
 def _silent(evidence: Evidence, params: Topic) -> Finding:
     """There is a publisher of the right type on the right topic, and nothing came."""
-    seen = f"The publisher on {params.topic} is there, but no message came."
+    seen = f"The publisher on {params.topic} is there, but after the start no message came."
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
@@ -132,7 +132,8 @@ def _why_silent(evidence: Evidence) -> tuple[str, str, Where | None]:
     why = why_qos(evidence) or why_nothing(evidence, ("publish",))
     if why is not None:
         return why.text, why.diagnosis, why.where or code.start
-    return "The line that publishes is never reached.", "never-publishes", evidence.place("publish")
+    cause = "The line that publishes is never reached, or only at the start, when nobody has found the publisher yet."
+    return cause, "never-publishes", evidence.place("publish")
 
 
 def _publisher_line(evidence: Evidence, topic: str) -> Where | None:

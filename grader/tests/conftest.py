@@ -1,11 +1,13 @@
 from __future__ import annotations
 
+import os
 import signal
 from typing import TYPE_CHECKING
 
 import pytest
 
 from grader import ros, underlay
+from grader.tests.domains import default_domain
 from grader.tests.grading import gradings_of
 from grader.tests.in_ros import InRos
 
@@ -18,6 +20,9 @@ if TYPE_CHECKING:
 # Started in the background of a script or by nohup, tests have signals ignored, and all that they start would too.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+# Not the domain of the user's programs, nor that of another test process.
+os.environ["ROS_DOMAIN_ID"] = str(default_domain())
 
 collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
 """Submissions, some of which bring tests of their own."""

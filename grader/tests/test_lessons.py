@@ -18,6 +18,7 @@ from grader.checks.answers_file import read_answers
 from grader.checks.manifest import read_manifest
 from grader.ros import environment, find_ros
 from grader.tests.console import Block, blocks, differs, run
+from grader.tests.domains import own_domain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -102,7 +103,8 @@ def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
     build = next(block for block in shown if block.language == "console")
     start, said = next((s.command, s.printed[0]) for b in shown if b.about == "running" for s in b.steps())
     path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
-    env = {**os.environ, "PATH": path, "HOME": str(tmp_path), "ROS_DOMAIN_ID": "93", "PS1": "", "TERM": "dumb"}
+    ours = {"PATH": path, "HOME": str(tmp_path), "ROS_DOMAIN_ID": str(own_domain()), "PS1": "", "TERM": "dumb"}
+    env = {**os.environ, **ours}
     env["XDG_CACHE_HOME"] = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     shell = pexpect.spawn(
         "bash", ["--norc", "--noprofile"], env=env, cwd=tmp_path, encoding="utf-8", timeout=120, echo=False
@@ -132,7 +134,7 @@ def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
 @pytest.fixture
 def kitchen(tmp_path: Path) -> Iterator[dict[str, str]]:
     """Thermometer and heater run; the environment of a shell in which they can be asked about."""
-    ros, domain = find_ros(), 92
+    ros, domain = find_ros(), own_domain()
     with subprocess.Popen(
         [ros.python, Path(__file__).with_name("kitchen.py")],
         env=environment(ros, home=tmp_path, domain=domain),
@@ -173,7 +175,7 @@ def test_examples_can_be_imported(block: Block, tmp_path: Path) -> None:
     ros = find_ros()
     done = subprocess.run(
         [ros.python, "-c", block.text],
-        env=environment(ros, home=tmp_path, domain=91),
+        env=environment(ros, home=tmp_path, domain=own_domain()),
         capture_output=True,
         text=True,
         timeout=60,
@@ -200,7 +202,7 @@ def test_the_thermometer_runs_on_the_real_rclpy(block: Block, tmp_path: Path) ->
     code = f"{block.text}\n{calls}"
     done = subprocess.run(
         [ros.python, "-c", code],
-        env=environment(ros, home=tmp_path, domain=91),
+        env=environment(ros, home=tmp_path, domain=own_domain()),
         capture_output=True,
         text=True,
         timeout=60,

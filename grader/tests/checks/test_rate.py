@@ -328,5 +328,9 @@ def test_what_was_sent_before_the_clock_started_is_in_no_interval() -> None:
     assert (found.status, found.near_edge) == (Status.PASSED, False)
 
 
-def test_what_was_sent_all_at_once_before_the_clock_started_is_no_rate() -> None:
-    assert finding("rate", evidence(recording([(0.0, 2.0, 1.0)] * 3))).status is Status.FAILED
+def test_what_was_only_sent_before_the_two_sides_found_each_other_is_as_if_it_had_been_lost() -> None:
+    heard, lost = evidence(recording([(0.0, 2.0, 1.0)] * 3)), evidence(recording([]))
+    assert finding("topic", heard) == finding("topic", lost)
+    assert finding("topic", heard).diagnosis == "never-publishes"
+    assert heard.commands == ()
+    assert finding("topic", evidence(recording([(0.0, 2.0, 1.0), (0.5, 2.0, 1.0)]))).status is Status.PASSED

@@ -158,7 +158,7 @@ def test_a_silent_publisher_is_explained(
     finding = publishes(seen(("publisher", TOPIC, TWIST), stderr=Output(stderr), **more), *changes)
     assert told(finding) == (diagnosis, line)
     if end is None:
-        assert finding.seen == f"The publisher on {TOPIC} is there, but no message came."
+        assert finding.seen == f"The publisher on {TOPIC} is there, but after the start no message came."
     elif diagnosis != "crash":
         assert finding.seen.endswith("no message came. The node ended by itself after 3.0 s.")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 import re
 import shutil
@@ -15,13 +14,13 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from grader import ros, underlay
+from grader.tests.domains import own_domain
 from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 SOLUTION = Path(__file__).parents[3] / "solutions/03-circle-publisher/my_robot_controller"
-_numbers = itertools.count()
 
 
 @dataclass(frozen=True)
@@ -124,7 +123,7 @@ class World:
 def environment(home: Path, domain: int | None = None) -> dict[str, str]:
     """What a user has after `source <(grader env)`, in a domain of its own."""
     here = ros.find_ros()
-    own = 2 + (os.getpid() * 7 + next(_numbers) * 31) % 99 if domain is None else domain
+    own = own_domain() if domain is None else domain
     user = {
         "HOME": str(home),
         "PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin",
