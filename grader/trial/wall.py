@@ -67,3 +67,6 @@ class WallTrial(Stage):
             if self.students_nodes() and not self.recorder.follow_graph():
                 break
         self.recorder.snapshot()
+        # What has come by now came before the clock starts, and is in no interval; a snapshot may take a while.
+        self.spin()
+        self.node.read_output(self.now())
