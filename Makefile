@@ -23,8 +23,8 @@ cluster: python3 ## set up a machine that is to grade for another one, with Dask
 notebooks: python3 ## set up JupyterLab and nbgrader, with the course's kernel
 	@$(SET_UP) notebooks $(CHOSEN) && $(BIN)/grader kernel install
 
-test: lint ## set up, lint, and run the tests but the exhaustive ones, a process a core and one more
-	@$(BIN)/python -m pytest -n $$(($$(nproc) + 1)) --dist loadscope
+test: lint ## set up, lint, and run the tests but the exhaustive ones, a process a core
+	@$(BIN)/python -m pytest -n auto --dist loadscope
 
 test-all: lint ## all tests: in both clocks, with repetition and load (long)
 	@$(BIN)/python -m pytest -m ""

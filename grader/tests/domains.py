@@ -12,7 +12,7 @@ from typing import IO
 
 FIRST = 2
 """Domain 1 is root's own, where the machine's user may be at work."""
-BLOCKS, EACH = 12, 8
+BLOCKS, EACH = 6, 16
 """Up to domain 97: above 101 a domain's ports would lie among those that Linux gives to anybody."""
 _numbers = itertools.count()
 _held: list[IO[str]] = []

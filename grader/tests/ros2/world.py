@@ -39,6 +39,7 @@ class Running:
     process: subprocess.Popen[str]
     lines: list[str] = field(default_factory=list)
     _news: threading.Condition = field(default_factory=threading.Condition)
+    _ended: threading.Event = field(default_factory=threading.Event)
 
     def read(self, stream: IO[str]) -> None:
         """Keep what it writes, in a thread of its own."""
@@ -46,8 +47,7 @@ class Running:
             with self._news:
                 self.lines.append(line.rstrip("\n"))
                 self._news.notify_all()
-        with self._news:
-            self._news.notify_all()
+        self._ended.set()
 
     def wait_for(self, text: str, times: int = 1) -> None:
         """Wait until so many lines contain `text`."""
@@ -56,10 +56,12 @@ class Running:
         assert there, f"no line with '{text}' came:\n" + "\n".join(self.lines)
 
     def stop(self, number: int = signal.SIGINT) -> int:
-        """Send a signal to it and what it started, as a terminal does; returns the exit code."""
+        """Send a signal to it and what it started, as a terminal does; returns the exit code, with all lines read."""
         if self.process.poll() is None:
             os.killpg(self.process.pid, number)
-        return self.process.wait(HANG_S)
+        code = self.process.wait(HANG_S)
+        assert self._ended.wait(HANG_S), "something that it started goes on"
+        return code
 
 
 @dataclass
