@@ -165,7 +165,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "waits-in-callback": "a callback waits for an answer",
         "service-not-there": "it waits for a service that nobody offers",
         "method-never-called": "the method that would send is never called",
-        "never-publishes": "the line that publishes is never reached",
+        "never-publishes": "the line that publishes is never reached, or only at the start",
         "timer-milliseconds": "the period is in milliseconds",
     },
     "rates": {

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
 """Every node publishes on these, or the grader does."""
 START_S = 0.2
-"""How long the first moment lasts: discovery takes about a tenth of a second."""
+"""How long the first moment lasts: a trial's clock may start when the node is known, and its publisher not yet."""
 
 
 def end_s(recording: Recording) -> float:

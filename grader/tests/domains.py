@@ -1,4 +1,4 @@
-"""ROS domains for tests: processes that test on one machine at the same time, as in `make test`, never share one."""
+"""ROS domains for tests: up to six processes that test on one machine at the same time never share one."""
 
 from __future__ import annotations
 

@@ -28,13 +28,15 @@ def test_a_process_that_ran_between_two_looks_shows_it_though_it_sleeps_in_both(
         assert process.stdout is not None
         threads = Threads(process.pid)
         until_asleep(threads)
-        before = threads.look()
+        before, runs = threads.look(), threads.runs()
+        assert runs == before.runs
         process.stdin.write("\n")
         process.stdin.flush()
         assert process.stdout.readline() == "woken\n"
         until_asleep(threads)
         assert before.counted
         assert threads.look() != before
+        assert threads.runs() != runs
 
 
 def test_a_busy_process_does_not_rest() -> None:
@@ -69,10 +71,25 @@ def test_what_a_thread_waits_for_is_told(wait: str, call: str, timed: bool) -> N
         assert (main.call.removeprefix("p").removesuffix("6"), main.timed) == (call.removeprefix("p"), timed)
 
 
+def test_threads_of_fast_dds_are_left_out_but_never_the_main_thread() -> None:
+    named = "open(f'/proc/self/task/{threading.get_native_id()}/comm', 'w').write('dds.udp')"
+    code = (
+        f"import sys, threading, time\ndef work():\n {named}\n named.set()\n time.sleep(60)\n"
+        "named = threading.Event()\nthreading.Thread(target=work, daemon=True).start()\nnamed.wait()\n"
+        f"{named}\nprint('ready', flush=True)\nsys.stdin.readline()"
+    )
+    with python(code) as process:
+        threads = Threads(process.pid)
+        until_asleep(threads)
+        assert len(threads.look().runs) == 2
+        assert [wait.tid for wait in threads.waits()] == [process.pid]
+
+
 def test_the_end_of_a_process_is_told() -> None:
     with python(WAITS_ON_A_LINE) as process:
         threads = Threads(process.pid)
         process.kill()
         process.wait()
-        with pytest.raises(GoneError):
-            threads.look()
+        for told in (threads.look, threads.runs):
+            with pytest.raises(GoneError):
+                told()

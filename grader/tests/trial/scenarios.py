@@ -1,0 +1,26 @@
+"""What tests of a trial run where rclpy is (in_ros.py)."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+from grader.trial.wall import WallTrial
+
+
+def a_line_while_the_graph_is_looked_at() -> list[float]:
+    """When a line is taken in that the node writes during the last look before the clock starts (s)."""
+    written: list[str] = []
+    taken_in_s: list[float] = []
+
+    def read(now_s: float) -> None:
+        taken_in_s.extend([now_s] * len(written))
+        written.clear()
+
+    stage: Any = WallTrial.__new__(WallTrial)
+    stage.node = SimpleNamespace(ended=lambda: False, read_output=read)
+    stage.recorder = SimpleNamespace(follow_graph=lambda: False, snapshot=lambda: written.append("a line"))
+    stage.spin = lambda _=0.0: False
+    stage.students_nodes = lambda: ["/draw_circle"]
+    stage._discover()
+    return taken_in_s

@@ -1,0 +1,10 @@
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from grader.tests.in_ros import InRos
+
+
+def test_what_comes_before_the_clock_starts_has_no_time_after_it(in_ros: InRos) -> None:
+    assert in_ros.run("trial.scenarios:a_line_while_the_graph_is_looked_at").result == [0.0]
