@@ -15,6 +15,7 @@ from grader.checks.judge import judge, judge_early, near_edge, of_this_trial, wa
 from grader.errors import MachineError
 from grader.outcome import Report, Status
 from grader.ros import find_ros
+from grader.trial.ahead import Ahead
 from grader.trial.clues import wall_clues
 from grader.trial.inputs import draw_inputs
 from grader.trial.start import start_pose
@@ -27,12 +28,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
+    from grader.checks.judge import Early
     from grader.checks.kind import Stage
     from grader.exercise import Exercise
     from grader.outcome import Outcome
     from grader.recording import ClockName, Recording
     from grader.ros import Ros
     from grader.submission import Submission
+    from grader.trial.ahead import Runs
 
 ClockChoice = Literal["auto", "simulated", "wall"]
 
@@ -113,6 +116,7 @@ class _Grading:
     seconds: dict[str, float] = field(default_factory=dict)
     tree: bytes = b""
     """What was built, as a tar stream."""
+    ahead: Ahead = field(default_factory=Ahead)
 
     def run(self) -> Graded:
         begun = time.monotonic()
@@ -133,15 +137,17 @@ class _Grading:
                 stage = "trial"
                 evidence = self._simulator_alone(evidence, here, extra)
             else:
-                clock, why = self._first_clock(evidence)
-                # Simulator and launcher start beside the build; not for a node that cannot run.
-                with self._trial(clock, here, extra) if certain.may_run(evidence) else nullcontext() as trial:
+                with self.ahead:
+                    self._start_trials(evidence, certain, here, extra)
                     evidence = self._build(evidence, here, extra)
                     stage = "trial"
+                    self._run_ahead(evidence)
                     if wants_trial(evidence):
-                        with nullcontext(trial) if trial else self._trial(clock, here, extra) as ready:
-                            evidence = self._try_twice(evidence, ready, clock, why, here, extra)
-                evidence = self._further_trials(evidence, here, extra)
+                        evidence = self._seen_in_trial(evidence, here, extra)
+                    for spec in self.exercise.trials:
+                        if wants_trial(evidence.in_trial(spec.id)):
+                            seen = self._seen_in_trial(evidence.in_trial(spec.id), here, extra)
+                            evidence = dataclasses.replace(evidence, others={**evidence.others, spec.id: seen})
         except MachineError as error:
             evidence = dataclasses.replace(evidence, fault=Fault(stage, str(error)))
         with self._timed("checks"):
@@ -156,17 +162,30 @@ class _Grading:
         why = "the simulator ran by itself, and says the same at any pace"
         return dataclasses.replace(evidence, recording=dataclasses.replace(recording, why=why))
 
-    def _further_trials(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
-        """Run the exercise's further executables, each in a trial of its own."""
-        others: dict[str, Evidence] = {}
-        for spec in self.exercise.trials:
-            seen = evidence.in_trial(spec.id)
-            if wants_trial(seen):
-                one = dataclasses.replace(self, exercise=seen.exercise)
-                clock, why = one._first_clock(seen)
-                with one._trial(clock, here, extra) as trial:
-                    others[spec.id] = one._try_twice(seen, trial, clock, why, here, extra)
-        return dataclasses.replace(evidence, others=others)
+    def _start_trials(self, evidence: Evidence, certain: Early, here: Ros, extra: Path | None) -> None:
+        """Start simulator and launcher of every trial beside the build; not for a node that cannot run."""
+        for seen in _trials_of(evidence):
+            if certain.may_run(seen):
+                clock, _ = self._first_clock(seen)
+                self.ahead.start(seen.exercise.trial, self._of(seen)._trial(clock, here, extra))
+
+    def _run_ahead(self, evidence: Evidence) -> None:
+        """Let the nodes begin whose trials pass in simulated time."""
+        for seen in _trials_of(evidence):
+            name = seen.exercise.trial
+            if self.ahead.trial(name) and self._first_clock(seen)[0] == "simulated" and wants_trial(seen):
+                self.ahead.run(name, _package(seen), seen.exercise.executable, self.tree)
+
+    def _seen_in_trial(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
+        """The evidence with what its trial showed, which ends here."""
+        one = self._of(evidence)
+        clock, why = one._first_clock(evidence)
+        begun = self.ahead.trial(evidence.exercise.trial)
+        with nullcontext(begun) if begun else one._trial(clock, here, extra) as trial:
+            return one._try_twice(evidence, trial, clock, why, here, extra)
+
+    def _of(self, seen: Evidence) -> _Grading:
+        return dataclasses.replace(self, exercise=seen.exercise, tree=self.tree)
 
     def _first_clock(self, evidence: Evidence) -> tuple[ClockName, str]:
         if self.options.clock != "auto":
@@ -185,7 +204,7 @@ class _Grading:
         return dataclasses.replace(evidence, build=built.build)
 
     def _try_twice(
-        self, evidence: Evidence, trial: Trial, clock: ClockName, why: str, here: Ros, extra: Path | None
+        self, evidence: Evidence, trial: Runs, clock: ClockName, why: str, here: Ros, extra: Path | None
     ) -> Evidence:
         """A node that brings the simulator down once may have met a fault of the machine; twice, it is the node.
 
@@ -204,7 +223,7 @@ class _Grading:
             return dataclasses.replace(evidence, overwhelmed=str(error))
 
     def _try(
-        self, evidence: Evidence, trial: Trial, clock: ClockName, why: str, here: Ros, extra: Path | None
+        self, evidence: Evidence, trial: Runs, clock: ClockName, why: str, here: Ros, extra: Path | None
     ) -> Evidence:
         """Run the trial under the first clock, and under the wall's when that one must judge."""
         if clock == "simulated":
@@ -235,15 +254,14 @@ class _Grading:
                 tried.append(self._run(evidence, trial, "wall", why))
         return tried[-1] if _passed(tried[-1]) else min(tried, key=_disturbance)
 
-    def _run(self, evidence: Evidence, trial: Trial, clock: ClockName, why: str) -> Evidence:
-        build = evidence.build
-        assert build is not None
-        assert build.package is not None
+    def _run(self, evidence: Evidence, trial: Runs, clock: ClockName, why: str) -> Evidence:
         duration_s = self.exercise.scenario.duration_s
         simulated = clock == "simulated"
+        if not simulated:
+            self.ahead.settle()
         self.tell(f"Running {duration_s:g} s of simulated time" if simulated else f"Running {duration_s:g} s ({why})")
         with self._timed("trial"):
-            recording = trial.run(build.package, self.exercise.executable, self.tree)
+            recording = trial.run(_package(evidence), self.exercise.executable, self.tree)
         self._split(recording)
         return dataclasses.replace(evidence, recording=dataclasses.replace(recording, why=why))
 
@@ -276,6 +294,18 @@ class _Grading:
             yield
         finally:
             self.seconds[stage] = self.seconds.get(stage, 0.0) + time.monotonic() - begun
+
+
+def _trials_of(evidence: Evidence) -> list[Evidence]:
+    """The evidence as each of the exercise's trials sees it, its own first."""
+    return [evidence.in_trial(name) for name in ("", *(spec.id for spec in evidence.exercise.trials))]
+
+
+def _package(evidence: Evidence) -> str:
+    build = evidence.build
+    assert build is not None
+    assert build.package is not None
+    return build.package
 
 
 def _why_not_run(evidence: Evidence) -> str:

@@ -1,0 +1,129 @@
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, Any, cast
+
+import pytest
+
+from grader.tests.checks.made import good
+from grader.tests.waiting import HANG_S
+from grader.trial.ahead import Ahead
+from grader.trial.trial import OverwhelmedError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from grader.recording import Recording
+    from grader.trial.trial import Trial
+
+SEEN = good()
+
+
+class Made:
+    """Stands in for a trial: `runs` is what its run does."""
+
+    def __init__(self, runs: Callable[[], Recording]) -> None:
+        self.runs = runs
+        self.open = False
+        self.closed = threading.Event()
+
+    def __enter__(self) -> Made:  # noqa: PYI034 - typing.Self is Python 3.11's
+        self.open = True
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.open = False
+        self.closed.set()
+
+    def run(self, *_: Any) -> Recording:  # noqa: ANN401
+        return self.runs()
+
+
+@pytest.fixture
+def ahead(monkeypatch: pytest.MonkeyPatch) -> Ahead:
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    return Ahead()
+
+
+def start(ahead: Ahead, name: str, runs: Callable[[], Recording] = lambda: SEEN, *, run: bool = True) -> Made:
+    trial = Made(runs)
+    ahead.start(name, cast("Trial", trial))
+    if run:
+        ahead.run(name, "package", "node", b"")
+    return trial
+
+
+def test_trials_run_side_by_side(ahead: Ahead) -> None:
+    both = threading.Barrier(2)
+
+    def meets() -> Recording:
+        both.wait(HANG_S)
+        return SEEN
+
+    with ahead:
+        for name in ("", "eight"):
+            start(ahead, name, meets)
+        for name in ("", "eight"):
+            trial = ahead.trial(name)
+            assert trial is not None
+            assert trial.run("package", "node", b"") is SEEN
+
+
+def test_what_was_not_run_ahead_is_run_when_it_is_asked(ahead: Ahead) -> None:
+    with ahead:
+        made = start(ahead, "", run=False)
+        assert ahead.trial("") is cast("object", made)
+        assert ahead.trial("square") is None
+
+
+def test_a_node_that_brings_its_simulator_down_is_told_to_who_asks_for_it(ahead: Ahead) -> None:
+    def breaks() -> Recording:
+        raise OverwhelmedError("it ended")  # noqa: EM101
+
+    with ahead:
+        start(ahead, "", breaks)
+        start(ahead, "eight")
+        eight, own = ahead.trial("eight"), ahead.trial("")
+        assert eight is not None
+        assert eight.run("package", "node", b"") is SEEN
+        assert own is not None
+        with pytest.raises(OverwhelmedError, match="it ended"):
+            own.run("package", "node", b"")
+
+
+def test_settled_is_when_none_is_under_way(ahead: Ahead) -> None:
+    goes_on, ended = threading.Event(), threading.Event()
+
+    def waits() -> Recording:
+        assert goes_on.wait(HANG_S)
+        ended.set()
+        return SEEN
+
+    with ahead:
+        start(ahead, "", waits)
+        settling = threading.Thread(target=ahead.settle)
+        settling.start()
+        settling.join(0.05)
+        assert settling.is_alive()
+        goes_on.set()
+        settling.join(HANG_S)
+        assert ended.is_set()
+        assert not settling.is_alive()
+
+
+def test_leaving_ends_trials_that_nobody_waits_for(ahead: Ahead) -> None:
+    def waits() -> Recording:
+        begun.set()
+        ended_first.append(slow.closed.wait(HANG_S))
+        raise OverwhelmedError("it was ended")  # noqa: EM101
+
+    begun = threading.Event()
+    ended_first: list[bool] = []
+    with ahead:
+        slow = start(ahead, "", waits, run=False)
+        ahead.run("", "package", "node", b"")
+        others = [start(ahead, name) for name in ("eight", "square")]
+        assert begun.wait(HANG_S)
+    assert ended_first == [True], "not the pool before its trials"
+    assert not slow.open
+    assert not any(trial.open for trial in others)

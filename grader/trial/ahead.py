@@ -1,0 +1,78 @@
+"""The trials of one submission: all are started beside the build, and those in simulated time run side by side.
+
+Simulated time has no pace of its own, so company changes nothing that a trial sees. One under the wall's clock wants
+the processors for itself: whoever runs it lets the others end first (`settle`).
+"""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from grader.recording import Recording
+    from grader.trial.trial import Trial
+
+
+class Runs(Protocol):
+    """A trial that waits for its node, or has it already."""
+
+    def run(self, package: str, executable: str, tree: bytes) -> Recording:
+        """As `Trial.run`."""
+        ...
+
+
+class _UnderWay:
+    """A trial that was begun before somebody asked for it."""
+
+    def __init__(self, recording: Future[Recording]) -> None:
+        self._recording = recording
+
+    def run(self, *_: object) -> Recording:
+        return self._recording.result()
+
+
+class Ahead:
+    """A context manager; leaving it ends every trial that was started in it.
+
+    Trials have names: "" is the exercise's own.
+    """
+
+    def __init__(self) -> None:
+        self._pool = ThreadPoolExecutor(os.cpu_count() or 1)
+        self._stack = ExitStack()
+        self._trials: dict[str, Trial] = {}
+        self._under_way: dict[str, Future[Recording]] = {}
+
+    def __enter__(self) -> Ahead:  # noqa: PYI034 - typing.Self is Python 3.11's
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        # The trials first: their ends are what the pool's threads wait for.
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        self._stack.close()
+        self._pool.shutdown()
+
+    def start(self, name: str, trial: Trial) -> None:
+        """Start simulator and launcher.
+
+        Raises:
+            MachineError: they cannot be started.
+        """
+        self._trials[name] = self._stack.enter_context(trial)
+
+    def run(self, name: str, package: str, executable: str, tree: bytes) -> None:
+        """Begin to run the node of a trial that was started; what comes of it is told by `trial`."""
+        self._under_way[name] = self._pool.submit(self._trials[name].run, package, executable, tree)
+
+    def trial(self, name: str) -> Runs | None:
+        """The trial to ask for its recording; None when it was not started."""
+        if name in self._under_way:
+            return _UnderWay(self._under_way[name])
+        return self._trials.get(name)
+
+    def settle(self) -> None:
+        """Wait until no trial is under way."""
+        wait(self._under_way.values())
