@@ -6,17 +6,19 @@ import base64
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-import numpy.typing as npt
+from grader.lazy import np
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    import numpy.typing as npt
+
+    Floats = npt.NDArray[np.float64]
 
 AFTER_STALL_S = 0.05
 """How long after a stall things still catch up (s)."""
 
 ClockName = Literal["simulated", "wall"]
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
-import numpy.typing as npt
+from grader.lazy import np
 
-Floats = npt.NDArray[np.float64]
+if TYPE_CHECKING:
+    from grader.recording import Floats
 
 FLAT = 1e-9
 """A fit whose quadratic part is smaller than this is a straight line."""

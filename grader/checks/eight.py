@@ -6,13 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from grader.checks.circle import Circle, fit_circle
 from grader.checks.kind import Kind, choice, number
 from grader.checks.path import not_driven
 from grader.checks.tolerance import Band, unless_starved
 from grader.checks.track import RESTS_M, STRAIGHT_RAD
+from grader.lazy import np
 from grader.outcome import Finding, failed, passed
 
 if TYPE_CHECKING:

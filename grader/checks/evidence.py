@@ -11,13 +11,13 @@ from grader.checks.answers_file import Answers, read_answers
 from grader.checks.code import Code, module_file, read_code
 from grader.checks.manifest import Manifest, read_manifest
 from grader.checks.setup_py import SetupPy, read_setup_py
+from grader.checks.track import Track, track_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from grader.build import Build
     from grader.checks.kind import Stage
-    from grader.checks.track import Track
     from grader.exercise import Exercise
     from grader.outcome import Where
     from grader.recording import Command, Recording
@@ -101,8 +101,6 @@ class Evidence:
     @cached_property
     def track(self) -> Track:
         """The turtle's way until SIGINT."""
-        from grader.checks.track import track_of  # numpy, 0.1 s
-
         return track_of(self.trial)
 
     def entry_point(self) -> str | None:

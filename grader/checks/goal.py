@@ -6,11 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from grader.checks.kind import Kind, number
 from grader.checks.path import MOVED_M, not_driven
 from grader.checks.tolerance import Band
+from grader.lazy import np
 from grader.outcome import Finding, failed, passed
 
 if TYPE_CHECKING:

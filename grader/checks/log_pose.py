@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from grader.checks import lines
 from grader.checks.kind import Kind, number, text
+from grader.lazy import np
 from grader.outcome import Finding, Status, failed, passed
 
 if TYPE_CHECKING:

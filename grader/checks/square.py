@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from grader.checks.kind import Kind, choice, number
 from grader.checks.path import not_driven
 from grader.checks.tolerance import Band, unless_starved
 from grader.checks.track import RESTS_M
+from grader.lazy import np
 from grader.outcome import Finding, failed, passed
 from grader.words import count
 

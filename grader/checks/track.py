@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from grader.checks import seen
-from grader.checks.circle import Circle, Floats, fit_circle, turns_about
+from grader.checks.circle import Circle, fit_circle, turns_about
+from grader.lazy import np
 
 if TYPE_CHECKING:
-    from grader.recording import Recording
+    from grader.recording import Floats, Recording
 
 RESTS_M = 1e-9
 """A frame in which the turtle gets no further than this is one of rest."""

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import numpy as np
-
 from grader.checks.eight import Eight
 from grader.checks.goal import Goal
 from grader.checks.own import OwnCircle, own_circle_params
 from grader.checks.path import CircleParams, expected_centre
 from grader.checks.square import SIDES, Square
 from grader.checks.track import RESTS_M, STRAIGHT_RAD
+from grader.lazy import np
 from grader.recording import Pose
 from grader.report.shapes import Line, Point, Ring
 

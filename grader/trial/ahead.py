@@ -6,6 +6,7 @@ the processors for itself: whoever runs it lets the others end first (`settle`).
 
 from __future__ import annotations
 
+import importlib
 import os
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack
@@ -47,6 +48,7 @@ class Ahead:
         self._under_way: dict[str, Future[Recording]] = {}
 
     def __enter__(self) -> Ahead:  # noqa: PYI034 - typing.Self is Python 3.11's
+        self._pool.submit(importlib.import_module, "numpy")  # what reads a recording needs it, and now there is time
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -18,6 +18,7 @@ import grader
 from grader import ros, sandbox
 from grader.control_group import ControlGroup, control_group
 from grader.errors import MachineError
+from grader.recording import from_json
 from grader.trial.inputs import Inputs
 
 if TYPE_CHECKING:
@@ -98,8 +99,6 @@ class Trial:
             OverwhelmedError: the trial could not be finished because of what the node did.
             MachineError: the simulator or the sandbox failed.
         """
-        from grader.recording import from_json  # numpy takes its time: not before it is needed
-
         install = self._workspace / "install"
         prefix = install / package
         env = ros.environment(
@@ -129,8 +128,6 @@ class Trial:
         Raises:
             MachineError: it failed.
         """
-        from grader.recording import from_json
-
         self._limit()
         return from_json(self._answer("recording"))
 

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.checks.circle import Floats, fit_circle, turns_about
+from grader.checks.circle import fit_circle, turns_about
+
+if TYPE_CHECKING:
+    from grader.recording import Floats
 
 CENTRES = st.floats(-20.0, 20.0)
 RADII = st.floats(0.05, 20.0)
