@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class Measured:
     """Arrivals (s): intervals between them, their mean, the wait before the first and after the last.
 
-    `intervals` and `mean_s` leave out those that a stall of the machine made longer or shorter, and those from before
-    the clock started; `trusted` is the share that no stall spoilt.
+    `intervals` and `mean_s` leave out those that a stall of the machine made longer or shorter, and those that begin at
+    the very start (`seen.START_S`); `trusted` is the share that no stall spoilt.
     """
 
     arrivals: tuple[float, ...]
@@ -39,7 +39,7 @@ def measure_arrivals(recording: Recording, times_s: Iterable[float]) -> Measured
         return Measured((), (), (), 1.0, 0.0, until, until)
     every = list(pairwise(arrivals))
     # What was sent before the clock started came when the two sides had found each other, and not when it was sent.
-    pairs = [pair for pair in every if pair[0] > 0.0] or every
+    pairs = [pair for pair in every if pair[0] > seen.START_S] or every
     trusted = [pair for pair in pairs if not any(recording.stalled(t_s) for t_s in pair)]
     intervals = tuple(later - earlier for earlier, later in trusted)
     mean = sum(intervals) / len(intervals) if intervals else 0.0

@@ -162,4 +162,4 @@ def check_clocks_agree(case: Case, gradings: Gradings) -> None:
         {id_: tuple(outcome[key] for key in keys) for id_, outcome in gradings.of(case, clock).outcomes().items()}
         for clock in ("auto", "wall")
     )
-    assert auto == wall
+    assert auto == wall, f"auto:\n{all_told(gradings.of(case, 'auto'))}\nwall:\n{all_told(gradings.of(case, 'wall'))}"

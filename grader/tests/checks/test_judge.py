@@ -39,7 +39,7 @@ def test_a_good_submission_gets_all_points_and_exit_code_0() -> None:
         ("radius 2.2", 55.0),
         ("one hertz", 80.0),
         ("three quarters", 55.0),
-        ("beside its place", 35.0),
+        ("beside its place", 55.0),
         ("ignores Ctrl-C", 95.0),
         ("other name", 95.0),
         ("no messages", 15.0),
