@@ -220,6 +220,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "lobe-radius": "a lobe has another size",
         "lobe-angle": "a lobe is open, or goes on too long",
         "lobe-gap": "the lobes do not meet",
+        "too-soon": "the first commands were sent before anybody listened",
         "curves": "a square with curves",
         "too-few-sides": "a square with fewer than four sides",
         "side-length": "a side has another length",

@@ -10,6 +10,7 @@ from grader.checks.circle import Circle, fit_circle
 from grader.checks.kind import Kind, choice, number
 from grader.checks.path import not_driven
 from grader.checks.tolerance import Band, unless_starved
+from grader.checks.too_soon import too_soon
 from grader.checks.track import RESTS_M, STRAIGHT_RAD
 from grader.lazy import np
 from grader.outcome import Finding, failed, passed
@@ -83,11 +84,14 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
         cause = "angular.z above 0 turns to the left."
         return failed("wrong-side-first", seen, f"The first lobe goes to the {params.first}.", cause, where=where)
     near = False
-    for name, lobe in zip(NAMES, lobes, strict=False):
-        finding, is_near = _lobe(evidence, params, name, lobe, last=name == NAMES[-1])
+    first, second = (
+        _lobe(evidence, params, name, lobe, last=name == NAMES[-1]) for name, lobe in zip(NAMES, lobes, strict=False)
+    )
+    for finding, is_near in (first, second):
         near |= is_near
         if finding is not None:
-            return finding
+            open_ = finding.diagnosis == "lobe-angle" and abs(lobes[0].turned_rad) < math.tau
+            return too_soon(finding, evidence) if open_ and second[0] is None else finding
     return passed(f"The turtle drove an eight of radius {params.radius_m:.1f} m.", near_edge=near)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from grader.checks.kind import Kind, choice, number
 from grader.checks.path import not_driven
 from grader.checks.tolerance import Band, unless_starved
+from grader.checks.too_soon import too_soon
 from grader.checks.track import RESTS_M
 from grader.lazy import np
 from grader.outcome import Finding, failed, passed
@@ -108,6 +109,8 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
             seen = f"The {name} side is {length:.2f} m long: {abs(more):.2f} m too {'long' if more > 0 else 'short'}."
             cause = "A side is speed times time, and the time is a number of calls of the timer."
             finding = failed("side-length", seen, expected, cause, where=where, near_edge=near)
+            if name == ORDINALS[0] and more < 0.0 and all(map(long.holds, sides.lengths[1:SIDES])):
+                finding = too_soon(finding, evidence)
             return unless_starved(finding, recording, abs(more) - params.side_tolerance_m, float(speed.max()))
     for name, corner in zip(ORDINALS, corners, strict=False):
         if not right.holds(sign * corner):

@@ -30,6 +30,7 @@ SHOWN_BY_TESTS = {
     "resource-marker": "checks/test_building.py",
     "slow-stop": "checks/test_running.py",
     "square-gap": "checks/test_square.py",
+    "too-soon": "checks/test_square.py",
     "wrong-centre": "checks/test_path.py",
 }
 """Diagnosis -> the test that shows it: no ordinary submission leads to it, but a hostile one, or a class."""

@@ -27,6 +27,23 @@ def test_an_eight_is_one_wherever_it_begins_and_however_it_is_turned() -> None:
         assert eight(lobe(1), lobe(-1), start=start).seen == "The turtle drove an eight of radius 1.0 m."
 
 
+@pytest.mark.parametrize(
+    ("first", "second", "clock", "diagnosis"),
+    [
+        (315.0, 360.0, "wall", "too-soon"),
+        (315.0, 360.0, "simulated", "lobe-angle"),
+        (315.0, 200.0, "wall", "lobe-angle"),
+        (396.0, 360.0, "wall", "lobe-angle"),
+        (360.0, 200.0, "wall", "lobe-angle"),
+    ],
+)
+def test_a_first_lobe_that_lacks_its_beginning_by_the_walls_clock_was_begun_before_anybody_listened(
+    first: float, second: float, clock: str, diagnosis: str
+) -> None:
+    seen = recording(legs(lobe(1, degrees=first), lobe(-1, degrees=second)), clock=clock)
+    assert found(EIGHT, evidence(seen), radius_m=1.0).diagnosis == diagnosis
+
+
 def test_a_rest_between_the_lobes_is_allowed_and_going_on_after_them_too() -> None:
     assert eight(lobe(1), (5, 0.0, 0.0), lobe(-1)).status is Status.PASSED
     assert eight(lobe(1), lobe(-1), (12, TURN, -TURN)).status is Status.PASSED

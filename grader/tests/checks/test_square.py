@@ -7,7 +7,7 @@ import pytest
 from grader.checks.square import SQUARE
 from grader.outcome import Finding, Status
 from grader.recording import Pose
-from grader.tests.checks.made import NODE_FILE, TICK_S, evidence, found, legs, recording
+from grader.tests.checks.made import NODE_FILE, TICK_S, evidence, found, legs, recording, submission
 
 TICKS = 10
 Leg = tuple[int, float, float]
@@ -122,6 +122,20 @@ def test_what_stalls_of_the_machine_may_have_done_is_not_judged(parts: list[Leg]
     for share, status in ((1.02, Status.ERROR), (0.98, Status.FAILED)):
         stalled = recording(legs(*parts), Pose(4.0, 4.0, 0.0), clock="wall", stalls=((1.0, 1.0 + share * off / per_s),))
         assert found(SQUARE, evidence(stalled), side_m=2.0).status is status
+
+
+def too_soon(sides: tuple[float, ...], clock: str = "wall", publish: str = "publish(Twist())") -> str | None:
+    asks = submission({NODE_FILE: f"class Square:\n    def tick(self):\n        self.publisher.{publish}\n"})
+    seen = evidence(recording(legs(*round_(sides)), clock=clock), asks)
+    return found(SQUARE, seen, side_m=2.0).diagnosis
+
+
+def test_a_first_side_that_lacks_its_beginning_by_the_walls_clock_was_begun_before_anybody_listened() -> None:
+    assert too_soon((1.7, 2.0, 2.0, 2.0)) == "too-soon"
+    for others in ((2.3, 2.0, 2.0, 2.0), (1.7, 2.0, 2.0, 1.6), (2.0, 1.7, 2.0, 2.0)):
+        assert too_soon(others) == "side-length"
+    assert too_soon((1.7, 2.0, 2.0, 2.0), clock="simulated") == "side-length"
+    assert too_soon((1.7, 2.0, 2.0, 2.0), publish="get_subscription_count()") == "side-length"
 
 
 def test_the_corner_after_the_last_side_is_nobodys_business() -> None:
