@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import time
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
@@ -48,11 +49,15 @@ UNASKED_SEED = 1
 
 @dataclass(frozen=True)
 class Options:
-    """How to grade: `in_cell` confines the student's code (sandbox.py)."""
+    """How to grade: `in_cell` confines the student's code (sandbox.py).
+
+    `trials_at_once` of an exercise with several run side by side: one where other gradings keep the processors busy.
+    """
 
     in_cell: bool
     clock: ClockChoice = "auto"
     seed: int | None = None
+    trials_at_once: int = field(default_factory=lambda: len(os.sched_getaffinity(0)))
 
 
 @dataclass(frozen=True)
@@ -81,7 +86,8 @@ def grade(
     """
     turns = Turns(turns_folder())
     with turns.shared():
-        return _Grading(exercise, submission, options, tell, early, build, trial, turns).run()
+        ahead = Ahead(options.trials_at_once)
+        return _Grading(exercise, submission, options, tell, early, build, trial, turns, ahead).run()
 
 
 def report_of(evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float]) -> Report:
@@ -113,10 +119,10 @@ class _Grading:
     builder: Callable[..., workspace.Built]
     trials: Callable[..., Trial]
     turns: Turns
+    ahead: Ahead
     seconds: dict[str, float] = field(default_factory=dict)
     tree: bytes = b""
     """What was built, as a tar stream."""
-    ahead: Ahead = field(default_factory=Ahead)
 
     def run(self) -> Graded:
         begun = time.monotonic()
@@ -163,8 +169,8 @@ class _Grading:
         return dataclasses.replace(evidence, recording=dataclasses.replace(recording, why=why))
 
     def _start_trials(self, evidence: Evidence, certain: Early, here: Ros, extra: Path | None) -> None:
-        """Start simulator and launcher of every trial beside the build; not for a node that cannot run."""
-        for seen in _trials_of(evidence):
+        """Start simulators and launchers beside the build, of all trials or one; none for a node that cannot run."""
+        for seen in _trials_of(evidence) if self.options.trials_at_once > 1 else (evidence,):
             if certain.may_run(seen):
                 clock, _ = self._first_clock(seen)
                 self.ahead.start(seen.exercise.trial, self._of(seen)._trial(clock, here, extra))

@@ -7,7 +7,6 @@ the processors for itself: whoever runs it lets the others end first (`settle`).
 from __future__ import annotations
 
 import importlib
-import os
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Protocol
@@ -38,11 +37,11 @@ class _UnderWay:
 class Ahead:
     """A context manager; leaving it ends every trial that was started in it.
 
-    Trials have names: "" is the exercise's own.
+    Trials have names: "" is the exercise's own. `at_once` of them run side by side.
     """
 
-    def __init__(self) -> None:
-        self._pool = ThreadPoolExecutor(os.cpu_count() or 1)
+    def __init__(self, at_once: int) -> None:
+        self._pool = ThreadPoolExecutor(at_once)
         self._stack = ExitStack()
         self._trials: dict[str, Trial] = {}
         self._under_way: dict[str, Future[Recording]] = {}

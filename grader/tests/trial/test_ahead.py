@@ -40,9 +40,8 @@ class Made:
 
 
 @pytest.fixture
-def ahead(monkeypatch: pytest.MonkeyPatch) -> Ahead:
-    monkeypatch.setattr("os.cpu_count", lambda: 2)
-    return Ahead()
+def ahead() -> Ahead:
+    return Ahead(at_once=2)
 
 
 def start(ahead: Ahead, name: str, runs: Callable[[], Recording] = lambda: SEEN, *, run: bool = True) -> Made:
