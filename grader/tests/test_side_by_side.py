@@ -1,58 +1,111 @@
-"""How many trials of an exercise are begun beside its build."""
+"""An exercise's trials: begun beside its build, run side by side, and those by the wall's clock after the others."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
+import time
+from dataclasses import dataclass, field, replace
+from threading import Barrier
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader import grade as grading
-from grader import underlay
 from grader.errors import MachineError
 from grader.exercise import find_exercise
 from grader.grade import Options, grade
 from grader.outcome import Status
-from grader.ros import Ros
 from grader.submission import open_submission
 from grader.tests.case import ROOT
+from grader.tests.checks.made import BUILD, good
+from grader.tests.no_ros import without_ros
+from grader.tests.waiting import HANG_S
+from grader.workspace import Built
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from grader.grade import Graded
+    from grader.recording import ClockName, Recording
+    from grader.trial.trial import Plan
 
 STEP = "07-challenges"
-NO_ROS = Ros("wheels", "0", Path("/"), (), Path("python3"), (), ())
+PACKAGE = "my_robot_controller"
+NODES = ("own_circle", "figure_eight", "draw_square", "go_to_goal")
 
 
-class Started:
-    """Stands in for the class of trials, and counts those that are open."""
+@dataclass
+class Trials:
+    """Stands in for the class of trials; `ended` are the clocks of those that ran, in this order."""
 
-    def __init__(self) -> None:
-        self.open = 0
+    open: int = 0
+    ended: list[str] = field(default_factory=list)
+    both: Barrier = field(default_factory=lambda: Barrier(2))
 
-    def __call__(self, *_: object, in_cell: bool) -> Any:  # noqa: ANN401 - a Trial to whoever makes it
+    def __call__(self, plan: Plan, *_: object, in_cell: bool) -> Any:  # noqa: ANN401 - a Trial to whoever makes it
         assert not in_cell
-        return self
+        return _Made(self, plan.clock)
 
-    def __enter__(self) -> Started:  # noqa: PYI034 - typing.Self is Python 3.11's
-        self.open += 1
+
+@dataclass
+class _Made:
+    trials: Trials
+    clock: ClockName
+
+    def __enter__(self) -> _Made:  # noqa: PYI034 - typing.Self is Python 3.11's
+        self.trials.open += 1
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.open -= 1
+        self.trials.open -= 1
+
+    def run(self, _package: str, executable: str, _tree: bytes) -> Recording:
+        if executable in ("own_circle", "draw_square"):
+            self.trials.both.wait(HANG_S)
+        elif executable == "go_to_goal":
+            time.sleep(0.1)  # it is the last, unless somebody does not wait for it
+        self.trials.ended.append(self.clock)
+        return replace(good(), clock=self.clock)
+
+
+@pytest.fixture(autouse=True)
+def nobody_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    without_ros(tmp_path, monkeypatch)
+
+
+def graded(trials: Trials, at_once: int, build: Any, more: bytes = b"") -> Graded:  # noqa: ANN401
+    """The solution of step 07; its eight has `more` at the end."""
+    given = open_submission(ROOT / "solutions" / STEP)
+    eight = f"{PACKAGE}/figure_eight.py"
+    given = replace(given, files={**given.files, eight: given.files[eight] + more})
+    options = Options(in_cell=False, trials_at_once=at_once)
+    return grade(find_exercise(STEP), given, options, build=build, trial=trials)
 
 
 @pytest.mark.parametrize(("at_once", "begun"), [(2, 4), (1, 1)])
-def test_all_are_begun_where_they_may_run_side_by_side(
-    at_once: int, begun: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(grading, "find_ros", lambda: NO_ROS)
-    monkeypatch.setattr(underlay, "ensure", lambda *_: None)
-    trials, seen = Started(), []
+def test_all_are_begun_where_they_may_run_side_by_side(at_once: int, begun: int) -> None:
+    trials = Trials()
+    seen = []
 
     def build(*_: object, **__: object) -> Any:  # noqa: ANN401
         seen.append(trials.open)
         raise MachineError("No compiler.")  # noqa: EM101
 
-    options = Options(in_cell=False, trials_at_once=at_once)
-    graded = grade(find_exercise(STEP), open_submission(ROOT / "solutions" / STEP), options, build=build, trial=trials)
+    made = graded(trials, at_once, build)
     assert (seen, trials.open) == ([begun], 0)
-    assert {outcome.status for outcome in graded.report.outcomes} == {Status.PASSED, Status.ERROR}
+    assert {outcome.status for outcome in made.report.outcomes} == {Status.PASSED, Status.ERROR}
+
+
+def test_one_by_the_walls_clock_waits_for_those_that_run_side_by_side() -> None:
+    trials = Trials()
+    scripts = (ROOT / "solutions" / STEP / PACKAGE / PACKAGE).glob("*.py")
+    built = replace(
+        BUILD,
+        installed=(
+            *BUILD.installed,
+            *(f"lib/{PACKAGE}/{node}" for node in NODES),
+            *(f"lib/python3.11/site-packages/{PACKAGE}/{script.name}" for script in scripts),
+        ),
+        executables=NODES,
+        entry_points={node: f"{PACKAGE}.{node}:main" for node in NODES},
+    )
+    graded(trials, 2, lambda *_, **__: Built(built, b""), b"\nimport time\n\ntime.sleep(0.0)\n")
+    assert trials.ended == ["simulated", "simulated", "simulated", "wall"]

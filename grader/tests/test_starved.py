@@ -4,24 +4,23 @@ from __future__ import annotations
 
 import fcntl
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader import grade as grading
-from grader import turns, underlay
+from grader import turns
 from grader.grade import WALL_TRIALS, Options, grade
 from grader.outcome import Status
-from grader.ros import Ros
 from grader.tests.checks.made import BUILD, every, exercise, good, recording, submission
+from grader.tests.no_ros import without_ros
 from grader.workspace import Built
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from grader.grade import Graded
     from grader.recording import Recording
 
-NO_ROS = Ros("wheels", "0", Path("/"), (), Path("python3"), (), ())
 RIGHT = replace(good(), clock="wall")
 WRONG = recording(every(0.25, 2.0, 1.0), clock="wall")
 
@@ -61,10 +60,7 @@ def _is_taken(lock: Path) -> bool:
 
 @pytest.fixture(autouse=True)
 def nobody_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """No ROS 2 is looked for, and whoever else grades on this machine is not waited for."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(grading, "find_ros", lambda: NO_ROS)
-    monkeypatch.setattr(underlay, "ensure", lambda *_: None)
+    without_ros(tmp_path, monkeypatch)
 
 
 def graded(trials: Trials) -> Graded:
