@@ -2,7 +2,10 @@
 
     python -m grader.benchmarks.mistakes [--only NNN ...]
 
-F is a bare colcon build of the package and a bare process with one rclpy node (benchmarks/check.py).
+F is what the same work costs bare: a colcon build of the package and a process with one rclpy node for each node that
+the exercise runs (benchmarks/bare.py); 04-package-files runs two, 07-challenges four. It is measured again every few
+cases, since machines change their pace within the minutes that this takes. A slow case is measured once more, and the
+faster of the two counts: what is slow by itself is slow twice.
 """
 
 from __future__ import annotations
@@ -12,9 +15,10 @@ import json
 import tempfile
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from grader.benchmarks.bare import bare_costs
-from grader.benchmarks.measure import cost
+from grader.benchmarks.measure import cost, median
 from grader.checks.evidence import Evidence
 from grader.checks.judge import judge_early
 from grader.exercise import find_exercise
@@ -23,8 +27,14 @@ from grader.tests.case import ROOT, Case, make_submission, read_cases
 from grader.tests.catalogue import MISTAKES
 from grader.tests.grading import GRADER, grade
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from grader.exercise import Exercise
+
 MOST_STATIC_S = 0.4
 MOST_F = 2.0
+CASES_A_PIECE = 10
 
 
 def main() -> None:
@@ -36,27 +46,49 @@ def main() -> None:
     cases = [case for case in cases if not asked.only or case.name.startswith(tuple(asked.only))]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        bare = bare_costs(ROOT / "solutions/03-circle-publisher", folder)
-        f_s = bare["colcon build"].wall_s + bare["rclpy node"].wall_s
-        start_s = cost([str(GRADER), "check", "--help"]).wall_s
+        start_s = median(lambda: cost([str(GRADER), "check", "--help"]), 5).wall_s
         static = {case.name: _static_s(case, folder / "static" / case.name) for case in cases}
-        whole = {case.name: _whole_s(case, folder / "whole" / case.name) for case in cases}
+        ratios: dict[str, float] = {}
+        for first in range(0, len(cases), CASES_A_PIECE):
+            ratios |= _ratios(cases[first : first + CASES_A_PIECE], folder / f"whole{first}")
     slowest = max(static, key=lambda name: static[name])
-    print(f"F = {f_s:.2f} s")
     print(f"static findings: at most {static[slowest]:.3f} s ({slowest}), start of the command {start_s:.2f} s")
     print(f"  together {static[slowest] + start_s:.2f} s; aim {MOST_STATIC_S:g} s")
-    simulated = {name: seconds for name, seconds in whole.items() if seconds is not None}
-    if simulated:
-        longest = max(simulated, key=lambda name: simulated[name])
-        print(f"slowest in simulated time: {simulated[longest] / f_s:.2f} F ({longest}); aim {MOST_F:g} F")
-        over = [name for name, seconds in simulated.items() if seconds > MOST_F * f_s]
-        print(f"  over the aim: {', '.join(over) or 'none'}")
+    for exercise in sorted({_exercise(case).id for case in cases}):
+        names = [case.name for case in cases if _exercise(case).id == exercise]
+        of_it = {name: ratios[name] for name in names if name in ratios}
+        if of_it:
+            longest = max(of_it, key=lambda name: of_it[name])
+            print(f"{exercise}: {len(of_it)} in simulated time, the slowest {of_it[longest]:.2f} F ({longest})")
+    over = [name for name, ratio in ratios.items() if ratio > MOST_F]
+    print(f"over the aim of {MOST_F:g} F: {', '.join(over) or 'none'}")
+
+
+def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
+    """What the checks of some cases cost in F, without those that wall time judged."""
+    bare = bare_costs(ROOT / "solutions/03-circle-publisher", folder / "bare")
+    found: dict[str, float] = {}
+    for case in cases:
+        nodes = 1 + len(_exercise(case).trials)
+        f_s = bare["colcon build"].wall_s + nodes * bare["rclpy node"].wall_s
+        seconds = _whole_s(case, folder / case.name)
+        if seconds is not None and seconds > MOST_F * f_s:
+            again_s = _whole_s(case, folder / f"{case.name}-again")
+            seconds = seconds if again_s is None else min(seconds, again_s)
+        if seconds is not None:
+            found[case.name] = seconds / f_s
+            print(f"{case.name}: {seconds:.2f} s, F = {f_s:.2f} s, {found[case.name]:.2f} F", flush=True)
+    return found
+
+
+def _exercise(case: Case) -> Exercise:
+    return find_exercise(case.exercise or case.base)
 
 
 def _static_s(case: Case, folder: Path) -> float:
     """Seconds from a folder to what its files tell."""
     given = make_submission(case, folder)
-    exercise = find_exercise(case.exercise or case.base)
+    exercise = _exercise(case)
     begun = time.monotonic()
     submission = open_submission(given) if exercise.package else open_answers(given)
     judge_early(Evidence(exercise, submission))

@@ -158,7 +158,8 @@ class SimulatedTrial(Stage):
             if runs == self._handled:
                 return
             self._handled = runs
-            self.spin()
+            if not self.spin():  # they took an acknowledgement: nobody has anything to answer
+                return
 
     # --- handshake --------------------------------------------------------------------------------------------
 
