@@ -101,7 +101,7 @@ def report_of(evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, secon
         grader=grader.__version__,
         ros=ros,
         clock=recording.clock if recording else "none",
-        clock_why=recording.why if recording else _why_not_run(evidence),
+        clock_why=_why_this_clock(evidence),
         seed=recording.seed if recording else None,
         outcomes=outcomes,
         seconds=seconds,
@@ -313,6 +313,16 @@ def _package(evidence: Evidence) -> str:
     assert build is not None
     assert build.package is not None
     return build.package
+
+
+def _why_this_clock(evidence: Evidence) -> str:
+    """Why the first trial was judged under its clock, and which others were judged under another."""
+    first = evidence.recording
+    if first is None:
+        return _why_not_run(evidence)
+    others = [(seen.exercise.executable, seen.recording) for seen in evidence.others.values()]
+    differ = [(name, other) for name, other in others if other is not None and other.clock != first.clock]
+    return "; ".join([first.why, *(f"{name} in {other.clock} time: {other.why}" for name, other in differ)])
 
 
 def _why_not_run(evidence: Evidence) -> str:

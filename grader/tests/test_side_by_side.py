@@ -110,6 +110,8 @@ def test_the_longest_run_first_and_side_by_side_and_one_by_the_walls_clock_when_
         executables=NODES,
         entry_points={node: f"{PACKAGE}.{node}:main" for node in NODES},
     )
-    graded(trials, 2, lambda *_, **__: Built(built, b""), b"\nimport time\n\ntime.sleep(0.0)\n")
+    made = graded(trials, 2, lambda *_, **__: Built(built, b""), b"\nimport time\n\ntime.sleep(0.0)\n")
     assert set(trials.begun[:2]) == LONGEST
     assert trials.ended == ["simulated", "simulated", "simulated", "wall"]
+    assert made.report.clock == "simulated"
+    assert "; figure_eight in wall time: " in made.report.clock_why

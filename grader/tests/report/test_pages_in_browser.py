@@ -194,7 +194,7 @@ def test_the_first_key_leads_past_the_links(page: Page, pages: Path) -> None:
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
     page.keyboard.press("Enter")
-    assert page.url.endswith("#main")
+    page.wait_for_url(lambda url: url.endswith("#main"))
 
 
 @pytest.mark.parametrize("name", [*GIVEN, "class"])
