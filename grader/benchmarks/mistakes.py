@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import statistics
 import tempfile
 import time
@@ -83,9 +84,10 @@ def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
 
 
 def _beside_f(case: Case, folder: Path) -> float:
-    """The ratio of a check to an F that is measured right before it."""
+    """The ratio of a check to an F that is measured right before it; infinite where wall time judged this time."""
     bare = bare_costs(SOLUTION, folder / "bare")
-    return (_whole_s(case, folder / "whole") or 0.0) / _f_s(case, bare)
+    seconds = _whole_s(case, folder / "whole")
+    return math.inf if seconds is None else seconds / _f_s(case, bare)
 
 
 def _f_s(case: Case, bare: Mapping[str, Cost]) -> float:

@@ -135,7 +135,7 @@ class Stage:
 def leave_out_events(node: Node) -> None:
     """Do not wait for mismatches (of types, of QoS) on a node's topics, except on the turtle's, where a check asks.
 
-    rclpy hands every source of events to every wait anew, and a wait is most of what a message costs here.
+    rclpy hands every source of events to every wait anew. Topics that the node joins later keep theirs.
     """
     for endpoint in (*node.publishers, *node.subscriptions):
         if not endpoint.topic_name.startswith("/turtle1/"):
