@@ -11,9 +11,16 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 DDS = "dds."
 """How Fast DDS begins the names of its threads."""
+_DDS_TIMERS = "dds.ev"
+"""The thread of its timers: it sends what is due, and receives nothing."""
+_SLEEPING = ord("S")
 # x86-64 numbers of the system calls in which a thread waits for a time to pass.
 _SLEEPS = {35: "nanosleep", 230: "clock_nanosleep"}
 # Which argument is the time-out (the system call's number itself is word 0), and what it is when there is none.
@@ -60,12 +67,27 @@ class Wait:
     timed: bool
 
 
-class Threads:
-    """The threads of a process, read through kept descriptors; `dds` chooses Fast DDS's own, the others, or all."""
+def of_dds(thread: str) -> bool:
+    """Whether a thread of this name is one of Fast DDS's."""
+    return thread.startswith(DDS)
 
-    def __init__(self, pid: int, *, dds: bool | None = None) -> None:
+
+def not_of_dds(thread: str) -> bool:
+    """Whether a thread of this name is the program's own."""
+    return not thread.startswith(DDS)
+
+
+def receives(thread: str) -> bool:
+    """Whether what arrives may come through a thread of this name."""
+    return thread.startswith(DDS) and not thread.startswith(_DDS_TIMERS)
+
+
+class Threads:
+    """The threads of a process, or those whose names are `wanted`, read through kept descriptors."""
+
+    def __init__(self, pid: int, wanted: Callable[[str], bool] = lambda _: True) -> None:
         self.pid = pid
-        self._dds = dds
+        self._wanted = wanted
         self._names: dict[int, str] = {}
         self._files: dict[int, tuple[int, int]] = {}
         self._main = self._open(pid, "stat")
@@ -88,15 +110,15 @@ class Threads:
         for _ in range(100):
             self._refresh()
             try:
-                states, runs = [], []
+                asleep, runs = True, []
                 for stat, schedstat in self._files.values():
                     # In this order: who says S and is only just falling asleep has another count a moment later.
-                    states.append(_fields(os.pread(stat, 512, 0))[0])
+                    asleep &= _state(os.pread(stat, 64, 0)) == _SLEEPING
                     runs.append(os.pread(schedstat, 64, 0))
             except ProcessLookupError:  # a thread ended meanwhile
                 self._count = b""
                 continue
-            return Look(asleep=all(state == b"S" for state in states), runs=tuple(runs))
+            return Look(asleep, tuple(runs))
         raise GoneError
 
     def runs(self) -> tuple[bytes, ...]:
@@ -120,7 +142,7 @@ class Threads:
             GoneError: the process has ended.
         """
         try:
-            return _fields(os.pread(self._main, 512, 0))[0] not in b"RD"
+            return _state(os.pread(self._main, 64, 0)) not in b"RD"
         except ProcessLookupError:
             raise GoneError from None
 
@@ -136,7 +158,7 @@ class Threads:
             if tid != self.pid and self._names[tid].startswith(DDS):
                 continue
             try:
-                words = (Path("/proc") / str(self.pid) / "task" / str(tid) / "syscall").read_text().split()
+                words = _read(f"/proc/{self.pid}/task/{tid}/syscall").split()
             except OSError:
                 continue
             found.append(_wait(tid, self._names[tid], words))
@@ -165,9 +187,9 @@ class Threads:
 
     def _add(self, tid: int) -> None:
         try:
-            name = Path(f"/proc/{self.pid}/task/{tid}/comm").read_text().strip()
+            name = _read(f"/proc/{self.pid}/task/{tid}/comm").strip()
             self._names[tid] = name
-            if self._dds is None or name.startswith(DDS) == self._dds:
+            if self._wanted(name):
                 stat = self._open(tid, "stat")
                 self._files[tid] = (stat, self._open(tid, "schedstat"))
         except (FileNotFoundError, ProcessLookupError, GoneError):
@@ -180,9 +202,22 @@ class Threads:
             raise GoneError from None
 
 
+def _read(path: str) -> str:
+    # Not pathlib's way: it costs ten times as much, and what a node waits for is read many times in a trial.
+    fd = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+    try:
+        return os.read(fd, 512).decode("utf-8", "replace")
+    finally:
+        os.close(fd)
+
+
+def _state(stat: bytes) -> int:
+    # A thread may call itself anything, ") R" too, in 15 bytes: what follows the last parenthesis is the kernel's.
+    return stat[stat.rindex(b")") + 2]
+
+
 def _fields(stat: bytes) -> list[bytes]:
-    # A thread may call itself anything, ") R" too: what follows the last parenthesis is the kernel's. [0] is the
-    # state, [17] the number of threads.
+    # From the state, [0], on; [17] is the number of threads.
     return stat[stat.rindex(b")") + 2 :].split()
 
 

@@ -17,7 +17,7 @@ from rosgraph_msgs.msg import Clock
 
 from grader.simulator.turtle import FRAME_S
 from grader.trial.patience import HandshakePatience, TickPatience
-from grader.trial.rest import DoubtError, GoneError, Threads
+from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, receives
 from grader.trial.stage import Stage
 
 if TYPE_CHECKING:
@@ -113,7 +113,8 @@ class SimulatedTrial(Stage):
 
     def _watch(self) -> None:
         self._node = Threads(self.node.pid)
-        self._ours = Threads(os.getpid(), dds=True)
+        self._ours = Threads(os.getpid(), of_dds)
+        self._receivers = Threads(os.getpid(), receives)
         self._handled: tuple[bytes, ...] = ()
 
     def _rest(self, patience: TickPatience) -> bool:
@@ -153,8 +154,8 @@ class SimulatedTrial(Stage):
             if not self._rest(patience):
                 self._doubt("the node never comes to rest: it works without waiting")
                 return
-            runs = self._ours.runs()
-            # Our receiving threads have not run since the last time: nothing has come that is not handled yet.
+            runs = self._receivers.runs()
+            # They have not run since the last time: nothing has come that is not handled yet.
             if runs == self._handled:
                 return
             self._handled = runs
@@ -185,7 +186,7 @@ class SimulatedTrial(Stage):
 
     def _found_each_other(self) -> bool:
         """Wait for 30 ms without anything new; true when the node waits for its clock and discovery is silent."""
-        quiet = Threads(self.node.pid, dds=True)
+        quiet = Threads(self.node.pid, of_dds)
         try:
             before = quiet.runs()
             silent_s = time.monotonic()
@@ -204,7 +205,7 @@ class SimulatedTrial(Stage):
 
     def _wake(self) -> None:
         """Publish time 0 until the node has woken twice for it: then both sides know each other."""
-        rest = Threads(self.node.pid, dds=False)
+        rest = Threads(self.node.pid, not_of_dds)
         try:
             before = rest.runs()
             wakes = 0
