@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.tests.trial.program import python
-from grader.trial.rest import GoneError, Threads
+from grader.trial.rest import GoneError, Threads, receives
 
 WAITS_ON_A_LINE = "import sys; print('ready', flush=True); sys.stdin.readline(); print('woken', flush=True); "
 
@@ -82,6 +82,21 @@ def test_threads_of_fast_dds_are_left_out_but_never_the_main_thread() -> None:
         threads = Threads(process.pid)
         until_asleep(threads)
         assert len(threads.look().runs) == 2
+        assert [wait.tid for wait in threads.waits()] == [process.pid]
+
+
+@pytest.mark.parametrize(
+    ("thread", "told"), [("dds.udp.7410", True), ("dds.shm.7411", True), ("dds.ev.0", False), ("python3", False)]
+)
+def test_messages_come_through_the_threads_of_fast_dds_but_not_through_its_timers(thread: str, told: bool) -> None:
+    assert receives(thread) == told
+
+
+def test_a_name_of_a_thread_need_not_be_text() -> None:
+    code = "open('/proc/self/comm', 'wb').write(b'\\xff) R (')\nprint('ready', flush=True)\ninput()"
+    with python(code) as process:
+        threads = Threads(process.pid)
+        until_asleep(threads)
         assert [wait.tid for wait in threads.waits()] == [process.pid]
 
 
