@@ -7,6 +7,7 @@ import signal
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from grader.checks.seen import ended_at_start
 from grader.outcome import Where
 from grader.words import shorten
 
@@ -104,7 +105,7 @@ def end_seen(evidence: Evidence) -> str:
     end = evidence.trial.end
     if end.by != "itself":
         return ""
-    when = f"after {end.t_s:.1f} s" if end.t_s > 0.0 else "at its start"
+    when = "at its start" if ended_at_start(evidence.trial) else f"after {end.t_s:.1f} s"
     crash = crash_of(evidence)
     return f"The node ended by itself {when}." if crash is None else f"The node crashed {when}: {crash.seen}."
 

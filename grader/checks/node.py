@@ -19,10 +19,9 @@ if TYPE_CHECKING:
 def starts(evidence: Evidence, _: NoParams) -> Finding:
     """A node of the submission was in the ROS graph, and lived until the scenario began."""
     recording = evidence.trial
-    end = recording.end
     executable = evidence.exercise.executable
     expected = "The node starts, and runs until Ctrl-C."
-    if end.by == "itself" and end.t_s <= 0.0:
+    if seen_in.ended_at_start(recording):
         crash = crash_of(evidence)
         if crash is not None:
             return crash_finding(evidence, crash, f"{executable} crashed at its start: {crash.seen}.", expected)

@@ -21,6 +21,16 @@ def end_s(recording: Recording) -> float:
     return recording.sigint_t_s
 
 
+def ended_at_start(recording: Recording) -> bool:
+    """Whether the node ended by itself before it waited for anything.
+
+    Simulated time stands until the node waits; the wall's clock starts when the node is in the graph, so a node that
+    is about to end may live on for the first moment.
+    """
+    end = recording.end
+    return end.by == "itself" and end.t_s <= (START_S if recording.clock == "wall" else 0.0)
+
+
 def commands(recording: Recording) -> tuple[Command, ...]:
     """The commands that arrived before SIGINT, by arrival.
 

@@ -25,6 +25,7 @@ from grader.tests.checks.shapes import SHAPES, crashed
 
 if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
+    from grader.recording import ClockName
 
 OTHER = "geometry_msgs/msg/TwistStamped"
 
@@ -72,6 +73,23 @@ def test_a_crash_is_told_with_its_meaning() -> None:
 
 def test_a_node_that_crashed_while_it_ran_did_start() -> None:
     assert finding("start", of("crash")).status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("clock", "t_s", "status"),
+    [
+        ("wall", 0.2, Status.FAILED),
+        ("wall", 0.21, Status.PASSED),
+        ("simulated", 0.0, Status.FAILED),
+        ("simulated", 0.1, Status.PASSED),
+    ],
+)
+def test_by_the_walls_clock_an_end_in_the_first_moment_is_one_at_the_start(
+    clock: ClockName, t_s: float, status: Status
+) -> None:
+    """There the clock starts when the node is in the graph, which may be before it has been made as a whole."""
+    end = ProcessEnd(by="itself", exit_code=0, t_s=t_s, stop_s=None)
+    assert finding("start", evidence(recording([], clock=clock, end=end))).status is status
 
 
 def test_a_missing_spin_is_told_where_the_node_ends_at_once() -> None:
@@ -183,6 +201,23 @@ def test_what_it_took_to_stop_a_node_is_told() -> None:
     terminated = replace(killed, end=replace(killed.end, by="SIGTERM"))
     assert finding("stop", evidence(killed)).seen == "The node ignored Ctrl-C: it had to be killed."
     assert finding("stop", evidence(terminated)).seen == "The node ignored Ctrl-C: only SIGTERM ended it."
+
+
+@pytest.mark.parametrize(
+    ("clock", "t_s", "status"),
+    [
+        ("wall", 0.2, Status.FAILED),
+        ("wall", 0.21, Status.PASSED),
+        ("simulated", 0.0, Status.FAILED),
+        ("simulated", 0.1, Status.PASSED),
+    ],
+)
+def test_by_the_walls_clock_an_end_in_the_first_moment_is_one_at_the_start(
+    clock: ClockName, t_s: float, status: Status
+) -> None:
+    """There the clock starts when the node is in the graph, which may be before it has been made as a whole."""
+    end = ProcessEnd(by="itself", exit_code=0, t_s=t_s, stop_s=None)
+    assert finding("start", evidence(recording([], clock=clock, end=end))).status is status
 
 
 def test_a_missing_spin_is_told_where_the_node_ends_early() -> None:
