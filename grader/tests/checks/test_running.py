@@ -203,23 +203,6 @@ def test_what_it_took_to_stop_a_node_is_told() -> None:
     assert finding("stop", evidence(terminated)).seen == "The node ignored Ctrl-C: only SIGTERM ended it."
 
 
-@pytest.mark.parametrize(
-    ("clock", "t_s", "status"),
-    [
-        ("wall", 0.2, Status.FAILED),
-        ("wall", 0.21, Status.PASSED),
-        ("simulated", 0.0, Status.FAILED),
-        ("simulated", 0.1, Status.PASSED),
-    ],
-)
-def test_by_the_walls_clock_an_end_in_the_first_moment_is_one_at_the_start(
-    clock: ClockName, t_s: float, status: Status
-) -> None:
-    """There the clock starts when the node is in the graph, which may be before it has been made as a whole."""
-    end = ProcessEnd(by="itself", exit_code=0, t_s=t_s, stop_s=None)
-    assert finding("start", evidence(recording([], clock=clock, end=end))).status is status
-
-
 def test_a_missing_spin_is_told_where_the_node_ends_early() -> None:
     without = finding("stop", of("ends early", ("rclpy.spin(DrawCircleNode())", "DrawCircleNode()")))
     assert without.cause == "rclpy.spin keeps a node running; it is called nowhere."
