@@ -170,15 +170,14 @@ class _Grading:
 
     def _start_trials(self, evidence: Evidence, certain: Early, here: Ros, extra: Path | None) -> None:
         """Start simulators and launchers beside the build, of all trials or one; none for a node that cannot run."""
-        for seen in _trials_of(evidence) if self.options.trials_at_once > 1 else (evidence,):
+        for seen in _longest_first(evidence) if self.options.trials_at_once > 1 else (evidence,):
             if certain.may_run(seen):
                 clock, _ = self._first_clock(seen)
                 self.ahead.start(seen.exercise.trial, self._of(seen)._trial(clock, here, extra))
 
     def _run_ahead(self, evidence: Evidence) -> None:
         """Let the nodes begin whose trials pass in simulated time."""
-        # The longest first, so that none is left to run alone at the end.
-        for seen in sorted(_trials_of(evidence), key=lambda seen: -seen.exercise.scenario.duration_s):
+        for seen in _longest_first(evidence):
             name = seen.exercise.trial
             if self.ahead.trial(name) and self._first_clock(seen)[0] == "simulated" and wants_trial(seen):
                 self.ahead.run(name, _package(seen), seen.exercise.executable, self.tree)
@@ -303,9 +302,10 @@ class _Grading:
             self.seconds[stage] = self.seconds.get(stage, 0.0) + time.monotonic() - begun
 
 
-def _trials_of(evidence: Evidence) -> list[Evidence]:
-    """The evidence as each of the exercise's trials sees it, its own first."""
-    return [evidence.in_trial(name) for name in ("", *(spec.id for spec in evidence.exercise.trials))]
+def _longest_first(evidence: Evidence) -> list[Evidence]:
+    """The evidence as each of the exercise's trials sees it, in the order in which none is left to run alone."""
+    all_of_it = [evidence.in_trial(name) for name in ("", *(spec.id for spec in evidence.exercise.trials))]
+    return sorted(all_of_it, key=lambda seen: -seen.exercise.scenario.duration_s)
 
 
 def _package(evidence: Evidence) -> str:

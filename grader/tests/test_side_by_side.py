@@ -17,7 +17,7 @@ from grader.submission import open_submission
 from grader.tests.case import ROOT
 from grader.tests.checks.made import BUILD, good
 from grader.tests.no_ros import without_ros
-from grader.tests.waiting import HANG_S
+from grader.tests.waiting import HANG_S, until
 from grader.workspace import Built
 
 if TYPE_CHECKING:
@@ -59,6 +59,9 @@ class _Made:
     def __exit__(self, *_: object) -> None:
         self.trials.open -= 1
 
+    def await_ready(self) -> None:
+        pass
+
     def run(self, _package: str, executable: str, _tree: bytes) -> Recording:
         self.trials.begun.append(executable)
         if executable in LONGEST:
@@ -89,6 +92,7 @@ def test_all_are_begun_where_they_may_run_side_by_side(at_once: int, begun: int)
     seen = []
 
     def build(*_: object, **__: object) -> Any:  # noqa: ANN401
+        until(lambda: trials.open == begun)
         seen.append(trials.open)
         raise MachineError("No compiler.")  # noqa: EM101
 

@@ -1,5 +1,6 @@
-"""The trials of one submission: all are started beside the build, and those in simulated time run side by side.
+"""The trials of one submission: they are started beside the build, and those in simulated time run side by side.
 
+One is started after the other, so that the build, which all of them wait for, keeps most of a processor.
 Simulated time has no pace of its own, so company changes nothing that a trial sees. One under the wall's clock wants
 the processors for itself: whoever runs it lets the others end first (`settle`).
 """
@@ -9,6 +10,7 @@ from __future__ import annotations
 import importlib
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack
+from threading import Lock
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
@@ -34,6 +36,18 @@ class _UnderWay:
         return self._recording.result()
 
 
+class _Started:
+    """A trial that is started, or will be in a moment."""
+
+    def __init__(self, trial: Trial, ready: Future[None]) -> None:
+        self._trial = trial
+        self._ready = ready
+
+    def run(self, package: str, executable: str, tree: bytes) -> Recording:
+        self._ready.result()
+        return self._trial.run(package, executable, tree)
+
+
 class Ahead:
     """A context manager; leaving it ends every trial that was started in it.
 
@@ -42,8 +56,11 @@ class Ahead:
 
     def __init__(self, at_once: int) -> None:
         self._pool = ThreadPoolExecutor(at_once)
+        self._starter = ThreadPoolExecutor(1)
         self._stack = ExitStack()
-        self._trials: dict[str, Trial] = {}
+        self._entering = Lock()
+        self._left = False
+        self._started: dict[str, _Started] = {}
         self._under_way: dict[str, Future[Recording]] = {}
 
     def __enter__(self) -> Ahead:  # noqa: PYI034 - typing.Self is Python 3.11's
@@ -51,28 +68,38 @@ class Ahead:
         return self
 
     def __exit__(self, *_: object) -> None:
-        # The trials first: their ends are what the pool's threads wait for.
-        self._pool.shutdown(wait=False, cancel_futures=True)
+        for pool in (self._starter, self._pool):
+            pool.shutdown(wait=False, cancel_futures=True)
+        with self._entering:
+            self._left = True
+        # The trials first: their ends are what the threads wait for.
         self._stack.close()
-        self._pool.shutdown()
+        for pool in (self._starter, self._pool):
+            pool.shutdown()
 
     def start(self, name: str, trial: Trial) -> None:
-        """Start simulator and launcher.
+        """Start simulator and launcher as soon as those before them are ready.
 
-        Raises:
-            MachineError: they cannot be started.
+        What goes wrong is told by the trial's `run`.
         """
-        self._trials[name] = self._stack.enter_context(trial)
+        self._started[name] = _Started(trial, self._starter.submit(self._begin, trial))
+
+    def _begin(self, trial: Trial) -> None:
+        with self._entering:
+            if self._left:
+                return
+            self._stack.enter_context(trial)
+        trial.await_ready()
 
     def run(self, name: str, package: str, executable: str, tree: bytes) -> None:
         """Begin to run the node of a trial that was started; what comes of it is told by `trial`."""
-        self._under_way[name] = self._pool.submit(self._trials[name].run, package, executable, tree)
+        self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)
 
     def trial(self, name: str) -> Runs | None:
         """The trial to ask for its recording; None when it was not started."""
         if name in self._under_way:
             return _UnderWay(self._under_way[name])
-        return self._trials.get(name)
+        return self._started.get(name)
 
     def settle(self) -> None:
         """Wait until no trial is under way."""

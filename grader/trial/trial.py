@@ -66,8 +66,10 @@ class Trial:
         self._node_runs = False
         self._stack = ExitStack()
         self._started = False
+        self._ready = False
         self._domain: int | None = None
         self._group = ControlGroup()
+        self._timer = Timer(0.0, self._kill)
 
     def __enter__(self) -> Trial:  # noqa: PYI034 - typing.Self is Python 3.11's
         self.start()
@@ -91,6 +93,17 @@ class Trial:
         """End all that was started."""
         self._stack.close()
 
+    def await_ready(self) -> None:
+        """Wait until simulator and launcher want their node.
+
+        Raises:
+            MachineError: they failed.
+        """
+        if not self._ready:
+            self._limit()
+            self._answer("ready")
+            self._ready = True
+
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
         """Run the executable of the install tree (a tar stream) through the whole plan.
 
@@ -113,8 +126,8 @@ class Trial:
             "install": str(install),
             "tree_bytes": len(tree),
         }
+        self.await_ready()
         self._limit()
-        self._answer("ready")
         self._send(json.dumps(order).encode() + b"\n" + tree)
         self._node_runs = True
         recording = from_json(self._answer("recording"))
@@ -162,10 +175,11 @@ class Trial:
 
     def _limit(self) -> None:
         # Whatever happens inside, the grader does not wait for ever; the trial's own deadlines are much tighter.
-        timer = Timer(120.0 + 6.0 * self._plan.duration_s, self._kill)
-        timer.daemon = True
-        timer.start()
-        self._stack.callback(timer.cancel)
+        self._timer.cancel()
+        self._timer = Timer(120.0 + 6.0 * self._plan.duration_s, self._kill)
+        self._timer.daemon = True
+        self._timer.start()
+        self._stack.callback(self._timer.cancel)
 
     def _kill(self) -> None:
         # All of its group: a bubblewrap that is just starting has a child that does not yet die with it.

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import pytest
 
+from grader.errors import MachineError
 from grader.tests.checks.made import good
 from grader.tests.waiting import HANG_S
 from grader.trial.ahead import Ahead
@@ -20,20 +21,28 @@ SEEN = good()
 
 
 class Made:
-    """Stands in for a trial: `runs` is what its run does."""
+    """Stands in for a trial: `runs` is what its run does; it is ready when `ready` is set."""
 
     def __init__(self, runs: Callable[[], Recording]) -> None:
         self.runs = runs
         self.open = False
+        self.opened = threading.Event()
+        self.ready = threading.Event()
+        self.ready.set()
         self.closed = threading.Event()
 
     def __enter__(self) -> Made:  # noqa: PYI034 - typing.Self is Python 3.11's
         self.open = True
+        self.opened.set()
         return self
+
+    def await_ready(self) -> None:
+        assert self.ready.wait(HANG_S)
 
     def __exit__(self, *_: object) -> None:
         self.open = False
         self.closed.set()
+        self.ready.set()  # as with a real one, which whoever waits for it hears end
 
     def run(self, *_: Any) -> Recording:  # noqa: ANN401
         return self.runs()
@@ -70,9 +79,47 @@ def test_trials_run_side_by_side(ahead: Ahead) -> None:
 
 def test_what_was_not_run_ahead_is_run_when_it_is_asked(ahead: Ahead) -> None:
     with ahead:
-        made = start(ahead, "", run=False)
-        assert ahead.trial("") is cast("object", made)
+        start(ahead, "", run=False)
+        trial = ahead.trial("")
+        assert trial is not None
+        assert trial.run("package", "node", b"") is SEEN
         assert ahead.trial("square") is None
+
+
+def test_one_is_started_when_the_one_before_is_ready(ahead: Ahead) -> None:
+    first, second = Made(lambda: SEEN), Made(lambda: SEEN)
+    first.ready.clear()
+    with ahead:
+        ahead.start("", cast("Trial", first))
+        ahead.start("eight", cast("Trial", second))
+        assert first.opened.wait(HANG_S)
+        assert not second.opened.wait(0.05)
+        first.ready.set()
+        assert second.opened.wait(HANG_S)
+
+
+def test_leaving_ends_the_one_that_is_being_started_and_starts_no_other(ahead: Ahead) -> None:
+    first, second = Made(lambda: SEEN), Made(lambda: SEEN)
+    first.ready.clear()
+    with ahead:
+        ahead.start("", cast("Trial", first))
+        ahead.start("eight", cast("Trial", second))
+        assert first.opened.wait(HANG_S)
+    assert first.closed.is_set()
+    assert not second.opened.is_set()
+
+
+def test_what_went_wrong_at_the_start_is_told_to_who_runs_it(ahead: Ahead) -> None:
+    class Broken(Made):
+        def await_ready(self) -> None:
+            raise MachineError("no room")  # noqa: EM101
+
+    with ahead:
+        ahead.start("", cast("Trial", Broken(lambda: SEEN)))
+        trial = ahead.trial("")
+        assert trial is not None
+        with pytest.raises(MachineError, match="no room"):
+            trial.run("package", "node", b"")
 
 
 def test_a_node_that_brings_its_simulator_down_is_told_to_who_asks_for_it(ahead: Ahead) -> None:
