@@ -27,6 +27,8 @@ READY = b"\x00ready\n"
 KEPT = 256 * 1024
 """Bytes kept of each stream."""
 _PIPE = 1024 * 1024
+FULL = _PIPE // 4
+"""Bytes: who was kept waiting by a full pipe has written more. The kernel fills every page to a half at least."""
 STOP_S = 3.0
 """How long SIGINT has, by the exercise; SIGTERM follows, for 1 s, then SIGKILL."""
 
@@ -42,24 +44,24 @@ class _Stream:
     times: list[float] = field(default_factory=list)
     dropped: int = 0
 
-    def read(self, now_s: float) -> bool:
-        """Read what is there; true if anything was."""
-        some = False
+    def read(self, now_s: float) -> int:
+        """Read what is there; how many bytes."""
+        size = 0
         for _ in range(64):
             try:
                 chunk = os.read(self.fd, _PIPE)
             except BlockingIOError:
-                return some
+                return size
             if not chunk:
-                return some
-            some = True
+                return size
+            size += len(chunk)
             room = KEPT - len(self.kept)
             taken = chunk[:room]
             starts_line = not self.kept or self.kept.endswith(b"\n")
             self.times += [now_s] * (taken.count(b"\n", 0, -1) + starts_line if taken else 0)
             self.kept += taken
             self.dropped += len(chunk) - len(taken)
-        return some
+        return size
 
     def output(self) -> Output:
         return Output(self.kept.decode("utf-8", "replace"), self.dropped, tuple(self.times))
@@ -140,9 +142,9 @@ class NodeProcess:
         """How long all processes of the cell worked between two times of CLOCK_MONOTONIC (s of CPU time)."""
         return self._guard.worked_s(begin, end) if self._guard is not None else 0.0
 
-    def read_output(self, now_s: float) -> bool:
-        """Keep what the node wrote, as of `now_s`; true if there was anything."""
-        return any([stream.read(now_s) for stream in self._streams])  # noqa: C419 - both must be read
+    def read_output(self, now_s: float) -> int:
+        """Keep what the node wrote, as of `now_s`; how many bytes it was."""
+        return sum(stream.read(now_s) for stream in self._streams)
 
     def output(self) -> tuple[Output, Output]:
         """Return standard output and standard error so far."""

@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING
 
 from builtin_interfaces.msg import Time
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
 from rosgraph_msgs.msg import Clock
 
 from grader.simulator.turtle import FRAME_S
+from grader.trial.node_process import FULL
 from grader.trial.patience import HandshakePatience, TickPatience
 from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, receives
 from grader.trial.stage import Stage
@@ -137,7 +139,7 @@ class SimulatedTrial(Stage):
                     equal += 1
                     if equal < (1 if node.counted else 3):
                         continue
-                    if not self.node.read_output(self._now_s):
+                    if self.node.read_output(self._now_s) < FULL:
                         return True
                 before, equal = runs, 0
                 if not asleep:
@@ -159,7 +161,8 @@ class SimulatedTrial(Stage):
             if runs == self._handled:
                 return
             self._handled = runs
-            if not self.spin():  # they took an acknowledgement: nobody has anything to answer
+            # Nobody answers a message, nor an acknowledgement, which is handled by nothing: the node rests on.
+            if all(isinstance(source, Subscription) for source in self.spin()):
                 return
 
     # --- handshake --------------------------------------------------------------------------------------------
@@ -171,7 +174,7 @@ class SimulatedTrial(Stage):
             if self.node.ended():
                 raise GoneError
             asleep, worked_s = self._node.look().asleep, self._node.run_time_s()
-            wrote = self.node.read_output(0.0)
+            wrote = self.node.read_output(0.0) > 0
             if patience.ended(time.monotonic(), asleep=asleep, wrote=wrote, worked_s=worked_s):
                 self._doubt("the node did not come to rest before the clock could start")
                 return

@@ -88,19 +88,22 @@ class Stage:
                 (now_s, state.x, state.y, state.theta, state.linear, state.angular, state.wall),
             )
 
-    def spin(self, timeout_s: float = 0.0) -> bool:
-        """Handle all that has arrived, waiting up to `timeout_s` for the first of it; true if there was anything."""
-        handled = 0
+    def spin(self, timeout_s: float = 0.0) -> list[object]:
+        """Handle all that has arrived, waiting up to `timeout_s` for the first of it; return what it came by.
+
+        That is a subscription for each message, a service for each request, and so on.
+        """
+        handled: list[object] = []
         until = time.monotonic() + timeout_s + _MOST_AT_ONCE_S
-        while handled < _MOST_AT_ONCE and (handled == 0 or time.monotonic() < until):
+        while len(handled) < _MOST_AT_ONCE and (not handled or time.monotonic() < until):
             try:
-                handler, _, _ = self.executor.wait_for_ready_callbacks(timeout_s if handled == 0 else 0.0)
+                handler, source, _ = self.executor.wait_for_ready_callbacks(0.0 if handled else timeout_s)
             except TimeoutException:
                 break
             handler()
             handler.result()
-            handled += 1
-        return handled > 0
+            handled.append(source)
+        return handled
 
     def students_nodes(self) -> list[str]:
         """Return the nodes in the graph that are not ours; a namesake of ours is none."""

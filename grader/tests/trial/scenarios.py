@@ -20,7 +20,7 @@ def a_line_while_the_graph_is_looked_at() -> list[float]:
     stage: Any = WallTrial.__new__(WallTrial)
     stage.node = SimpleNamespace(ended=lambda: False, read_output=read)
     stage.recorder = SimpleNamespace(follow_graph=lambda: False, snapshot=lambda: written.append("a line"))
-    stage.spin = lambda _=0.0: False
+    stage.spin = lambda _=0.0: []
     stage.students_nodes = lambda: ["/draw_circle"]
     stage._discover()
     return taken_in_s
