@@ -42,7 +42,7 @@ class WallTrial(Stage):
                 self.stalls.append(stall)
             self.frame(frame * FRAME_S)
             frame += 1
-            if frame % GRAPH_EVERY == 0:
+            if frame % GRAPH_EVERY == 1:
                 self.recorder.follow_graph()
                 self.recorder.snapshot()
         stopped_s = self.now()
@@ -59,14 +59,18 @@ class WallTrial(Stage):
         return self._crowded
 
     def _discover(self) -> None:
-        """Let the clock start when the node is in the graph and its topics are recorded, or has ended."""
+        """Let the clock start when the node is in the graph and its topics are recorded, or when it has ended.
+
+        At once with its first command: the turtle moves from then on, whoever else has not been found yet.
+        """
         deadline = time.monotonic() + DISCOVERY_S
-        while time.monotonic() < deadline and not self.node.ended():
+        found = False
+        while not found and time.monotonic() < deadline and not self.node.ended():
             self.spin(0.01)
             self.node.read_output(self.now())
-            if self.students_nodes() and not self.recorder.follow_graph():
-                break
-        self.recorder.snapshot()
-        # What has come by now came before the clock starts, and is in no interval; a snapshot may take a while.
+            if self.recorder.commands:
+                return
+            found = bool(self.students_nodes()) and not self.recorder.follow_graph()
+        # What has come by now came before the clock starts, and is in no interval; a look at the graph takes a while.
         self.spin()
         self.node.read_output(self.now())

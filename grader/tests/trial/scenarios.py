@@ -19,8 +19,20 @@ def a_line_while_the_graph_is_looked_at() -> list[float]:
 
     stage: Any = WallTrial.__new__(WallTrial)
     stage.node = SimpleNamespace(ended=lambda: False, read_output=read)
-    stage.recorder = SimpleNamespace(follow_graph=lambda: False, snapshot=lambda: written.append("a line"))
+    stage.recorder = SimpleNamespace(commands=[], follow_graph=lambda: written.append("a line"))
     stage.spin = lambda _=0.0: []
     stage.students_nodes = lambda: ["/draw_circle"]
     stage._discover()
     return taken_in_s
+
+
+def a_node_that_drives_before_it_is_found() -> int:
+    """How many of its commands have come when the clock starts."""
+    commands: list[str] = []
+    stage: Any = WallTrial.__new__(WallTrial)
+    stage.node = SimpleNamespace(ended=lambda: False, read_output=lambda _: 0)
+    stage.recorder = SimpleNamespace(commands=commands, follow_graph=lambda: True)
+    stage.spin = lambda _=0.0: commands.append("a command")
+    stage.students_nodes = lambda: ["/draw_square"]
+    stage._discover()
+    return len(commands)

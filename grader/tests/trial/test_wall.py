@@ -8,3 +8,7 @@ if TYPE_CHECKING:
 
 def test_what_comes_before_the_clock_starts_has_no_time_after_it(in_ros: InRos) -> None:
     assert in_ros.run("trial.scenarios:a_line_while_the_graph_is_looked_at").result == [0.0]
+
+
+def test_the_clock_starts_with_the_first_command_whatever_has_not_been_found_yet(in_ros: InRos) -> None:
+    assert in_ros.run("trial.scenarios:a_node_that_drives_before_it_is_found").result == 1
