@@ -43,6 +43,9 @@ class Trials:
     def __exit__(self, *_: object) -> None:
         pass
 
+    def await_ready(self) -> None:
+        pass
+
     def run(self, *_: object) -> Recording:
         self.alone.append(_is_taken(turns.folder() / "machine"))
         return self.recordings[len(self.alone) - 1]
