@@ -102,6 +102,7 @@ class Trial:
         if not self._ready:
             self._limit()
             self._answer("ready")
+            self._timer.cancel()  # its turn to run may come late
             self._ready = True
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:

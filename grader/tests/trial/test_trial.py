@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+from threading import Timer
 from typing import TYPE_CHECKING
 
 from grader.recording import Pose
@@ -28,3 +29,19 @@ def test_the_end_of_a_trial_is_the_end_of_a_child_that_does_not_die_with_its_par
     os.kill(child, 0)
     trial.close()
     until_gone(child)
+
+
+def test_a_trial_that_is_ready_may_wait_for_its_turn_as_long_as_it_takes(monkeypatch: pytest.MonkeyPatch) -> None:
+    limits: list[Timer] = []
+
+    class Limit(Timer):
+        def start(self) -> None:
+            limits.append(self)
+            super().start()
+
+    monkeypatch.setattr("grader.trial.trial.Timer", Limit)
+    starter = ["sh", "-c", """read plan; echo '{"ready": true}'; read order"""]
+    monkeypatch.setattr("grader.sandbox.room", lambda *_, **__: starter)
+    with Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), None, in_cell=True) as trial:
+        trial.await_ready()
+        assert [limit.finished.is_set() for limit in limits] == [True]
