@@ -24,8 +24,8 @@ def end_s(recording: Recording) -> float:
 def ended_at_start(recording: Recording) -> bool:
     """Whether the node ended by itself before it waited for anything.
 
-    Simulated time stands until the node waits; the wall's clock starts when the node is in the graph, so a node that
-    is about to end may live on for the first moment.
+    Simulated time stands until the node waits; the wall's clock starts when the node is in the graph or drives, so one
+    that is about to end may live on for the first moment.
     """
     end = recording.end
     return end.by == "itself" and end.t_s <= (START_S if recording.clock == "wall" else 0.0)

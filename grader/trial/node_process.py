@@ -26,8 +26,9 @@ READY = b"\x00ready\n"
 """What the launcher writes on standard output before any of the student's code runs."""
 KEPT = 256 * 1024
 """Bytes kept of each stream."""
-_PIPE = 1024 * 1024
-FULL = _PIPE // 4
+PIPE = 1024 * 1024
+"""Bytes that a pipe of the node's holds."""
+FULL = PIPE // 4
 """Bytes: who was kept waiting by a full pipe has written more. The kernel fills every page to a half at least."""
 STOP_S = 3.0
 """How long SIGINT has, by the exercise; SIGTERM follows, for 1 s, then SIGKILL."""
@@ -38,7 +39,9 @@ class LaunchError(Exception):
 
 
 @dataclass
-class _Stream:
+class Stream:
+    """What came through one pipe so far, and when each line began (s)."""
+
     fd: int
     kept: bytearray = field(default_factory=bytearray)
     times: list[float] = field(default_factory=list)
@@ -49,7 +52,7 @@ class _Stream:
         size = 0
         for _ in range(64):
             try:
-                chunk = os.read(self.fd, _PIPE)
+                chunk = os.read(self.fd, PIPE)
             except BlockingIOError:
                 return size
             if not chunk:
@@ -64,6 +67,7 @@ class _Stream:
         return size
 
     def output(self) -> Output:
+        """Return it as a recording keeps it."""
         return Output(self.kept.decode("utf-8", "replace"), self.dropped, tuple(self.times))
 
 
@@ -92,9 +96,9 @@ class NodeProcess:
         assert self._process.stderr is not None
         self._info = info
         self._in_cell = in_cell
-        self._streams = [_Stream(self._process.stdout.fileno()), _Stream(self._process.stderr.fileno())]
+        self._streams = [Stream(self._process.stdout.fileno()), Stream(self._process.stderr.fileno())]
         for stream in self._streams:
-            fcntl.fcntl(stream.fd, fcntl.F_SETPIPE_SZ, _PIPE)
+            fcntl.fcntl(stream.fd, fcntl.F_SETPIPE_SZ, PIPE)
         self.pid = 0
         self._interrupted: float | None = None
         self._by = "itself"

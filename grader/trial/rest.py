@@ -74,12 +74,12 @@ def of_dds(thread: str) -> bool:
 
 def not_of_dds(thread: str) -> bool:
     """Whether a thread of this name is the program's own."""
-    return not thread.startswith(DDS)
+    return not of_dds(thread)
 
 
 def receives(thread: str) -> bool:
     """Whether what arrives may come through a thread of this name."""
-    return thread.startswith(DDS) and not thread.startswith(_DDS_TIMERS)
+    return of_dds(thread) and not thread.startswith(_DDS_TIMERS)
 
 
 class Threads:
@@ -155,7 +155,7 @@ class Threads:
         self._refresh()
         found = []
         for tid in self._files:
-            if tid != self.pid and self._names[tid].startswith(DDS):
+            if tid != self.pid and of_dds(self._names[tid]):
                 continue
             try:
                 words = _read(f"/proc/{self.pid}/task/{tid}/syscall").split()

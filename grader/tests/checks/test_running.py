@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.checks.crash import end_seen
 from grader.outcome import Status
 from grader.recording import Endpoint, Message, Output, ProcessEnd
 from grader.tests.checks.made import (
@@ -76,20 +77,22 @@ def test_a_node_that_crashed_while_it_ran_did_start() -> None:
 
 
 @pytest.mark.parametrize(
-    ("clock", "t_s", "status"),
+    ("clock", "t_s", "diagnosis"),
     [
-        ("wall", 0.2, Status.FAILED),
-        ("wall", 0.21, Status.PASSED),
-        ("simulated", 0.0, Status.FAILED),
-        ("simulated", 0.1, Status.PASSED),
+        ("wall", 0.2, "ends-at-once"),
+        ("wall", 0.21, None),
+        ("simulated", 0.0, "ends-at-once"),
+        ("simulated", 0.1, None),
     ],
 )
 def test_by_the_walls_clock_an_end_in_the_first_moment_is_one_at_the_start(
-    clock: ClockName, t_s: float, status: Status
+    clock: ClockName, t_s: float, diagnosis: str | None
 ) -> None:
     """There the clock starts when the node is in the graph, which may be before it has been made as a whole."""
     end = ProcessEnd(by="itself", exit_code=0, t_s=t_s, stop_s=None)
-    assert finding("start", evidence(recording([], clock=clock, end=end))).status is status
+    seen = evidence(recording([], clock=clock, end=end))
+    assert finding("start", seen).diagnosis == diagnosis
+    assert end_seen(seen).endswith("at its start." if diagnosis else f"after {t_s:.1f} s.")
 
 
 def test_a_missing_spin_is_told_where_the_node_ends_at_once() -> None:

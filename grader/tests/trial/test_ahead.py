@@ -86,25 +86,27 @@ def test_what_was_not_run_ahead_is_run_when_it_is_asked(ahead: Ahead) -> None:
         assert ahead.trial("square") is None
 
 
-def test_one_is_started_when_the_one_before_is_ready(ahead: Ahead) -> None:
+def start_two(ahead: Ahead) -> tuple[Made, Made]:
+    """Two trials of which the first is being started, and is not ready yet."""
     first, second = Made(lambda: SEEN), Made(lambda: SEEN)
     first.ready.clear()
+    ahead.start("", cast("Trial", first))
+    ahead.start("eight", cast("Trial", second))
+    assert first.opened.wait(HANG_S)
+    return first, second
+
+
+def test_one_is_started_when_the_one_before_is_ready(ahead: Ahead) -> None:
     with ahead:
-        ahead.start("", cast("Trial", first))
-        ahead.start("eight", cast("Trial", second))
-        assert first.opened.wait(HANG_S)
+        first, second = start_two(ahead)
         assert not second.opened.wait(0.05)
         first.ready.set()
         assert second.opened.wait(HANG_S)
 
 
 def test_leaving_ends_the_one_that_is_being_started_and_starts_no_other(ahead: Ahead) -> None:
-    first, second = Made(lambda: SEEN), Made(lambda: SEEN)
-    first.ready.clear()
     with ahead:
-        ahead.start("", cast("Trial", first))
-        ahead.start("eight", cast("Trial", second))
-        assert first.opened.wait(HANG_S)
+        first, second = start_two(ahead)
     assert first.closed.is_set()
     assert not second.opened.is_set()
 
