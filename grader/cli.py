@@ -263,6 +263,7 @@ gradebook.add_to(app)
 
 def main() -> None:
     """Run the command; an error of ours is a sentence, and its exit code is that of design.md."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's threads, as in ros.environment
     try:
         app()
     except GraderError as error:

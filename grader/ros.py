@@ -24,6 +24,15 @@ DISTRO = "jazzy"
 SEARCHED = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH")
 """The search paths by which ROS 2 and overlays are found."""
 FASTDDS_PROFILE = Path(__file__).with_name("fastdds.xml")
+_UNWATCHED = (
+    "ROS_LOG_DIR",
+    "RCUTILS_COLORIZED_OUTPUT",
+    "PYTHONHASHSEED",
+    "PYTHONNOUSERSITE",
+    "PYTHONUNBUFFERED",
+    "OPENBLAS_NUM_THREADS",
+)
+"""What an environment holds for a run that nobody watches; a user's own nodes have what the user wants."""
 _PYTHON_LIB = Path(f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages")
 
 
@@ -84,6 +93,8 @@ def environment(
         "PYTHONHASHSEED": "0",
         # A line printed is a line seen, as on a terminal.
         "PYTHONUNBUFFERED": "1",
+        # numpy, which geometry_msgs imports, starts a thread for each processor; they turn in circles for 0.1 s.
+        "OPENBLAS_NUM_THREADS": "1",
         "ROS_DISTRO": DISTRO,
         "ROS_VERSION": "2",
         "ROS_PYTHON_VERSION": "3",
@@ -127,8 +138,7 @@ def users_environment(
     """
     home = Path(env.get("HOME", "/"))
     needed = environment(ros, home=home, underlay=underlay, domain=domain_of(os.getuid()))
-    # Made for a run that nobody watches.
-    for name in ("ROS_LOG_DIR", "RCUTILS_COLORIZED_OUTPUT", "PYTHONHASHSEED", "PYTHONNOUSERSITE", "PYTHONUNBUFFERED"):
+    for name in _UNWATCHED:
         needed.pop(name, None)
     if "ROS_LOG_DIR" not in env and "ROS_HOME" not in env and not os.access(home, os.W_OK):
         needed["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir(), f"ros-log-{os.getuid()}"))

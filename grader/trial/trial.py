@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import compileall
 import fcntl
 import json
 import os
 import signal
 import subprocess
+import sys
 import tempfile
 from contextlib import ExitStack, suppress
 from dataclasses import asdict, dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from threading import Timer
 from typing import IO, TYPE_CHECKING, Any
@@ -53,6 +56,14 @@ class OverwhelmedError(Exception):
     def __init__(self, how: str, *, hung: bool = False) -> None:
         super().__init__(how)
         self.hung = hung
+
+
+@cache
+def _compile_conductor() -> None:
+    """Compile what the conductor imports, where that is out of date: in its room it cannot keep what it compiles."""
+    if not sys.dont_write_bytecode:
+        for folder in (_FOLDER, _FOLDER / "trial", _FOLDER / "simulator"):
+            compileall.compile_dir(folder, maxlevels=0, quiet=2)
 
 
 class Trial:
@@ -146,6 +157,7 @@ class Trial:
         return from_json(self._answer("recording"))
 
     def _start(self) -> None:
+        _compile_conductor()
         if self._in_cell:
             self._workspace, self._home, self._domain = sandbox.WORKSPACE, sandbox.HOME, None
         else:
