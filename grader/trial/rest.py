@@ -82,6 +82,11 @@ def receives(thread: str) -> bool:
     return of_dds(thread) and not thread.startswith(_DDS_TIMERS)
 
 
+def only_sends(thread: str) -> bool:
+    """Whether a thread of this name is one of Fast DDS's through which nothing arrives."""
+    return of_dds(thread) and not receives(thread)
+
+
 class Threads:
     """The threads of a process, or those whose names are `wanted`, read through kept descriptors."""
 
@@ -92,6 +97,7 @@ class Threads:
         self._files: dict[int, tuple[int, int]] = {}
         self._main = self._open(pid, "stat")
         self._count = b""
+        self._refresh()
 
     def close(self) -> None:
         """Close the kept descriptors."""
@@ -122,18 +128,11 @@ class Threads:
         raise GoneError
 
     def runs(self) -> tuple[bytes, ...]:
-        """How often each thread has run: what a look can be compared with, at a third of its price.
-
-        Raises:
-            GoneError: the process has ended.
-        """
-        for _ in range(100):
-            self._refresh()
-            try:
-                return tuple([os.pread(schedstat, 64, 0) for _, schedstat in self._files.values()])
-            except ProcessLookupError:  # a thread ended meanwhile
-                self._count = b""
-        raise GoneError
+        """How often each thread of the last look has run: what a look can be compared with, at a third of its price."""
+        try:
+            return tuple([os.pread(schedstat, 64, 0) for _, schedstat in self._files.values()])
+        except ProcessLookupError:  # a thread has ended, or all of them: no look says the same
+            return ()
 
     def main_asleep(self) -> bool:
         """Look at the main thread alone.

@@ -19,7 +19,7 @@ from rosgraph_msgs.msg import Clock
 from grader.simulator.turtle import FRAME_S
 from grader.trial.node_process import FULL
 from grader.trial.patience import HandshakePatience, TickPatience
-from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, receives
+from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, only_sends, receives
 from grader.trial.stage import Stage
 
 if TYPE_CHECKING:
@@ -74,8 +74,7 @@ class SimulatedTrial(Stage):
             self.lap("discovery")
             for frame in range(1, round(duration_s / FRAME_S) + 1):
                 self.tick(frame * FRAME_S)
-                self._settle()
-                if frame % SPIN_EVERY == 0:
+                if not self._settle() and frame % SPIN_EVERY == 0:
                     self.spin()
                 if frame % GRAPH_EVERY == 0:
                     self.recorder.follow_graph()
@@ -115,8 +114,9 @@ class SimulatedTrial(Stage):
 
     def _watch(self) -> None:
         self._node = Threads(self.node.pid)
-        self._ours = Threads(os.getpid(), of_dds)
         self._receivers = Threads(os.getpid(), receives)
+        self._senders = Threads(os.getpid(), only_sends)
+        self._received: tuple[bytes, ...] = ()
         self._handled: tuple[bytes, ...] = ()
 
     def _rest(self, patience: TickPatience) -> bool:
@@ -129,17 +129,18 @@ class SimulatedTrial(Stage):
                 before = None
                 time.sleep(_POLL_S)
             elif before is None:
-                before, equal = self._node.runs() + self._ours.runs(), 0
+                before, equal = self._node.runs() + self._receivers.runs() + self._senders.runs(), 0
                 continue
             else:
-                node, ours = self._node.look(), self._ours.look()
-                runs = node.runs + ours.runs
-                asleep = node.asleep and ours.asleep
+                node, receivers, senders = self._node.look(), self._receivers.look(), self._senders.look()
+                runs = node.runs + receivers.runs + senders.runs
+                asleep = node.asleep and receivers.asleep and senders.asleep
                 if asleep and runs == before:
                     equal += 1
                     if equal < (1 if node.counted else 3):
                         continue
                     if self.node.read_output(self._now_s) < FULL:
+                        self._received = receivers.runs
                         return True
                 before, equal = runs, 0
                 if not asleep:
@@ -148,22 +149,23 @@ class SimulatedTrial(Stage):
             if patience.ended(time.monotonic()):
                 return False
 
-    def _settle(self) -> None:
-        """Let the node and the simulator answer each other until both rest."""
+    def _settle(self) -> bool:
+        """Let the node and the simulator answer each other until both rest; whether `spin` was needed for it."""
         patience = TickPatience(self._node, time.monotonic())
         time.sleep(_POLL_S)  # the clock has just ticked: before the node has woken, a look would be in vain
+        spun = False
         while True:
             if not self._rest(patience):
                 self._doubt("the node never comes to rest: it works without waiting")
-                return
-            runs = self._receivers.runs()
+                return False
             # They have not run since the last time: nothing has come that is not handled yet.
-            if runs == self._handled:
-                return
-            self._handled = runs
+            if self._received == self._handled:
+                return spun
+            self._handled = self._received
+            spun = True
             # Nobody answers a message, nor an acknowledgement, which is handled by nothing: the node rests on.
             if all(isinstance(source, Subscription) for source in self.spin()):
-                return
+                return True
 
     # --- handshake --------------------------------------------------------------------------------------------
 
@@ -191,12 +193,12 @@ class SimulatedTrial(Stage):
         """Wait for 30 ms without anything new; true when the node waits for its clock and discovery is silent."""
         quiet = Threads(self.node.pid, of_dds)
         try:
-            before = quiet.runs()
+            before = quiet.look().runs
             silent_s = time.monotonic()
             while time.monotonic() - silent_s < QUIET_S:
                 if self.spin(0.004):
                     return False
-                if quiet.runs() != before:
+                if quiet.look().runs != before:
                     return False
         finally:
             quiet.close()
@@ -210,13 +212,13 @@ class SimulatedTrial(Stage):
         """Publish time 0 until the node has woken twice for it: then both sides know each other."""
         rest = Threads(self.node.pid, not_of_dds)
         try:
-            before = rest.runs()
+            before = rest.look().runs
             wakes = 0
             deadline = time.monotonic() + WAKE_S
             while wakes < 2 and time.monotonic() < deadline:
                 self._publish_clock(0.0)
                 self._settle()
-                runs = rest.runs()
+                runs = rest.look().runs
                 wakes += runs != before
                 before = runs
                 if wakes < 2:

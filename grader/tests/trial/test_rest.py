@@ -103,8 +103,10 @@ def test_a_name_of_a_thread_need_not_be_text() -> None:
 def test_the_end_of_a_process_is_told() -> None:
     with python(WAITS_ON_A_LINE) as process:
         threads = Threads(process.pid)
+        before = threads.runs()
+        assert before
         process.kill()
         process.wait()
-        for told in (threads.look, threads.runs):
-            with pytest.raises(GoneError):
-                told()
+        assert threads.runs() == ()
+        with pytest.raises(GoneError):
+            threads.look()
