@@ -36,9 +36,9 @@ WAKE_S = 1.0
 MOST_CPU = 2.0
 """A node that needs this times the scenario in CPU time cannot keep up with the wall either: let it show there."""
 GRAPH_EVERY = 31
-"""Frames between two looks at the graph: half a second."""
-SPIN_EVERY = 5
-"""Frames between two rounds for what no message announces: our own log lines, the steps of an action."""
+"""Frames between two looks at the graph, and at what it does not suit (events of DDS): half a second."""
+OWN_EVERY = 5
+"""Frames between two rounds for what nothing from outside announces: our own log lines, the steps of an action."""
 WAITS_EVERY = 7
 """Frames between two looks at what the threads wait for."""
 ENDING_S = 0.5
@@ -74,9 +74,11 @@ class SimulatedTrial(Stage):
             self.lap("discovery")
             for frame in range(1, round(duration_s / FRAME_S) + 1):
                 self.tick(frame * FRAME_S)
-                if not self._settle() and frame % SPIN_EVERY == 0:
-                    self.spin()
+                self._settle()
+                if frame % OWN_EVERY == 0:
+                    self._take_in()
                 if frame % GRAPH_EVERY == 0:
+                    self.spin()
                     self.recorder.follow_graph()
                     self.recorder.snapshot()
                     if self._node.run_time_s() > MOST_CPU * duration_s:
@@ -149,23 +151,28 @@ class SimulatedTrial(Stage):
             if patience.ended(time.monotonic()):
                 return False
 
-    def _settle(self) -> bool:
-        """Let the node and the simulator answer each other until both rest; whether `spin` was needed for it."""
+    def _settle(self) -> None:
+        """Let the node and the simulator answer each other until both rest."""
         patience = TickPatience(self._node, time.monotonic())
         time.sleep(_POLL_S)  # the clock has just ticked: before the node has woken, a look would be in vain
-        spun = False
         while True:
             if not self._rest(patience):
                 self._doubt("the node never comes to rest: it works without waiting")
-                return False
+                return
             # They have not run since the last time: nothing has come that is not handled yet.
             if self._received == self._handled:
-                return spun
+                return
             self._handled = self._received
-            spun = True
-            # Nobody answers a message, nor an acknowledgement, which is handled by nothing: the node rests on.
-            if all(isinstance(source, Subscription) for source in self.spin()):
-                return True
+            if not self._take_in():
+                return
+
+    def _take_in(self) -> bool:
+        """Handle what has arrived; whether the node may go on because of it."""
+        if not self.may_ask():
+            self.hear()
+            return False
+        # Nobody answers a message, nor an acknowledgement, which is handled by nothing: the node rests on.
+        return not all(isinstance(source, Subscription) for source in self.spin())
 
     # --- handshake --------------------------------------------------------------------------------------------
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any
+from contextlib import suppress
+from typing import TYPE_CHECKING
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor, TimeoutException
@@ -29,26 +30,12 @@ _MOST_AT_ONCE_S = 0.5
 _MOST_INTERVENTIONS = 1000
 
 
-class _Executor(SingleThreadedExecutor):
-    """An executor that asks everything only at first: what had nothing then, has nothing right after.
-
-    Asking costs most of the time that a message takes here. Subscriptions are always asked: they hear what the
-    simulator itself says while it handles the rest.
-    """
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.had: set[object] = set()
-        """What had something since the first question; to be emptied before the next first one."""
-
-    def can_execute(self, entity: Any) -> bool:  # noqa: ANN401 - a subscription, a service, a timer, ...
-        """Whether to ask this one now."""
-        asked = not self.had or isinstance(entity, Subscription) or entity in self.had
-        return asked and bool(super().can_execute(entity))
-
-
 class Stage:
-    """Owns the ROS side of a trial. `frame` moves the turtle, `spin` handles what has arrived."""
+    """Owns the ROS side of a trial. `frame` moves the turtle, `spin` handles what has arrived.
+
+    An executor asks each service and each event anew, which takes longer than anything else in a frame. `hear` does
+    without, for moments in which only messages can have come: as long as nobody is there who `may_ask`.
+    """
 
     def __init__(self, node: NodeProcess, start: Pose, prefixes: list[Path], inputs: Inputs) -> None:
         # Our own log lines go to /rosout, where the recorder hears them, not to disk: whoever makes the simulator talk
@@ -68,7 +55,7 @@ class Stage:
         )
         leave_out_events(self.recorder)
         leave_out_events(self.turtlesim)
-        self.executor = _Executor()
+        self.executor = SingleThreadedExecutor()
         self.executor.add_node(self.turtlesim)
         self.executor.add_node(self.recorder)
         self.frames: list[tuple[float, float, float, float, float, float, bool]] = []
@@ -76,6 +63,7 @@ class Stage:
         self.stalls: list[tuple[float, float]] = []
         self.seconds: dict[str, float] = {}
         self._since = time.monotonic()
+        self._services: list[str] = []
 
     def lap(self, part: str) -> None:
         """Note how long the part took that ends now."""
@@ -110,20 +98,49 @@ class Stage:
     def spin(self, timeout_s: float = 0.0) -> list[object]:
         """Handle all that has arrived, waiting up to `timeout_s` for the first of it; return what it came by.
 
-        That is a subscription for each message, a service for each request, and so on.
+        That is a subscription for one or more messages, a service for each request, and so on.
         """
         handled: list[object] = []
-        self.executor.had.clear()
         until = time.monotonic() + timeout_s + _MOST_AT_ONCE_S
-        while len(handled) < _MOST_AT_ONCE and (not handled or time.monotonic() < until):
-            try:
-                handler, source, _ = self.executor.wait_for_ready_callbacks(0.0 if handled else timeout_s)
-            except TimeoutException:
+        while time.monotonic() < until and len(handled) < _MOST_AT_ONCE:
+            some = self._handle_ready(0.0 if handled else timeout_s)
+            handled += some
+            # While a request is answered, the simulator may say something that the recorder hears.
+            if all(isinstance(source, Subscription) for source in some):
                 break
-            handler()
-            handler.result()
-            handled.append(source)
-            self.executor.had.add(source)
+        return handled
+
+    def may_ask(self) -> bool:
+        """Whether somebody has a client of a service or an action of ours."""
+        if not self._services:
+            self._services = [
+                name
+                for node in (self.turtlesim, self.recorder)
+                for name, _ in node.get_service_names_and_types_by_node(node.get_name(), node.get_namespace())
+            ]
+        # Not Node.count_clients: it looks each time whether the name is a name, which takes four times as long.
+        count = self.turtlesim.handle.get_count_clients
+        return any(count(name) for name in self._services)
+
+    def hear(self) -> None:
+        """Handle the messages that have arrived."""
+        for node in (self.turtlesim, self.recorder):
+            for subscription in list(node.subscriptions):
+                _handle_messages(subscription)
+
+    def _handle_ready(self, timeout_s: float) -> list[object]:
+        """Handle what is ready now, or else the first within `timeout_s`, and what more came by the same topics."""
+        handled: list[object] = []
+        with suppress(TimeoutException):
+            while len(handled) < _MOST_AT_ONCE:
+                handler, source, _ = self.executor.wait_for_ready_callbacks(0.0 if handled else timeout_s)
+                handler()
+                handler.result()
+                handled.append(source)
+                if isinstance(source, Subscription):
+                    _handle_messages(source)  # the executor takes one at a time
+                else:
+                    self._services = []  # a turtle may have come, or gone
         return handled
 
     def students_nodes(self) -> list[str]:
@@ -154,6 +171,16 @@ class Stage:
     def tick(self, now_s: float) -> None:
         """Make one frame; a stage that publishes the time does so too."""
         self.frame(now_s)
+
+
+def _handle_messages(subscription: Subscription) -> None:
+    """Hand over the messages that wait to be taken."""
+    with subscription.handle:
+        for _ in range(_MOST_AT_ONCE):
+            taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+            if taken is None:
+                break
+            subscription.callback(taken[0])
 
 
 def leave_out_events(node: Node) -> None:

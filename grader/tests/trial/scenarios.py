@@ -2,10 +2,43 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.action import ActionClient
+from turtlesim.action import RotateAbsolute
+from turtlesim.srv import SetPen, Spawn
+
+from grader.recording import Pose
+from grader.tests.waiting import until
+from grader.trial.alone import AloneTrial
+from grader.trial.inputs import Inputs
 from grader.trial.wall import WallTrial
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def what_one_spin_handles() -> dict[str, Any]:
+    """How many of three commands are kept at once, and what is heard of the log while a request is answered."""
+    stage = _stage()
+    student = rclpy.create_node("student")
+    commands = student.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+    spawn = student.create_client(Spawn, "/spawn")
+    until(lambda: commands.get_subscription_count() > 0 and spawn.service_is_ready())
+    stage.recorder.follow_graph()
+    until(lambda: bool(stage.spin(0.1)) and bool(stage.recorder.log))  # /rosout is heard from here on
+    for _ in range(3):
+        commands.publish(Twist())
+    until(lambda: bool(stage.spin(0.1)) and bool(stage.recorder.commands))
+    kept = len(stage.recorder.commands)
+    spawn.call_async(Spawn.Request(x=1.0, y=1.0, name="turtle2"))
+    until(lambda: bool(stage.spin(0.1)) and bool(stage.interventions))
+    return {"commands": kept, "log": [line.text for line in stage.recorder.log], "after": len(stage.spin())}
 
 
 def a_line_while_the_graph_is_looked_at() -> list[float]:
@@ -36,3 +69,31 @@ def a_node_that_drives_before_it_is_found() -> int:
     stage.students_nodes = lambda: ["/draw_square"]
     stage._discover()
     return len(commands)
+
+
+def who_may_ask() -> list[tuple[str, bool]]:
+    """Whose client may ask the simulator, and that nobody may without one."""
+    stage = _stage()
+    student = rclpy.create_node("student")
+    told = [("nobody", stage.may_ask())]
+
+    def tell(who: str, client: Any, destroy: Callable[[Any], object]) -> None:  # noqa: ANN401 - of many types
+        until(stage.may_ask)
+        destroy(client)
+        until(lambda: not stage.may_ask())
+        told.append((who, True))
+
+    tell("set_pen", student.create_client(SetPen, "/turtle1/set_pen"), student.destroy_client)
+    tell("rotate_absolute", ActionClient(student, RotateAbsolute, "/turtle1/rotate_absolute"), ActionClient.destroy)
+    spawn = student.create_client(Spawn, "/spawn")
+    until(spawn.service_is_ready)
+    spawn.call_async(Spawn.Request(x=1.0, y=1.0, name="turtle2"))
+    until(lambda: bool(stage.spin(0.1)) and bool(stage.interventions))
+    tell("spawn", spawn, student.destroy_client)
+    tell("the new turtle's set_pen", student.create_client(SetPen, "/turtle2/set_pen"), student.destroy_client)
+    return told
+
+
+def _stage() -> AloneTrial:
+    prefixes = [Path(prefix) for prefix in os.environ["AMENT_PREFIX_PATH"].split(os.pathsep)]
+    return AloneTrial(Pose(5.5, 5.5, 0.0), prefixes, Inputs())
