@@ -29,8 +29,9 @@ if TYPE_CHECKING:
     from grader.trial.inputs import Inputs
     from grader.trial.node_process import NodeProcess
 
-QUIET_S = 0.03
-"""How long discovery must be silent before it counts as over."""
+QUIET_S = 0.02
+"""How long discovery must be silent before it counts as over: less than half the time between two announcements
+(fastdds.xml). With more, those of simulator and node can fall so that there is no silence for many seconds."""
 WAKE_S = 1.0
 """How long to wait for the node to notice /clock: a create_rate node never wakes at 0."""
 MOST_CPU = 2.0
@@ -197,7 +198,7 @@ class SimulatedTrial(Stage):
         self.tick(0.0)
 
     def _found_each_other(self) -> bool:
-        """Wait for 30 ms without anything new; true when the node waits for its clock and discovery is silent."""
+        """Wait for 20 ms without anything new; true when the node waits for its clock and discovery is silent."""
         quiet = Threads(self.node.pid, of_dds)
         try:
             before = quiet.look().runs
@@ -205,7 +206,8 @@ class SimulatedTrial(Stage):
             while time.monotonic() - silent_s < QUIET_S:
                 if self.spin(0.004):
                     return False
-                if quiet.look().runs != before:
+                look = quiet.look()
+                if look.runs != before or not look.asleep:
                     return False
         finally:
             quiet.close()

@@ -17,6 +17,7 @@ from grader.recording import Pose
 from grader.tests.waiting import until
 from grader.trial.alone import AloneTrial
 from grader.trial.inputs import Inputs
+from grader.trial.simulated import QUIET_S
 from grader.trial.wall import WallTrial
 
 if TYPE_CHECKING:
@@ -92,6 +93,11 @@ def who_may_ask() -> list[tuple[str, bool]]:
     tell("spawn", spawn, student.destroy_client)
     tell("the new turtle's set_pen", student.create_client(SetPen, "/turtle2/set_pen"), student.destroy_client)
     return told
+
+
+def quiet_s() -> float:
+    """How long discovery must be silent (s)."""
+    return QUIET_S
 
 
 def _stage() -> AloneTrial:
