@@ -198,7 +198,7 @@ class SimulatedTrial(Stage):
         self.tick(0.0)
 
     def _found_each_other(self) -> bool:
-        """Wait for 20 ms without anything new; true when the node waits for its clock and discovery is silent."""
+        """Wait for a silence of QUIET_S; true when the node waits for its clock and discovery is silent."""
         quiet = Threads(self.node.pid, of_dds)
         try:
             before = quiet.look().runs
