@@ -59,7 +59,7 @@ class OverwhelmedError(Exception):
 
 
 @cache
-def _compile_conductor() -> None:
+def compile_conductor() -> None:
     """Compile what the conductor imports, where that is out of date: in its room it cannot keep what it compiles."""
     if not sys.dont_write_bytecode:
         for folder in (_FOLDER, _FOLDER / "trial", _FOLDER / "simulator"):
@@ -157,7 +157,7 @@ class Trial:
         return from_json(self._answer("recording"))
 
     def _start(self) -> None:
-        _compile_conductor()
+        compile_conductor()
         if self._in_cell:
             self._workspace, self._home, self._domain = sandbox.WORKSPACE, sandbox.HOME, None
         else:

@@ -1,17 +1,18 @@
 from __future__ import annotations
 
 import os
+import sys
+from importlib.util import cache_from_source
+from pathlib import Path
 from threading import Timer
 from typing import TYPE_CHECKING
 
 from grader.recording import Pose
 from grader.ros import find_ros
 from grader.tests.waiting import until, until_gone
-from grader.trial.trial import Plan, Trial
+from grader.trial.trial import Plan, Trial, compile_conductor
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     import pytest
 
 
@@ -45,3 +46,19 @@ def test_a_trial_that_is_ready_may_wait_for_its_turn_as_long_as_it_takes(monkeyp
     with Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), None, in_cell=True) as trial:
         trial.await_ready()
         assert [limit.finished.is_set() for limit in limits] == [True]
+
+
+def test_what_the_conductor_imports_is_compiled_when_it_starts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    modules = [tmp_path / name for name in ("ros.py", "trial/rest.py", "simulator/node.py")]
+    for module in modules:
+        module.parent.mkdir(exist_ok=True)
+        module.write_text("pass\n")
+    monkeypatch.setattr("grader.trial.trial._FOLDER", tmp_path)
+    monkeypatch.setattr("grader.sandbox.room", lambda *_, **__: ["true"])
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    compile_conductor.cache_clear()
+    try:
+        with Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), None, in_cell=True):
+            assert all(Path(cache_from_source(str(module))).is_file() for module in modules)
+    finally:
+        compile_conductor.cache_clear()
