@@ -3,9 +3,9 @@
     python -m grader.benchmarks.mistakes [--only NNN ...]
 
 F is what the same work costs bare: a colcon build of the package and a process with one rclpy node for each node that
-the exercise runs (benchmarks/bare.py); 04-package-files runs two, 07-challenges four. Machines change their pace
-within the minutes that this takes, so it is measured again every few cases, and what seems to be over the aim is
-measured three times more, each time beside F: the median counts.
+the exercise runs (benchmarks/bare.py), each the median of three; 04-package-files runs two, 07-challenges four.
+Machines change their pace within the minutes that this takes, so it is measured again every few cases, and what seems
+to be over the aim is measured three times more, each time beside F: the median counts.
 """
 
 from __future__ import annotations
@@ -32,7 +32,6 @@ from grader.tests.grading import GRADER, grade
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from grader.benchmarks.measure import Cost
     from grader.exercise import Exercise
 
 SOLUTION = ROOT / "solutions/03-circle-publisher"
@@ -70,7 +69,7 @@ def main() -> None:
 
 def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
     """What the checks of some cases cost in F, without those of which wall time judged something."""
-    bare = bare_costs(SOLUTION, folder / "bare")
+    bare = _bare_s(folder / "bare")
     found: dict[str, float] = {}
     for case in cases:
         seconds = _whole_s(case, folder / case.name)
@@ -85,14 +84,19 @@ def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
 
 def _beside_f(case: Case, folder: Path) -> float:
     """The ratio of a check to an F that is measured right before it; infinite where wall time judged this time."""
-    bare = bare_costs(SOLUTION, folder / "bare")
+    bare = _bare_s(folder / "bare")
     seconds = _whole_s(case, folder / "whole")
     return math.inf if seconds is None else seconds / _f_s(case, bare)
 
 
-def _f_s(case: Case, bare: Mapping[str, Cost]) -> float:
-    nodes = 1 + len(_exercise(case).trials)
-    return bare["colcon build"].wall_s + nodes * bare["rclpy node"].wall_s
+def _bare_s(folder: Path) -> dict[str, float]:
+    """Seconds of each part of F: of one measurement alone, a ratio would tell the machine's mood."""
+    costs = [bare_costs(SOLUTION, folder / str(turn)) for turn in range(3)]
+    return {part: statistics.median(each[part].wall_s for each in costs) for part in costs[0]}
+
+
+def _f_s(case: Case, bare: Mapping[str, float]) -> float:
+    return bare["colcon build"] + (1 + len(_exercise(case).trials)) * bare["rclpy node"]
 
 
 def _exercise(case: Case) -> Exercise:
