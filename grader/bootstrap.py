@@ -107,15 +107,16 @@ def apt_install(needs: Sequence[machine.Need]) -> None:
         subprocess.call(["apt-get", *arguments], env=env, stdin=subprocess.DEVNULL)
 
 
-def see_browser(*, install: bool, root: bool) -> None:
-    """Install Chromium if that may be done, else say how; by itself, since not every system has that package."""
-    needs = machine.missing_browser(os.environ.get("PATH", ""))
-    if needs and install:
-        apt_install(needs)
-        needs = machine.missing_browser(os.environ.get("PATH", ""))
+def see_tools_of_tests(*, install: bool, root: bool) -> None:
+    """Install what only some tests need if that may be done, else say how."""
+    path = os.environ.get("PATH", "")
+    if install:
+        for need in machine.missing_of_tests(path):
+            apt_install([need])  # each by itself, since not every system has every package
+    needs = machine.missing_of_tests(path)
     if needs:
-        command = machine.apt_command(needs, root=root)
-        print(f"Without Chromium the tests of the pages are not run. It comes with: {command}")
+        whats = "; ".join(need.what for need in needs)
+        print(f"Some tests are skipped without these: {whats}. They come with: {machine.apt_command(needs, root=root)}")
 
 
 def look(
@@ -195,7 +196,7 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
         return MACHINE_BROKEN
 
     if "tests" in parts:
-        see_browser(install=apt and root and os.environ.get("CI") == "true", root=root)
+        see_tools_of_tests(install=apt and root and os.environ.get("CI") == "true", root=root)
 
     if stamp and made and stamp.digest == digest() and set(parts) <= set(stamp.parts):
         return 0

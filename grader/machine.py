@@ -165,11 +165,14 @@ def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
     return list(dict.fromkeys(need for name, need in tools.items() if shutil.which(name, path=search) is None))
 
 
-def missing_browser(path: str) -> List[Need]:
-    """What the tests of the pages lack; nothing else needs a browser, so that it is no reason to stop."""
+def missing_of_tests(path: str) -> List[Need]:
+    """What only some tests need; they are skipped without it, so that it is no reason to stop."""
+    tools = {
+        BROWSERS: Need("a browser, for the tests of the pages", "chromium"),
+        ("shellcheck",): Need("shellcheck, for the test of the shell scripts", "shellcheck"),
+    }
     search = os.pathsep.join([path, *SYSTEM_PATH])
-    found = any(shutil.which(name, path=search) for name in BROWSERS)
-    return [] if found else [Need("a browser, for the tests of the pages", "chromium")]
+    return [need for names, need in tools.items() if not any(shutil.which(name, path=search) for name in names)]
 
 
 def missing_of_python(python: Optional[Python], wanted: Optional[Tuple[int, int]] = None) -> List[Need]:

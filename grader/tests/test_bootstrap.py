@@ -31,7 +31,7 @@ class Course:
         self.commands: list[list[str]] = []
         self.python = SYSTEMS
         self.needs: list[Need] = []
-        self.browser: list[Need] = []
+        self.of_tests: list[Need] = []
 
     def call(self, command: list[str], **_options: object) -> int:
         self.commands.append(list(map(str, command)))
@@ -43,7 +43,7 @@ class Course:
             bootstrap.write_stamp(Stamp(**json.loads(command[-1])), self.stamp)
         if command[0] == "apt-get" and "install" in command:
             self.needs = [need for need in self.needs if need.package not in command]
-            self.browser = [need for need in self.browser if need.package not in command]
+            self.of_tests = [need for need in self.of_tests if need.package not in command]
         return 0
 
     @property
@@ -76,7 +76,7 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Course:
     monkeypatch.setattr(machine, "probe", lambda _path: course.python)
     monkeypatch.setattr(machine, "find_pythons", lambda _path: iter([course.python]))
     monkeypatch.setattr(machine, "missing_tools", lambda _path, _ros: list(course.needs))
-    monkeypatch.setattr(machine, "missing_browser", lambda _path: list(course.browser))
+    monkeypatch.setattr(machine, "missing_of_tests", lambda _path: list(course.of_tests))
     return course
 
 
@@ -174,7 +174,7 @@ def test_root_in_ci_installs_what_is_missing(
 
 
 @pytest.mark.parametrize(("ci", "user", "installs"), [("true", 0, True), ("", 0, False), ("true", 1000, False)])
-def test_root_in_ci_gets_the_browser_for_the_tests(
+def test_root_in_ci_gets_what_only_tests_need(
     course: Course,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -186,16 +186,16 @@ def test_root_in_ci_gets_the_browser_for_the_tests(
     monkeypatch.setenv("CI", ci)
     monkeypatch.setattr(os, "getuid", lambda: user)
     monkeypatch.setattr(shutil, "which", lambda _name: "/usr/bin/apt-get")
-    course.browser = [Need("a browser", "chromium")]
+    course.of_tests = [Need("a browser", "chromium"), Need("shellcheck", "shellcheck")]
     assert course.set_up(TESTS) == 0
-    assert ("install" in course.programs) == installs
-    assert ("Without Chromium" in capsys.readouterr().out) == (not installs)
+    assert course.programs.count("install") == (2 if installs else 0)
+    assert ("without these: a browser; shellcheck" in capsys.readouterr().out) == (not installs)
 
 
-def test_a_learner_needs_no_browser(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
-    course.browser = [Need("a browser", "chromium")]
+def test_a_learner_needs_nothing_that_only_tests_need(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
+    course.of_tests = [Need("a browser", "chromium")]
     assert course.set_up(LEARNER) == 0
-    assert "Chromium" not in capsys.readouterr().out
+    assert "chromium" not in capsys.readouterr().out
 
 
 def test_what_root_in_ci_cannot_install_is_told(course: Course, monkeypatch: pytest.MonkeyPatch) -> None:

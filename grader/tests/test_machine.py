@@ -200,6 +200,13 @@ def test_an_installed_turtlesim_needs_no_compiler(tmp_path: Path, monkeypatch: p
     assert [need.package for need in needs] == ["bubblewrap", "util-linux"]
 
 
+def test_any_browser_will_do_for_the_tests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine, "SYSTEM_PATH", ())
+    assert [need.package for need in machine.missing_of_tests(str(tmp_path))] == ["chromium", "shellcheck"]
+    (tmp_path / "google-chrome").touch(mode=0o755)
+    assert [need.package for need in machine.missing_of_tests(str(tmp_path))] == ["shellcheck"]
+
+
 def test_names_the_packages_of_the_python_that_lacks_them() -> None:
     default = SYSTEMS._replace(path=os.path.realpath("/usr/bin/python3"), venv=False, headers=False)
     other = SYSTEMS._replace(path="/usr/bin/python3.13-other", version=(3, 13, 1), venv=False, headers=False)
