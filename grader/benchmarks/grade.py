@@ -175,9 +175,9 @@ def _cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
         _wait_for_workers(address, workers)
         yield address.removeprefix("tcp://"), [process.pid for process in started]
     finally:
+        # One after the other: a worker that hears of its own end and of the scheduler's at once may never end.
         for process in reversed(started):
             process.terminate()
-        for process in started:
             process.wait()
 
 
