@@ -72,6 +72,13 @@ def test_a_crash_is_told_with_its_meaning() -> None:
     assert found.cause == "A number was divided by zero."
 
 
+def test_a_program_that_crashed_while_its_node_was_waited_for_is_told_to_have_made_none() -> None:
+    late = replace(SHAPES["crash at the start"](), end=crashed(5.0), graphs=(graph((), topic=None),))
+    found = finding("start", evidence(late))
+    assert found.diagnosis == "crash"
+    assert found.seen == "draw_circle crashed before it had made a node: ZeroDivisionError: division by zero."
+
+
 def test_a_node_that_crashed_while_it_ran_did_start() -> None:
     assert finding("start", of("crash")).status is Status.PASSED
 
