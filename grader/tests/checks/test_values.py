@@ -54,6 +54,8 @@ def test_where_nothing_arrives_no_value_is_called_wrong() -> None:
         ((2.0, 0.0, 0.0), (0.0, 0.0, 0.0), "wrong-value", 15),
         ((2.0, 0.0, 0.0), (0.0, 1.0, 0.0), "wrong-field", 13),
         ((2.0, 0.0, 3.0), (0.0, 0.0, 1.0), "wrong-value", 13),
+        ((3.0, 2.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
+        ((0.0, 3.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
         ((-2.0, 0.0, 0.0), (0.0, 0.0, 1.0), "wrong-sign", 14),
         ((2.0, 0.0, 0.0), (0.0, 0.0, math.radians(1.0)), "degrees", 15),
         ((math.degrees(2.0), 0.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
