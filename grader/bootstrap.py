@@ -116,7 +116,7 @@ def see_tools_of_tests(*, install: bool, root: bool) -> None:
     needs = machine.missing_of_tests(path)
     if needs:
         whats = "; ".join(need.what for need in needs)
-        print(f"Some tests are skipped without these: {whats}. They come with: {machine.apt_command(needs, root=root)}")
+        print(f"Some tests cannot run without these: {whats}. They come with: {machine.apt_command(needs, root=root)}")
 
 
 def look(

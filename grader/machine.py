@@ -166,7 +166,7 @@ def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
 
 
 def missing_of_tests(path: str) -> List[Need]:
-    """What only some tests need; they are skipped without it, so that it is no reason to stop."""
+    """What is missing that only some tests need: no reason to stop, since the others run without it."""
     tools = {
         BROWSERS: Need("a browser, for the tests of the pages", "chromium"),
         ("shellcheck",): Need("shellcheck, for the test of the shell scripts", "shellcheck"),

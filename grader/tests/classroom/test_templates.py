@@ -22,6 +22,7 @@ from grader.classroom.unpack import unpack
 from grader.errors import UsageError
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import STEP, environment
+from grader.tests.lacking import give_up
 from grader.tests.report.test_class_formats import RESULTS, commands
 
 if TYPE_CHECKING:
@@ -157,7 +158,7 @@ def test_every_template_is_on_the_list_and_says_whether_it_was_tried() -> None:
 
 def test_shell_scripts_hold_for_shellcheck() -> None:
     if shutil.which("shellcheck") is None:
-        pytest.skip("there is no shellcheck here")
+        give_up("shellcheck", "shellcheck")
     scripts = [TEMPLATES / name for name in ("grade.sh", "gradescope-setup.sh", "gradescope-run_autograder")]
     done = run("shellcheck", *scripts)
     assert done.returncode == 0, done.stdout
