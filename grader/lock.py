@@ -1,7 +1,7 @@
 """The lock file: every version that the set-up installs, for all Pythons, with hashes, in parts.
 
-One file in pip's format. A line `# part: NAME` opens each part, so that a learner's set-up installs what it needs
-and the tests' libraries wait until they are wanted. `python -m grader.lock` (`make lock`) writes it.
+One file in pip's format, in sections: `# part: NAME` opens what one part needs, `# part: NAME NAME` what several need.
+So each set-up installs all that it needs and nothing else. `python -m grader.lock` (`make lock`) writes it.
 Standard library only: the set-up reads the file before anything is installed.
 """
 
@@ -32,7 +32,11 @@ PARTS = {
     "notebooks": "JupyterLab and nbgrader",
     "tests": "tests",
 }
-"""Name of each part and what it is for, in the file's order; an entry stands in the first part that needs it."""
+"""Name of each part and what it is for, in the file's order."""
+
+ALWAYS = ("setup", "grader")
+"""Parts of every set-up: what one of them needs stands there alone. Any other part may be left out, `ros` too, so each
+of those has all that it needs beside these two."""
 
 SOURCED_BRINGS = frozenset({"numpy", "empy"})
 """Left to a sourced ROS 2: its extensions are built for its own numpy, its generators for its own empy."""
@@ -51,29 +55,32 @@ class Entry:
 
 
 def parse(text: str) -> dict[str, list[Entry]]:
-    """The entries of each part, in the file's order.
+    """The entries of each part, in the file's order; what several parts need is in each of them.
 
     Raises:
         UsageError: a line belongs to no part or to no entry.
     """
-    parts: dict[str, list[Entry]] = {}
+    sections: list[tuple[list[str], list[Entry]]] = []
     for line in text.splitlines(keepends=True):
         if line.startswith(_MARK):
-            name = line[len(_MARK) :].split(maxsplit=1)[0].rstrip(":")
-            entries = parts.setdefault(name, [])
+            sections.append((line[len(_MARK) :].partition(":")[0].split(), []))
         elif line.startswith("#") or not line.strip():
             continue
-        elif not parts:
+        elif not sections:
             message = f"requirements.lock: this line stands before the first '{_MARK}NAME': {line.strip()}"
             raise UsageError(message)
         elif match := _NAME.match(line):
-            entries.append(Entry(match.group(1), match.group(2), line))
-        elif entries and line.startswith(" "):
-            last = entries[-1]
-            entries[-1] = Entry(last.name, last.version, last.text + line)
+            sections[-1][1].append(Entry(match.group(1), match.group(2), line))
+        elif sections[-1][1] and line.startswith(" "):
+            last = sections[-1][1].pop()
+            sections[-1][1].append(Entry(last.name, last.version, last.text + line))
         else:
             message = f"requirements.lock: expected 'name==version' or an indented hash, seen: {line.strip()}"
             raise UsageError(message)
+    parts: dict[str, list[Entry]] = {}
+    for names, entries in sections:
+        for name in names:
+            parts.setdefault(name, []).extend(entries)
     return parts
 
 
@@ -81,19 +88,36 @@ def select(
     text: str, parts: Collection[str], *, without: Collection[str] = (), only: Collection[str] | None = None
 ) -> str:
     """The requirements of `parts`, as pip reads them: all packages but `without`, or `only` those named."""
-    entries = (entry for part, entries in parse(text).items() if part in parts for entry in entries)
+    entries = dict.fromkeys(entry for part, entries in parse(text).items() if part in parts for entry in entries)
     chosen = (entry for entry in entries if entry.name not in without and (only is None or entry.name in only))
     return "".join(entry.text for entry in chosen)
 
 
-def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str:
-    """The lock file's text: each entry below the first part whose needs name it, else below the last one."""
-    below: dict[str, list[str]] = {part: [] for part in PARTS}
+def split(entries: Iterable[Entry], needs: Mapping[str, Collection[tuple[str, str]]]) -> str:
+    """The lock file's text: each entry below the names of the parts that need it; `needs` are names and versions.
+
+    Raises:
+        MachineError: the parts do not need just these entries.
+    """
+    sections: dict[tuple[str, ...], list[str]] = {(part,): [] for part in PARTS}
+    rest = set().union(*needs.values())
     for entry in entries:
-        part = next((part for part in PARTS if entry.name in needs.get(part, ())), list(PARTS)[-1])
-        below[part].append(entry.text)
-    head = "# Made by `make lock` from pyproject.toml, not to be edited: every version, with hashes, for all Pythons.\n"
-    return head + "".join(f"\n{_MARK}{part}: {PARTS[part]}\n{''.join(texts)}" for part, texts in below.items())
+        package = (entry.name, entry.version)
+        parts = tuple(part for part in PARTS if package in needs.get(part, ()))
+        always = [part for part in ALWAYS if part in parts]
+        if not parts:
+            message = f"No part of the lock file needs {entry.name} {entry.version}, but the whole does."
+            raise MachineError(message)
+        sections.setdefault((always[0],) if always else parts, []).append(entry.text)
+        rest.discard(package)
+    if rest:
+        message = f"By itself a part of the lock file needs other versions than the whole: {sorted(rest)}."
+        raise MachineError(message)
+    text = "# Made by `make lock` from pyproject.toml, not to be edited: every version, with hashes, for all Pythons.\n"
+    order = list(PARTS)
+    for parts in sorted(sections, key=lambda parts: [order.index(part) for part in reversed(parts)]):
+        text += f"\n{_MARK}{' '.join(parts)}: {'; '.join(PARTS[part] for part in parts)}\n{''.join(sections[parts])}"
+    return text
 
 
 def make(uv: str, *, upgrade: bool = False) -> str:
@@ -114,11 +138,12 @@ def make(uv: str, *, upgrade: bool = False) -> str:
             ("ros", None, ["--extra", "ros"]),
             ("cluster", None, ["--extra", "cluster"]),
             ("notebooks", None, ["--extra", "notebooks"]),
+            ("tests", None, ["--extra", "dev"]),
         ]:
             # Compiling a part keeps to the versions that stand in its output file: the whole's.
             path = shutil.copyfile(whole, Path(folder, f"{part}.txt"))
             _compile(uv, path, arguments, requirements)
-            needs[part] = {name for name, _ in _NAME.findall(path.read_text(encoding="utf-8"))}
+            needs[part] = set(_NAME.findall(path.read_text(encoding="utf-8")))
     return split(entries, needs)
 
 

@@ -9,8 +9,8 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from grader import lock
-from grader.errors import UsageError
+from grader import bootstrap, lock
+from grader.errors import MachineError, UsageError
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -19,9 +19,8 @@ else:
 
 TEXT = lock.LOCK_FILE.read_text(encoding="utf-8")
 PARTS = lock.parse(TEXT)
-ENTRIES = [entry for entries in PARTS.values() for entry in entries]
+ENTRIES = list(dict.fromkeys(entry for entries in PARTS.values() for entry in entries))
 PYTHONS = {"3.10": "3.10.0", "3.11": "3.11.2", "3.12": "3.12.3", "3.13": "3.13.5", "3.14": "3.14.0"}
-LEARNERS = ("setup", "grader", "ros")
 
 SMALL = """\
 # a comment
@@ -107,9 +106,10 @@ def test_ros_is_a_part_of_its_own() -> None:
     ]
 
 
-@pytest.mark.parametrize("parts", [("setup",), ("setup", "grader"), LEARNERS, tuple(lock.PARTS)])
-def test_parts_need_nothing_of_later_parts(parts: tuple[str, ...]) -> None:
-    names = {entry.name for part in parts for entry in PARTS[part]}
+@pytest.mark.parametrize("sourced", [False, True], ids=["wheels", "sourced"])
+@pytest.mark.parametrize("parts", [["setup"], ["setup", "grader"], *bootstrap.PARTS.values()], ids=" ".join)
+def test_each_set_up_has_all_that_its_packages_need(parts: list[str], *, sourced: bool) -> None:
+    names = {entry.name for part in parts if not (sourced and part == "ros") for entry in PARTS[part]}
     missing = []
     for name in names:
         try:
@@ -149,18 +149,35 @@ def test_select_leaves_out_and_picks() -> None:
     assert lock.select(SMALL, ["setup", "grader"], only={"rich"}) == "rich==15 \\\n    --hash=sha256:dd\n"
 
 
-def test_split_puts_an_entry_below_the_first_part_that_needs_it() -> None:
-    entries = [lock.Entry(name, "1", f"{name}==1\n") for name in ("a", "b", "c", "d", "e", "f")]
-    needs = {"setup": {"b"}, "grader": {"a", "b"}, "ros": {"a", "c"}, "cluster": {"a", "e"}, "notebooks": {"e", "f"}}
-    text = lock.split(entries, needs)
-    assert {part: [entry.name for entry in found] for part, found in lock.parse(text).items()} == {
+def split(needs: dict[str, str]) -> dict[str, list[str]]:
+    """The packages of each part after `split`, from one letter a package that each part needs."""
+    entries = [lock.Entry(name, "1", f"{name}==1\n") for name in "abcdefg"]
+    text = lock.split(entries, {part: {(name, "1") for name in names} for part, names in needs.items()})
+    return {part: [entry.name for entry in found] for part, found in lock.parse(text).items()}
+
+
+def test_split_gives_each_part_all_that_it_needs() -> None:
+    needs = {"setup": "b", "grader": "abg", "ros": "ace", "cluster": "ade", "notebooks": "aef", "tests": "abfg"}
+    assert split(needs) == {
         "setup": ["b"],
-        "grader": ["a"],
-        "ros": ["c"],
-        "cluster": ["e"],
-        "notebooks": ["f"],
-        "tests": ["d"],
+        "grader": ["a", "g"],
+        "ros": ["c", "e"],
+        "cluster": ["d", "e"],
+        "notebooks": ["e", "f"],
+        "tests": ["f"],
     }
+
+
+def test_split_refuses_parts_that_are_not_the_whole() -> None:
+    with pytest.raises(MachineError, match="needs g 1"):
+        split({"setup": "abcdef"})
+    with pytest.raises(MachineError, match="'h', '1'"):
+        split({"setup": "abcdefg", "tests": "h"})
+
+
+def test_what_two_parts_need_is_selected_once() -> None:
+    text = "# part: cluster notebooks: both\ntornado==6 \\\n    --hash=sha256:aa\n"
+    assert lock.select(text, ["cluster", "notebooks"]) == lock.select(text, ["cluster"]) == text.partition("\n")[2]
 
 
 @pytest.mark.parametrize("text", ["uv==1.0\n", "# part: setup\n    --hash=sha256:aa\n", "# part: setup\nuv>=1\n"])
