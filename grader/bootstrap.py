@@ -191,9 +191,12 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     if needs and apt and root and os.environ.get("CI") == "true":
         apt_install(needs)
         python, needs = look(ros, wanted, made=made)
-    if needs:
+    if any(not need.lost or "tests" in parts for need in needs):
         print(machine.lack_message(needs, root=root, apt=apt), file=sys.stderr)
         return MACHINE_BROKEN
+    for need in needs:
+        how = f" It comes with: {machine.apt_command([need], root=root)}" if apt else ""
+        say(f"Without {need.package}: {need.lost}.{how}")
 
     if "tests" in parts:
         see_tools_of_tests(install=apt and root and os.environ.get("CI") == "true", root=root)

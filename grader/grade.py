@@ -90,7 +90,9 @@ def grade(
         return _Grading(exercise, submission, options, tell, early, build, trial, turns, ahead).run()
 
 
-def report_of(evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float]) -> Report:
+def report_of(
+    evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float], *, confined: bool = True
+) -> Report:
     """The report on evidence that has been judged."""
     recording = evidence.recording
     return Report(
@@ -103,6 +105,7 @@ def report_of(evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, secon
         clock=recording.clock if recording else "none",
         clock_why=_why_this_clock(evidence),
         seed=recording.seed if recording else None,
+        confined=confined,
         outcomes=outcomes,
         seconds=seconds,
         exercise_digest=evidence.exercise.digest,
@@ -159,7 +162,9 @@ class _Grading:
         with self._timed("checks"):
             outcomes = judge(evidence)
         self.seconds["in all"] = time.monotonic() - begun
-        return Graded(report_of(evidence, outcomes, ros_name, self.seconds), evidence, prefixes)
+        confined = self.options.in_cell or evidence.build is None
+        report = report_of(evidence, outcomes, ros_name, self.seconds, confined=confined)
+        return Graded(report, evidence, prefixes)
 
     def _simulator_alone(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
         self.tell("Asking a running simulator")

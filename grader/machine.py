@@ -15,6 +15,7 @@ from typing import Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequ
 OLDEST, NEWEST = (3, 10), (3, 14)
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SYSTEM_PATH = ("/usr/local/bin", "/usr/bin", "/bin")
+NO_SANDBOX = "your own code is checked with limits on time, memory, processes and file size only; no marks are given"
 
 CONTAINER = """\
   - a container, started in this folder (--privileged, since the grader makes sandboxes of its own):
@@ -62,6 +63,8 @@ class Need(NamedTuple):
 
     what: str
     package: str
+    lost: str = ""
+    """What does not work without it; empty where nothing does."""
 
 
 def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
@@ -152,9 +155,7 @@ def choose_python(
 
 def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
     """Programs that the system lacks. Where turtlesim is installed, its messages need no compiler."""
-    tools = {
-        "bwrap": Need("bubblewrap, the sandbox that student code runs in", "bubblewrap"),
-    }
+    tools = {"bwrap": Need("bubblewrap, the sandbox that student code runs in", "bubblewrap", NO_SANDBOX)}
     limits = Need("setpriv, prlimit and choom, which set the sandbox's limits", "util-linux")
     tools.update({"setpriv": limits, "prlimit": limits, "choom": limits})
     if not (ros and ros.turtlesim):

@@ -102,6 +102,8 @@ class Report:
     seconds: dict[str, float] = field(default_factory=dict)
     """Wall time of each stage; not compared between two reports."""
     recording: str | None = None
+    confined: bool = True
+    """False where a student's code ran with resource limits only, outside of a sandbox."""
     exercise_digest: str = ""
     """sha256 of exercise.toml: the checks and numbers that this report was judged by."""
 

@@ -117,7 +117,7 @@ class ProcessEnd:
     """How the node's process ended.
 
     `by` says what it took: "itself" (before the scenario was over), or the signal after which it was gone.
-    `out_of`: the grader ended it, since it held more "memory" or "files" than a node may.
+    `out_of`: the grader ended it, since it held more "memory", "processes" or "files" than a node may.
     `stop_s` is the time from SIGINT to its end (s of wall time), None when it ended by itself; `t_s` is the end on
     the trial's clock. `exit_code` is negative for a signal, as in subprocess.
     """

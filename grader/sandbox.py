@@ -15,6 +15,7 @@ These functions only make command lines; whoever runs them owns the process. Inp
 from __future__ import annotations
 
 import os
+import resource
 import shutil
 import subprocess
 import sys
@@ -39,6 +40,8 @@ USER_ID = 65530
 
 MIB = 1024 * 1024
 ROOM_DISK = 256 * MIB
+MOST_OTHERS = 4096
+"""Processes and threads that a user may have beside a grading without a cell."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +130,7 @@ def cell(
     command += [] if info_fd is None else ["--info-fd", str(info_fd)]
     command += [] if filter_fd is None else ["--seccomp", str(filter_fd)]
     # Set inside: the limit on processes then counts only this cell's.
-    return [*command, *_environment(env), "--chdir", str(cwd), "--", *limited(argv, limits)]
+    return [*command, *_environment(env), "--chdir", str(cwd), "--", *limited(argv, limits, in_cell=True)]
 
 
 def lone_cell(
@@ -138,21 +141,29 @@ def lone_cell(
     return room(inner, view, env=env) if os.geteuid() == 0 else inner
 
 
-def limited(argv: Sequence[str], limits: Limits) -> list[str]:
-    """`argv` under resource limits alone: all that can be had without bubblewrap."""
+def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> list[str]:
+    """`argv` under resource limits: all that can be had without bubblewrap, and part of what a cell has."""
+    # Outside of a cell the kernel counts all processes of the user; watch.py counts those of `argv`.
+    processes = limits.processes if in_cell else limits.processes + MOST_OTHERS
     return [
         "prlimit",
-        f"--nproc={limits.processes}",
-        f"--as={limits.memory}",
-        f"--nofile={limits.open_files}",
-        f"--fsize={limits.file_size}",
-        f"--cpu={limits.cpu_s}",
+        f"--nproc={_allowed(resource.RLIMIT_NPROC, processes)}",
+        f"--as={_allowed(resource.RLIMIT_AS, limits.memory)}",
+        f"--nofile={_allowed(resource.RLIMIT_NOFILE, limits.open_files)}",
+        f"--fsize={_allowed(resource.RLIMIT_FSIZE, limits.file_size)}",
+        f"--cpu={_allowed(resource.RLIMIT_CPU, limits.cpu_s)}",
         "--core=0",
         "--",
         # When the machine runs out of memory, this is what should go first.
         *("choom", "-n", "1000", "--"),
         *argv,
     ]
+
+
+def _allowed(which: int, wanted: int) -> int:
+    """The limit that is wanted, or the user's own if that is lower: nobody but root can raise it."""
+    hard = resource.getrlimit(which)[1]
+    return wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
 
 
 def usable() -> bool:

@@ -1,4 +1,4 @@
-"""Watch how much a cell holds in all: memory of its processes together, its disks, the files on them.
+"""Watch how much a cell holds in all: memory and number of its processes, its disks, the files on them.
 
 Resource limits count each process for itself, and a tmpfs as bubblewrap mounts it limits bytes but not files. Control
 groups could count, where one may make them; looking ten times a second works everywhere.
@@ -18,22 +18,31 @@ if TYPE_CHECKING:
     from grader.sandbox import Limits
 
 EVERY_S = 0.1
+LAUNCHERS = 16
+"""Processes beyond the limit that are not the student's: bubblewrap's and whatever else starts a cell.
+
+In a cell the kernel counts too, and refuses before this is reached.
+"""
 _DISKS = ("ws", "tmp", "dev/shm")
 _PAGE = os.sysconf("SC_PAGE_SIZE")
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
 def exceeded(pid: int, limits: Limits) -> str | None:
-    """Which limit ("memory", "files") the cell at or below the process `pid` has gone over; None as long as none."""
+    """Which limit ("memory", "processes", "files") the cell at or below the process `pid` is over; None if none."""
     memory = 0
+    processes = 0
     disks: dict[int, tuple[int, int]] = {}
     for process in _family(pid):
         memory += _own_bytes(process)
+        processes += _threads(process)
         if not disks:
             disks = _disks(process)
     memory += sum(used for used, _ in disks.values())
     if memory > limits.total_memory:
         return "memory"
+    if processes > limits.processes + LAUNCHERS:
+        return "processes"
     return "files" if sum(files for _, files in disks.values()) > limits.files else None
 
 
@@ -86,6 +95,14 @@ def _own_bytes(pid: int) -> int:
     except (OSError, ValueError):
         return 0
     return (int(resident) - int(shared)) * _PAGE
+
+
+def _threads(pid: int) -> int:
+    """Threads of the process."""
+    try:
+        return len(os.listdir(f"/proc/{pid}/task"))  # noqa: PTH208 - many, often
+    except OSError:
+        return 0
 
 
 def _cpu_s(pid: int) -> float:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import io
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -58,7 +59,8 @@ def to_data(graded: Graded, *, html: bool) -> dict[str, object]:
 
     from grader.report import terminal
 
-    report = graded.report
+    # What a kernel in a cell runs is in that cell too.
+    report = replace(graded.report, confined=graded.report.confined or confined())
     page = io.StringIO()
     terminal.render(report, Console(file=page, width=100, highlight=False, force_terminal=False, color_system=None))
     shown = ""

@@ -16,7 +16,7 @@ from grader.report.html_run import runs_of
 from grader.report.logs import logs_of
 from grader.report.page import make_page, save_page
 from grader.report.plain import plain_line
-from grader.report.verdict import tone, verdict
+from grader.report.verdict import UNCONFINED, tone, verdict
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -78,6 +78,7 @@ def html_page(evidence: Evidence, report: Report) -> str:
     unmade = [check for check in shown if check.kind == "error" and check.outcome.finding.seen == fault]
     values = {
         "report": report,
+        "unconfined": UNCONFINED,
         "verdict": verdict(report),
         "tone": tone(report),
         "mend": [each for each in shown if each.kind in ("failed", "error", "advice") and each not in unmade],

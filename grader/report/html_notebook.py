@@ -13,7 +13,7 @@ from grader.outcome import Status
 from grader.report.html import ShownCheck
 from grader.report.html_run import runs_of
 from grader.report.template import fill
-from grader.report.verdict import tone, verdict
+from grader.report.verdict import UNCONFINED, tone, verdict
 
 if TYPE_CHECKING:
     from grader.checks.evidence import Evidence
@@ -25,6 +25,7 @@ def html_fragment(evidence: Evidence, report: Report) -> str:
     worth = [o for o in report.outcomes if o.max or o.status is not Status.PASSED]
     values = {
         "report": report,
+        "unconfined": UNCONFINED,
         "verdict": verdict(report),
         "tone": tone(report),
         "checks": [ShownCheck(number, outcome) for number, outcome in enumerate(worth, 1)],

@@ -1,12 +1,13 @@
 """Report to JSON and back.
 
-Schema 1. Every key is always there; texts are never null unless it says so.
+Schema 2. Every key is always there; texts are never null unless it says so.
 
-    schema        1
+    schema        2; in schema 1, which is read too, `confined` was missing
     exercise      {id, title, sha256 of exercise.toml}
     submission    {name as the user gave it, sha256 over its files}
     grader, ros   their versions
     clock         {used: "simulated" or "wall" ("none" when no trial ran), why: a sentence}
+    confined      false where the student's code ran without a sandbox, with resource limits only
     seed          the number that drew the turtle's start; null for turtlesim's own start
     points, max   sums over the outcomes; what the machine could not judge (status "error") is in neither
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
@@ -24,7 +25,8 @@ from typing import Any
 from grader.errors import UsageError
 from grader.outcome import Finding, Outcome, Report, Status, Where
 
-SCHEMA = 1
+SCHEMA = 2
+READ = (1, SCHEMA)
 
 
 def to_json(report: Report) -> str:
@@ -41,6 +43,7 @@ def to_data(report: Report) -> dict[str, Any]:
         "grader": report.grader,
         "ros": report.ros,
         "clock": {"used": report.clock, "why": report.clock_why},
+        "confined": report.confined,
         "seed": report.seed,
         "points": report.points,
         "max": report.max,
@@ -84,8 +87,8 @@ def from_json(text: str) -> Report:
     except (ValueError, TypeError, KeyError) as error:
         message = "This is no report of the grader: it is not JSON with a key schema."
         raise UsageError(message) from error
-    if schema != SCHEMA:
-        message = f"This report has schema {schema}; this version of the grader reads schema {SCHEMA}."
+    if schema not in READ:
+        message = f"This report has schema {schema}; this version of the grader reads schema {READ[0]} to {READ[-1]}."
         raise UsageError(message)
     try:
         return _report(data)
@@ -105,6 +108,7 @@ def _report(data: dict[str, Any]) -> Report:
         ros=data["ros"],
         clock=data["clock"]["used"],
         clock_why=data["clock"]["why"],
+        confined=True if data["schema"] == 1 else bool(data["confined"]),
         seed=data["seed"],
         outcomes=tuple(_read_outcome(each) for each in data["outcomes"]),
         seconds=dict(data["seconds"]),

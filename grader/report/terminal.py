@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.outcome import Outcome, Report, Status
-from grader.report.verdict import tone, verdict
+from grader.report.verdict import UNCONFINED, tone, verdict
 from grader.words import count, printable
 
 if TYPE_CHECKING:
@@ -111,6 +111,8 @@ def _footnotes(report: Report) -> list[str]:
     notes = [f"{clock}: {why}" if clock and why else clock or why]
     if report.seed is not None:
         notes.append(f"The turtle's start was drawn with seed {report.seed}.")
+    if not report.confined:
+        notes.append(UNCONFINED)
     if report.recording is not None:
         notes.append(f"Recording: {printable(report.recording)}")
     return [note for note in notes if note]

@@ -10,6 +10,11 @@ from grader.words import count
 if TYPE_CHECKING:
     from grader.outcome import Report
 
+UNCONFINED = (
+    "The code ran without a sandbox, with limits on time, memory, processes and file size only: "
+    "`grader doctor` says why."
+)
+
 Tone = Literal["passed", "failed", "error"]
 
 

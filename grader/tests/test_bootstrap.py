@@ -152,13 +152,27 @@ def test_a_sourced_ros_sees_the_systems_packages(course: Course) -> None:
 
 
 def test_what_is_missing_is_told_and_nothing_is_done(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
-    course.needs = [Need("bubblewrap", "bubblewrap")]
+    course.needs = [Need("cmake", "cmake")]
     course.python = SYSTEMS._replace(headers=False)
     assert course.set_up() == bootstrap.MACHINE_BROKEN
     assert course.commands == []
     message = capsys.readouterr().err
     assert "Python.h" in message
     assert message.count("apt-get install") == 1
+
+
+def test_a_learner_goes_on_without_a_sandbox_and_is_told(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
+    course.needs = [Need("bubblewrap, the sandbox", "bubblewrap", "no marks")]
+    assert course.set_up() == 0
+    assert course.programs == ["venv", "grader.install"]
+    (told,) = [line for line in capsys.readouterr().out.splitlines() if "bubblewrap" in line]
+    assert told.startswith("Without bubblewrap: no marks.")
+
+
+def test_the_tests_need_a_sandbox(course: Course) -> None:
+    course.needs = [Need("bubblewrap, the sandbox", "bubblewrap", "no marks")]
+    assert course.set_up(TESTS) == bootstrap.MACHINE_BROKEN
+    assert course.commands == []
 
 
 @pytest.mark.parametrize(("ci", "user", "installs"), [("true", 0, True), ("true", 1000, False), ("", 0, False)])
@@ -168,7 +182,7 @@ def test_root_in_ci_installs_what_is_missing(
     monkeypatch.setenv("CI", ci)
     monkeypatch.setattr(os, "getuid", lambda: user)
     monkeypatch.setattr(shutil, "which", lambda _name: "/usr/bin/apt-get")
-    course.needs = [Need("bubblewrap", "bubblewrap")]
+    course.needs = [Need("cmake", "cmake")]
     assert course.set_up() == (0 if installs else bootstrap.MACHINE_BROKEN)
     assert course.programs == (["update", "install", "venv", "grader.install"] if installs else [])
 
@@ -203,7 +217,7 @@ def test_what_root_in_ci_cannot_install_is_told(course: Course, monkeypatch: pyt
     monkeypatch.setattr(os, "getuid", lambda: 0)
     monkeypatch.setattr(shutil, "which", lambda _name: "/usr/bin/apt-get")
     monkeypatch.setattr(subprocess, "call", lambda _command, **_options: 100)
-    course.needs = [Need("bubblewrap", "bubblewrap")]
+    course.needs = [Need("cmake", "cmake")]
     assert course.set_up() == bootstrap.MACHINE_BROKEN
 
 

@@ -33,7 +33,7 @@ def bare(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
     """Nothing is tried, only what lies there is looked at: each test breaks one thing."""
     monkeypatch.setattr(sandbox, "why_unavailable", lambda: None)
     monkeypatch.setattr(underlay, "ensure", lambda _ros, _tell: Path("/cache/turtlesim"))
-    monkeypatch.setattr(doctor, "look_at_node", lambda _ros, _ours: Line("a node", "starts"))
+    monkeypatch.setattr(doctor, "look_at_node", lambda _ros, _ours, **_: Line("a node", "starts"))
     return monkeypatch
 
 
@@ -63,7 +63,6 @@ def test_every_broken_line_says_what_to_do(bare: pytest.MonkeyPatch, tmp_path: P
     assert {subject for subject, state in states(lines).items() if state == "broken"} == {
         "programs",
         "disk",
-        "sandbox",
         "ROS 2",
     }
     assert [line for line in lines if line.state == "broken" and not (line.todo or "`" in line.seen)] == []
@@ -73,7 +72,7 @@ def test_missing_programs_are_one_line_with_one_command(bare: pytest.MonkeyPatch
     bare.setattr(machine, "SYSTEM_PATH", ())
     broken = [line for line in doctor.look_at_tools({"PATH": str(tmp_path)}) if line.state == "broken"]
     assert len(broken) == 1
-    assert broken[0].todo.endswith("apt-get install -y bubblewrap util-linux g++ cmake make")
+    assert broken[0].todo.endswith("apt-get install -y util-linux g++ cmake make")
 
 
 def test_missing_headers_are_found(bare: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -141,6 +140,24 @@ def test_a_node_that_is_not_heard_is_told(monkeypatch: pytest.MonkeyPatch, wheel
     line = doctor.look_at_node(wheels, None)
     assert line.state == "broken"
     assert "nothing was heard of it" in line.seen
+
+
+def test_a_machine_without_a_sandbox_is_good_enough_for_ones_own_code(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sandbox, "bubblewrap", lambda: None)
+    lines = doctor.run_doctor({**os.environ, "ROS_DISTRO": ""})
+    assert [line for line in lines if line.state == "broken"] == []
+    (told,) = [line for line in lines if line.subject == "sandbox"]
+    assert told.state == "advice"
+    assert "limits on time, memory, processes and file size only" in told.seen
+    assert "install bubblewrap" in told.todo
+    assert states(lines)["a node"] == "ok"
+
+
+def test_a_node_that_is_not_heard_without_a_cell_is_told(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
+    monkeypatch.setattr(doctor, "_TALKER", "raise SystemExit('no interfaces')")
+    monkeypatch.setattr(doctor, "_LISTENER", doctor._LISTENER.replace("20.0", "1.0"))
+    line = doctor.look_at_node(wheels, None, confined=False)
+    assert (line.state, "nothing was heard of it" in line.seen) == ("broken", True)
 
 
 def test_lines_are_plain_and_whole_when_piped() -> None:

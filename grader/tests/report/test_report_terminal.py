@@ -10,6 +10,7 @@ from rich.console import Console
 
 from grader.outcome import Report, Status, Where, failed, passed
 from grader.report.terminal import render
+from grader.report.verdict import UNCONFINED
 from grader.tests.report.reports import report
 
 ESCAPE = "\x1b"
@@ -39,6 +40,12 @@ def test_the_verdict_stands_at_the_end() -> None:
     assert lines[0] == "Draw a circle: alice/my_robot_controller"
     assert lines[-2] == "Not passed yet: 55 of 100 points, 2 checks failed."
     assert lines[-1] == "Judged in simulated time: The node waits only for ROS time."
+
+
+def test_what_ran_without_a_sandbox_is_told_in_one_line() -> None:
+    lines = told(report("passed", confined=False), width=200).splitlines()
+    assert [line for line in lines if "sandbox" in line] == [UNCONFINED]
+    assert "sandbox" not in told(report("passed"))
 
 
 @pytest.mark.parametrize(

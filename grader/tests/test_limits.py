@@ -1,0 +1,39 @@
+"""Resource limits, as they are set in a cell and where there is none."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from grader import process, sandbox
+
+
+def test_limits_alone_need_no_bubblewrap() -> None:
+    done = subprocess.run(sandbox.limited(["true"], sandbox.Limits()), check=False)
+    assert done.returncode == 0
+
+
+def test_limits_never_exceed_those_of_the_user() -> None:
+    """Nobody but root may raise a hard limit, and prlimit would refuse to start anything."""
+    code = "from grader.sandbox import *; print(*limited([], Limits()))"
+    command = ["prlimit", f"--fsize={100 * sandbox.MIB}", "--nofile=512", "--", sys.executable, "-c", code]
+    told = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert f"--fsize={100 * sandbox.MIB} " in told
+    assert "--nofile=512 " in told
+    assert f"--as={sandbox.Limits().memory} " in told
+
+
+@pytest.mark.parametrize(
+    ("code", "out_of"),
+    [
+        ("import subprocess\nall = [subprocess.Popen(['sleep', '20']) for _ in range(40)]\nall[0].wait()", "processes"),
+        ("import time\nx = bytearray(b'1' * (300 << 20))\ntime.sleep(20)", "memory"),
+    ],
+)
+def test_without_a_cell_the_grader_counts_what_all_processes_hold(code: str, out_of: str) -> None:
+    limits = sandbox.Limits(processes=20, total_memory=100 * sandbox.MIB)
+    command = sandbox.limited([sys.executable, "-c", code], limits)
+    done = process.run(command, timeout_s=15.0, most_stdout=1000, most_stderr=1000, watch=limits)
+    assert (done.out_of, done.timed_out) == (out_of, False)

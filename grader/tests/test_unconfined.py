@@ -1,0 +1,64 @@
+"""Grading one's own work on a machine without bubblewrap."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from grader import sandbox
+from grader.tests.case import copy_solution
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+STEP = "03-circle-publisher"
+WITHOUT = "import grader.sandbox\ngrader.sandbox.bubblewrap = lambda: None\n"
+
+
+@pytest.fixture
+def without(tmp_path: Path) -> dict[str, str]:
+    """The environment of a machine without bubblewrap."""
+    (tmp_path / "sitecustomize.py").write_text(WITHOUT)
+    return {**os.environ, "PYTHONPATH": str(tmp_path), "XDG_STATE_HOME": str(tmp_path / "state")}
+
+
+def grader(env: dict[str, str], *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [Path(sys.prefix, "bin/grader"), *arguments]
+    return subprocess.run(command, env=env, capture_output=True, text=True, check=False)
+
+
+def alike(report: dict[str, Any]) -> Sequence[object]:
+    return [[(o["id"], o["status"], o["points"], o["diagnosis"]) for o in report["outcomes"]], report["clock"]]
+
+
+@pytest.mark.parametrize("clock", ["simulated", "wall"])
+def test_the_verdict_is_that_of_a_sandbox_and_the_report_says_so(
+    tmp_path: Path, without: dict[str, str], clock: str
+) -> None:
+    if not sandbox.usable():
+        pytest.skip("there is no sandbox here to compare with")
+    package = tmp_path / "my_robot_controller"
+    copy_solution(STEP, package)
+    confined = {**without, "PYTHONPATH": ""}
+    reports = []
+    for name, env in (("without", without), ("within", confined)):
+        done = grader(env, "check", package, "--exercise", STEP, "--clock", clock, "--json", tmp_path / f"{name}.json")
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert ("without a sandbox" in done.stdout) == (name == "without")
+        reports.append(json.loads((tmp_path / f"{name}.json").read_text()))
+    assert alike(reports[0]) == alike(reports[1])
+    assert [report["confined"] for report in reports] == [False, True]
+
+
+def test_who_wants_a_sandbox_is_refused_without_one(tmp_path: Path, without: dict[str, str]) -> None:
+    copy_solution(STEP, tmp_path / "my_robot_controller")
+    done = grader(without, "check", tmp_path / "my_robot_controller", "--exercise", STEP, "--sandbox")
+    assert (done.returncode, done.stdout) == (3, "")
+    assert "install bubblewrap" in done.stderr
+    assert "Traceback" not in done.stderr
