@@ -36,6 +36,8 @@ def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused
     Raises:
         MachineError: the disk failed.
     """
+    if found.refused:
+        return Refused(found.refused)
     try:
         with _folder(found) as folder:
             try:
@@ -54,7 +56,7 @@ def fingerprint(found: Found, exercise: Exercise) -> str:
     Raises:
         MachineError: the disk failed.
     """
-    archive = _archive(found.path)
+    archive = None if found.refused else _archive(found.path)
     if archive is not None:
         return _of_archive(archive)
     content = read(found, exercise, "")

@@ -32,6 +32,8 @@ class Found:
     student: str
     exercise: str
     path: Path
+    refused: str = ""
+    """Why it cannot be graded, where whoever found it could not read it."""
 
     @property
     def name(self) -> str:

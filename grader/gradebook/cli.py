@@ -58,7 +58,7 @@ def sync(
     from grader.gradebook.folders import open_class
     from grader.gradebook.scores import sync as write
     from grader.report.progress import progress
-    from grader.words import a_list, count
+    from grader.words import a_list, count, printable
 
     folders = open_class(course)
     with progress() as tell:
@@ -67,13 +67,16 @@ def sync(
     typer.echo(f"{count(done.changed, 'score')} of {count(done.submissions, 'submission')} changed.{kept}")
     if done.elsewhere:
         typer.echo(f"Not in the gradebook, since no cell of the notebook stands for them: {a_list(done.elsewhere)}.")
+    for each in done.unconfirmed:
+        which = f" {', '.join(each.checks)}" if each.checks else ""
+        typer.echo(printable(f"{each.student} {each.step}{which}: 0 points, needs manual grading: {each.why}."))
     if done.unjudged:
         typer.echo(f"Not judged, for a fault of the machine: {a_list(done.unjudged)}. Run this again.")
         raise typer.Exit(3)
 
 
 def compare(steps: Steps = None, course: Course = None) -> None:
-    """List where the kernel that autograde ran and the grader disagree."""
+    """List where the kernel that autograde ran and the grader disagree, and what the grader has not confirmed."""
     from grader.gradebook.folders import open_class
     from grader.gradebook.scores import compare as differences_of
     from grader.words import count, printable
@@ -81,7 +84,8 @@ def compare(steps: Steps = None, course: Course = None) -> None:
     differences = differences_of(open_class(course), steps or [])
     for each in differences:
         kernel_said = "nothing" if each.kernel is None else f"{each.kernel:g}"
-        typer.echo(printable(f"{each.student} {each.step} {each.check}: kernel {kernel_said}, grader {each.grader:g}"))
+        grader_said = f"0, needs manual grading ({each.why})" if each.grader is None else f"{each.grader:g}"
+        typer.echo(printable(f"{each.student} {each.step} {each.check}: kernel {kernel_said}, grader {grader_said}"))
     typer.echo(f"{count(len(differences), 'difference')}. What counts is what the grader says, after `sync`.")
 
 

@@ -19,9 +19,11 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     from nbgrader import preprocessors as steps
 
     from grader.gradebook.confined import CHECK_S, ConfinedExecute
+    from grader.gradebook.export import ConfirmedCsv
     from grader.gradebook.feedback import GraderReasons, HideHiddenTests
     from grader.gradebook.mend import MendCells
     from grader.gradebook.steps import ReleaseFiles, StripSolutions
+    from grader.gradebook.unconfirmed import SaveUnconfirmed
 
     _see_own_commands()
     folders = config.CourseDirectory
@@ -66,7 +68,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
         steps.IgnorePattern,
         "nbconvert.preprocessors.ClearMetadataPreprocessor",
         steps.LimitOutput,
-        steps.SaveAutoGrades,
+        SaveUnconfirmed,
         steps.AssignLatePenalties,
         steps.CheckCellMetadata,
     ]
@@ -82,6 +84,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
         GraderReasons,
         "nbconvert.preprocessors.CSSHTMLHeaderPreprocessor",
     ]
+    config.ExportApp.plugin_class = ConfirmedCsv
 
 
 def _see_own_commands() -> None:

@@ -51,7 +51,14 @@ class ClassFolders:
         students = sorted(
             folder.name for folder in root.glob("*") if folder.is_dir() and not folder.name.startswith(".")
         )
-        return [(student, step) for step in wanted for student in students if (root / student / step).is_dir()]
+        return [(student, step) for step in wanted for student in students if _is_folder(root / student / step)]
+
+
+def _is_folder(path: Path) -> bool:
+    try:
+        return path.is_dir()
+    except OSError:
+        return True  # It may not be looked at: whoever reads it says so.
 
 
 def open_class(folder: Path | None) -> ClassFolders:

@@ -1,11 +1,13 @@
 """`grader gradebook sync` and `compare`: the scores that count, and where a kernel said otherwise.
 
 What a kernel says of itself is provisional. These scores come from the submitted package itself, graded in the sandbox,
-and go into nbgrader's gradebook through its API. A manual grade is never touched.
+and go into nbgrader's gradebook through its API. What the grader cannot judge counts 0 points and needs a manual grade
+(confirmed.py). A manual grade is never touched.
 """
 
 from __future__ import annotations
 
+import errno
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -15,8 +17,18 @@ from grader.classroom.grade_class import Asked, grade_found
 from grader.classroom.results import Results
 from grader.errors import UsageError
 from grader.exercise import find_exercise
+from grader.gradebook.confirmed import (
+    Unconfirmed,
+    outcome_of,
+    provisional_grades,
+    submissions_of,
+    unconfirmed,
+    withhold_unconfirmed,
+)
 from grader.gradebook.put_together import graded_folder
 from grader.outcome import Status
+from grader.tree import OF_THE_MACHINE
+from grader.words import shorten
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -24,6 +36,9 @@ if TYPE_CHECKING:
 
     from grader.classroom.results import Result
     from grader.gradebook.folders import ClassFolders
+
+OF_THE_DISK = OF_THE_MACHINE | {errno.ENOSPC, errno.EDQUOT, errno.EROFS}
+"""Faults while reading and writing that stop a run: no other submission would fare better."""
 
 
 @dataclass(frozen=True)
@@ -37,17 +52,23 @@ class Synced:
     unjudged: tuple[str, ...]
     elsewhere: tuple[str, ...]
     """Checks that no cell of the notebook stands for: in the results, and not in the gradebook."""
+    unconfirmed: tuple[Unconfirmed, ...]
+    """What counts 0 points until somebody grades it by hand."""
 
 
 @dataclass(frozen=True)
 class Difference:
-    """A check on which kernel and grader disagree; `kernel` is None where the notebook was not run to its end."""
+    """A check on which kernel and grader disagree; `kernel` is None where the notebook was not run to its end.
+
+    `grader` is None where the grader has confirmed nothing: the check counts 0 points, for the reason `why`.
+    """
 
     student: str
     step: str
     check: str
     kernel: float | None
-    grader: float
+    grader: float | None
+    why: str = ""
 
 
 def sync(
@@ -64,26 +85,24 @@ def sync(
 
     Raises:
         UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
-        MachineError: nothing can be graded or written.
+        MachineError: nothing can be graded or written; what is not confirmed counts 0 points all the same.
     """
     from nbgrader.api import Gradebook
+    from sqlalchemy.exc import SQLAlchemyError
 
-    submissions = folders.submissions(steps)
+    wanted = [find_exercise(step).id for step in steps]
+    submissions = folders.submissions(wanted)
+    results = Results(folders.results)
+    with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
+        _require_assignments(gradebook, {step for _, step in submissions})
+        # Now, so that nothing provisional is left where grading is interrupted.
+        withhold_unconfirmed(gradebook, results, wanted)
     if not submissions:
         message = (
             f"Nothing was collected into {folders.course.submitted_directory} yet: `nbgrader collect STEP`, or copy."
         )
         raise UsageError(message)
-    with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
-        _require_assignments(gradebook, {step for _, step in submissions})
-    found = tuple(
-        Found(
-            student,
-            step,
-            graded_folder(find_exercise(step), folders.submitted(student, step), folders.handed_in(student, step)),
-        )
-        for student, step in submissions
-    )
+    found, why = _put_together(folders, submissions)
     folders.results.parent.mkdir(exist_ok=True)
     asked = Asked((), folders.results, jobs=jobs, checks=checks, trusted=trusted)
     graded = grade_found(asked, found, say, tell)
@@ -91,26 +110,80 @@ def sync(
     elsewhere: dict[str, None] = {}
     with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
         for result in graded:
-            elsewhere.update(dict.fromkeys(_write(gradebook, folders, result, tally)))
+            name = (result.student, result.report.exercise)
+            try:
+                elsewhere.update(dict.fromkeys(_write(gradebook, folders, result, tally)))
+            except (SQLAlchemyError, ValueError) as error:
+                # A name that the database cannot hold, as one that is not UTF-8.
+                gradebook.db.rollback()
+                why.setdefault(name, f"its scores could not be written: {_in_words(error)}")
+        withheld = withhold_unconfirmed(gradebook, results, wanted, why)
+    told = [
+        *(each for each in withheld if (each.student, each.step) not in why),
+        *(Unconfirmed(student, step, (), reason) for (student, step), reason in why.items()),
+    ]
     unjudged = tuple(result.student for result in graded if result.report.with_status(Status.ERROR))
-    return Synced(len(graded), tally["changed"], tally["kept"], unjudged, tuple(elsewhere))
+    return Synced(len(graded), tally["changed"], tally["kept"], unjudged, tuple(elsewhere), tuple(told))
 
 
 def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
-    """Where the kernel that autograde ran and the grader disagree, of what both have graded."""
+    """Where the kernel that autograde ran and the grader disagree, and what the grader has not confirmed."""
+    from nbgrader.api import Gradebook
+
     kept = Results(folders.results)
+    wanted = [find_exercise(step).id for step in steps]
     differences: list[Difference] = []
-    for student, step in folders.submissions(steps):
+    with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
+        doubted = unconfirmed(gradebook, kept, wanted)
+        names = [(student, step) for student, step, _ in submissions_of(gradebook, wanted)]
+    doubts = {(each.student, each.step, check): each.why for each in doubted for check in each.checks}
+    for student, step in names:
         result = kept.load(student, step)
-        said = _kernel_scores(folders.autograded(student, step))
-        if result is None or said is None:
-            continue
-        differences += [
-            Difference(student, step, outcome.id, said[outcome.id], outcome.points)
-            for outcome in result.report.outcomes
-            if outcome.id in said and outcome.status is not Status.ERROR and said[outcome.id] != outcome.points
-        ]
+        said = _kernel_scores(folders.autograded(student, step)) or {}
+        points = {outcome.id: outcome.points for outcome in result.report.outcomes} if result else {}
+        for check in dict.fromkeys([*points, *said, *(name for *of, name in doubts if of == [student, step])]):
+            why = doubts.get((student, step, check), "")
+            if why:
+                differences.append(Difference(student, step, check, said.get(check), None, why))
+            elif check in said and check in points and said[check] != points[check]:
+                differences.append(Difference(student, step, check, said[check], points[check]))
     return differences
+
+
+def _put_together(
+    folders: ClassFolders, submissions: Sequence[tuple[str, str]]
+) -> tuple[tuple[Found, ...], dict[tuple[str, str], str]]:
+    """What is graded of each submission, and why those that could not be read are not."""
+    found: list[Found] = []
+    why: dict[tuple[str, str], str] = {}
+    for student, step in submissions:
+        exercise, submitted = find_exercise(step), folders.submitted(student, step)
+        try:
+            graded = graded_folder(exercise, submitted, folders.handed_in(student, step))
+            found.append(Found(student, step, graded))
+        except Exception as error:
+            # What a student wrote stops nobody else's submission, whatever it does to our reading.
+            if _of_the_machine(error):
+                raise
+            why[student, step] = f"it could not be read ({_in_words(error)})"
+            found.append(Found(student, step, submitted, f"The submission could not be read ({_in_words(error)})."))
+    return tuple(found), why
+
+
+def _of_the_machine(error: BaseException | None) -> bool:
+    """Whether the disk or the system failed, and not what a student handed in."""
+    while error is not None:
+        if isinstance(error, OSError) and error.errno in OF_THE_DISK:
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
+def _in_words(error: BaseException) -> str:
+    """The error on one line; the cause where it was wrapped."""
+    cause = error.__cause__ or error
+    text = (cause.strerror if isinstance(cause, OSError) else str(cause)) or type(cause).__name__
+    return shorten(text.rstrip("."), 120)
 
 
 def _require_assignments(gradebook: Any, steps: set[str]) -> None:  # noqa: ANN401 - nbgrader has no types
@@ -128,19 +201,27 @@ def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter
     timestamp = folders.course.get_existing_timestamp(str(folders.submitted(student, step)))
     given = {} if timestamp is None else {"timestamp": timestamp}
     submission = gradebook.update_or_create_submission(step, student, **given)
-    grades = {grade.name: grade for notebook in submission.notebooks for grade in notebook.grades}
+    grades: dict[str, Any] = {}
+    for grade in provisional_grades(submission):
+        outcome = outcome_of(grade, result.report)
+        if outcome is not None:
+            grades[outcome.id] = grade
     without_cell = []
     for outcome in result.report.outcomes:
         grade = grades.get(outcome.id)
         if grade is None:
             without_cell += [outcome.id] if outcome.max else []
-        elif outcome.status is not Status.ERROR:
-            changed = grade.auto_score != outcome.points
-            tally["changed"] += changed
-            tally["kept"] += grade.manual_score is not None
-            grade.auto_score = outcome.points
+            continue
+        # A check that could not be judged has no points.
+        changed = grade.auto_score != outcome.points
+        tally["changed"] += changed
+        grade.auto_score = outcome.points
+        if grade.manual_score is None:
+            grade.needs_manual_grade = outcome.status is Status.ERROR
+        else:
+            tally["kept"] += 1
             # Whoever graded by hand should look again where there is something new to see.
-            grade.needs_manual_grade = changed if grade.manual_score is not None else False
+            grade.needs_manual_grade = grade.needs_manual_grade or changed
     gradebook.db.commit()
     _late(folders, student, step)
     return without_cell
@@ -158,9 +239,20 @@ def _late(folders: ClassFolders, student: str, step: str) -> None:
 def _kernel_scores(notebook: Path) -> dict[str, float | None] | None:
     """What each grade cell of an autograded notebook is worth by its own output; None without the notebook."""
     from nbformat import read
-    from nbgrader.utils import determine_grade, is_grade
+    from nbgrader.utils import is_grade
 
-    if not notebook.is_file():
+    try:
+        cells = read(notebook, as_version=4).cells  # type: ignore[no-untyped-call]
+    except (OSError, ValueError, AttributeError, KeyError, TypeError, RecursionError):
         return None
-    cells = read(notebook, as_version=4).cells  # type: ignore[no-untyped-call]
-    return {cell.metadata.nbgrader.grade_id: determine_grade(cell)[0] for cell in cells if is_grade(cell)}
+    return {cell.metadata.nbgrader.grade_id: _kernel_score(cell) for cell in cells if is_grade(cell)}
+
+
+def _kernel_score(cell: Any) -> float | None:  # noqa: ANN401 - nbformat's NotebookNode
+    from nbgrader.utils import determine_grade
+
+    try:
+        score: float | None = determine_grade(cell)[0]
+    except (ValueError, AttributeError, KeyError, TypeError):
+        return None  # an output of the kernel's that nbgrader makes nothing of
+    return score

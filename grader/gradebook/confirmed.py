@@ -1,0 +1,135 @@
+"""What counts in nbgrader's gradebook: scores that the grader has confirmed, and manual grades. Nothing else.
+
+The output of an autograded cell comes from a kernel that runs a student's code, so it is provisional. For such a cell,
+`autograde` therefore writes 0 points and "needs manual grade" (unconfirmed.py), and `grader gradebook sync` replaces
+them by what the grader itself has found out. A score in the gradebook that no result of the grader stands behind is
+withheld: it becomes 0 points, and a person has to look at it. Manual grades and extra credit stay as they are.
+Assignments that are not exercises of this course are nbgrader's business.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from grader.exercise import catalogue
+from grader.outcome import Status
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from grader.classroom.results import Results
+    from grader.outcome import Outcome, Report
+
+NOT_SYNCED = "not confirmed by `grader gradebook sync`"
+NOT_JUDGED = "the grader could not judge it"
+NO_CHECK = "no check of the grader stands for it"
+
+Name = tuple[str, str]
+"""Student and exercise."""
+
+
+@dataclass(frozen=True)
+class Unconfirmed:
+    """Cells of one submission that count 0 points until a person grades them, and why."""
+
+    student: str
+    step: str
+    checks: tuple[str, ...]
+    why: str
+
+
+def withhold(grade: Any) -> None:  # noqa: ANN401 - nbgrader's Grade
+    """Let a cell count 0 points until it is confirmed or graded by hand. A manual grade and extra credit stand."""
+    grade.auto_score = 0.0
+    grade.needs_manual_grade = True
+
+
+def withhold_unconfirmed(
+    gradebook: Any,  # noqa: ANN401 - nbgrader's Gradebook
+    results: Results,
+    steps: Collection[str] = (),
+    unread: Collection[Name] = (),
+) -> list[Unconfirmed]:
+    """Withhold every score that is not confirmed; returns what counts 0 points now, as `unconfirmed` does."""
+    for _, _, grade, _ in _doubts(gradebook, results, steps, unread):
+        if grade.auto_score != 0.0 or grade.manual_score is None:
+            withhold(grade)
+    gradebook.db.commit()
+    return unconfirmed(gradebook, results, steps, unread)
+
+
+def unconfirmed(
+    gradebook: Any,  # noqa: ANN401 - nbgrader's Gradebook
+    results: Results,
+    steps: Collection[str] = (),
+    unread: Collection[Name] = (),
+) -> list[Unconfirmed]:
+    """What no result of the grader stands behind, by exercise and student; manual grades are not among it.
+
+    `steps`: these exercises, all when none is named. `unread`: submissions of which the stored results say nothing,
+    since they could not be read this time.
+    """
+    names: dict[tuple[str, str, str], list[str]] = {}
+    for student, step, grade, why in _doubts(gradebook, results, steps, unread):
+        if grade.manual_score is None:
+            names.setdefault((student, step, why), []).append(grade.name)
+    return [Unconfirmed(student, step, tuple(checks), why) for (student, step, why), checks in names.items()]
+
+
+def _doubts(
+    gradebook: Any,  # noqa: ANN401 - nbgrader's Gradebook
+    results: Results,
+    steps: Collection[str],
+    unread: Collection[Name],
+) -> Iterator[tuple[str, str, Any, str]]:
+    """(student, exercise, nbgrader's grade, why it is not confirmed)."""
+    for student, step, submission in submissions_of(gradebook, steps):
+        kept = None if (student, step) in unread else results.load(student, step)
+        for grade in provisional_grades(submission):
+            why = _doubt(grade, kept.report if kept else None)
+            if why:
+                yield student, step, grade, why
+
+
+def submissions_of(gradebook: Any, steps: Collection[str]) -> Iterator[tuple[str, str, Any]]:  # noqa: ANN401
+    """(student, exercise, nbgrader's submission) of all submissions to our exercises in the gradebook."""
+    wanted = [step for step in catalogue() if not steps or step in steps]
+    assignments = {assignment.name: assignment for assignment in gradebook.assignments}
+    for step in wanted:
+        if step in assignments:
+            for submission in sorted(assignments[step].submissions, key=lambda each: str(each.student.id)):
+                yield submission.student.id, step, submission
+
+
+def provisional_grades(submission: Any) -> list[Any]:  # noqa: ANN401 - nbgrader's SubmittedAssignment
+    """The grades whose score autograde reads from a kernel's output: of code cells that are not solutions.
+
+    Those of the exercise's own notebook come first.
+    """
+    step = submission.assignment.name
+    grades = []
+    for notebook in sorted(submission.notebooks, key=lambda each: (each.name != step, each.name)):
+        solutions = {cell.name for cell in notebook.notebook.solution_cells}
+        grades += [each for each in notebook.grades if each.cell.cell_type == "code" and each.name not in solutions]
+    return grades
+
+
+def _doubt(grade: Any, report: Report | None) -> str:  # noqa: ANN401 - nbgrader's Grade
+    """Why a score is not confirmed; empty where it is."""
+    if report is None:
+        return NOT_SYNCED
+    outcome = outcome_of(grade, report)
+    if outcome is None:
+        return NO_CHECK
+    if outcome.status is Status.ERROR:
+        return NOT_JUDGED
+    waits = grade.needs_manual_grade and grade.manual_score is None
+    return NOT_SYNCED if waits or grade.auto_score != outcome.points else ""
+
+
+def outcome_of(grade: Any, report: Report) -> Outcome | None:  # noqa: ANN401 - nbgrader's Grade
+    """The outcome that a cell of the exercise's own notebook stands for; None for any other cell."""
+    if grade.notebook.name != report.exercise:
+        return None
+    return next((outcome for outcome in report.outcomes if outcome.id == grade.name), None)

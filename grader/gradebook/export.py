@@ -1,0 +1,32 @@
+"""`nbgrader export`: only confirmed scores leave the gradebook, and whoever exports hears what is missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from nbgrader.plugins import CsvExportPlugin
+
+from grader.classroom.results import Results
+from grader.gradebook.config import CLASS
+from grader.gradebook.confirmed import withhold_unconfirmed
+from grader.gradebook.folders import RESULTS
+from grader.words import a_list, count
+
+
+class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
+    """nbgrader's table, of a gradebook in which everything provisional counts 0 points."""
+
+    def export(self, gradebook: Any) -> None:  # noqa: ANN401 - as the base class
+        """Withhold what is not confirmed, tell it, and write the table."""
+        course = self.parent.coursedir
+        results = Results(Path(course.root) / CLASS / RESULTS)
+        unconfirmed = withhold_unconfirmed(gradebook, results)
+        if unconfirmed:
+            names = [f"{each.student} ({each.step})" for each in unconfirmed]
+            self.log.warning(
+                "%s not confirmed, 0 points here: %s. Run `grader gradebook sync`, then grade the rest by hand.",
+                count(len(names), "submission"),
+                a_list(names),
+            )
+        super().export(gradebook)

@@ -1,0 +1,26 @@
+"""Our step of `nbgrader autograde` in place of nbgrader's SaveAutoGrades: a kernel's word is worth no points."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from nbgrader.preprocessors import SaveAutoGrades
+from nbgrader.utils import is_solution
+
+from grader.exercise import catalogue
+from grader.gradebook.confirmed import withhold
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+
+class SaveUnconfirmed(SaveAutoGrades):  # type: ignore[misc, unused-ignore]
+    """Gives the checks of our exercises 0 points and "needs manual grade", until `sync` confirms more."""
+
+    def _add_score(self, cell: NotebookNode, resources: dict[str, Any]) -> None:
+        if self.assignment_id not in catalogue() or cell.cell_type != "code" or is_solution(cell):
+            super()._add_score(cell, resources)
+            return
+        name = cell.metadata["nbgrader"]["grade_id"]
+        withhold(self.gradebook.find_grade(name, self.notebook_id, self.assignment_id, self.student_id))
+        self.gradebook.db.commit()

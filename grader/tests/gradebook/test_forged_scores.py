@@ -1,0 +1,201 @@
+"""A score that the grader has not confirmed counts nothing: real nbgrader, its real database, notebooks that forge."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from grader import sandbox
+from grader.classroom.grade_class import grade_found
+from grader.classroom.order import Order, sources_for
+from grader.classroom.results import Results
+from grader.classroom.task import set_aside
+from grader.gradebook import scores
+from grader.gradebook.folders import open_class
+from grader.tests.gradebook.term import STEP, Term, edit, too_slow, unchanged, with_cell
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from grader.classroom.found import Found
+    from grader.classroom.grade_class import Asked
+    from grader.classroom.results import Result
+    from grader.gradebook.scores import Synced
+
+pytestmark = pytest.mark.skipif(not sandbox.usable(), reason="autograde runs others' code in a sandbox only")
+
+FULL_MARKS = """\
+class Verdict:
+    def points(self, name):
+        return {"start": 5.0, "topic": 10.0, "circle": 25.0}.get(name, 10.0)
+
+def check(step):
+    return Verdict()
+"""
+"""Points that autograde believes: each is at most what its cell is worth."""
+ANOTHERS = "homework"
+"""An assignment in the same gradebook that is no exercise of this course."""
+
+
+def forge(folder: Path) -> None:
+    with_cell(folder, FULL_MARKS)
+
+
+def unreadable(folder: Path) -> None:
+    """Forged too, and with a cell whose file lies below another file."""
+    forge(folder)
+    edit(
+        folder,
+        lambda cells: [*cells, {**cells[2], "id": "odd", "source": "%%package package.xml/below\nx"}],
+    )
+
+
+def with_another_assignment(term: Term) -> None:
+    cell = {
+        "cell_type": "code",
+        "execution_count": None,
+        "id": "one",
+        "metadata": {
+            "nbgrader": {
+                "grade": True, "grade_id": "one", "locked": True, "points": 3, "schema_version": 3, "solution": False,
+                "task": False,
+            }
+        },
+        "outputs": [],
+        "source": "assert 1 + 1 == 2",
+    }  # fmt: skip
+    folder = term.root / "solutions" / ANOTHERS
+    folder.mkdir()
+    notebook = {"cells": [cell], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
+    (folder / f"{ANOTHERS}.ipynb").write_text(json.dumps(notebook))
+    term.run("generate_assignment", ANOTHERS)
+    shutil.copytree(term.root / "exercises" / ANOTHERS, term.root / "class" / "submitted" / "honest" / ANOTHERS)
+    term.run("autograde", ANOTHERS)
+
+
+def submit(term: Term, student: str, change: Callable[[Path], None]) -> None:
+    folder = term.root / "class" / "submitted" / student / STEP
+    shutil.copytree(term.root / "exercises" / STEP, folder)
+    change(folder)
+
+
+def grades(term: Term, student: str) -> dict[str, tuple[float | None, float | None, bool]]:
+    """Check -> automatic score, manual score, whether a person has to look at it, as nbgrader's database has them."""
+    with term.gradebook() as gradebook:
+        submission = gradebook.find_submission(STEP, student)
+        return {
+            grade.name: (grade.auto_score, grade.manual_score, grade.needs_manual_grade)
+            for notebook in submission.notebooks
+            for grade in notebook.grades
+        }
+
+
+def withheld(term: Term, student: str) -> bool:
+    return all(auto == 0 and manual is None and waits for auto, manual, waits in grades(term, student).values())
+
+
+def points_of(term: Term, assignment: str = STEP) -> dict[str, float]:
+    """What the exported table says."""
+    import csv
+
+    file = term.root / "grades.csv"
+    term.run("export", "--to", str(file))
+    with file.open(newline="") as opened:
+        return {
+            row["student_id"]: float(row["score"]) for row in csv.DictReader(opened) if row["assignment"] == assignment
+        }
+
+
+def sync_with_an_error_for(student: str, term: Term, monkeypatch: pytest.MonkeyPatch) -> Synced:
+    """Sync, where the machine fails while this student's submission is graded."""
+
+    def failing(asked: Asked, found: tuple[Found, ...], say: Any, tell: Any) -> list[Result]:  # noqa: ANN401
+        graded = grade_found(asked, tuple(each for each in found if each.student != student), say, tell)
+        order = Order(found, {}, sources_for(found, None), "none")
+        for each in found:
+            if each.student == student:
+                done = set_aside(order.task(each), "The machine was out of memory.")
+                graded.append(Results(asked.out).save(student, done.report, order.key(each), done.page))
+        return graded
+
+    monkeypatch.setattr(scores, "grade_found", failing)
+    return scores.sync(
+        open_class(term.course), [], jobs=2, checks=None, trusted=False, say=lambda _: None, tell=lambda _: None
+    )
+
+
+@pytest.fixture
+def term(tmp_path: Path) -> Term:
+    term = Term(tmp_path)
+    term.run("generate_assignment", STEP)
+    return term
+
+
+def test_a_forged_score_counts_nothing_at_any_time(term: Term, monkeypatch: pytest.MonkeyPatch) -> None:
+    submit(term, "honest", too_slow)
+    for student, change in (("forger", forge), ("gone", forge), ("unreadable", unreadable)):
+        submit(term, student, change)
+    with_another_assignment(term)
+    term.run("autograde", STEP)
+
+    # Before sync: the kernels' words are nowhere, and the gradebook asks for a person.
+    assert all(withheld(term, student) for student in ("honest", "forger", "gone", "unreadable"))
+    assert points_of(term) == {"honest": 0, "forger": 0, "gone": 0, "unreadable": 0}
+    said = term.run("grader", "gradebook", "compare")
+    assert f"forger {STEP} circle: kernel 25, grader 0, needs manual grading (not confirmed" in said
+
+    # Sync: the machine fails for one, another's folder is gone, a third cannot be read.
+    shutil.rmtree(term.root / "class" / "submitted" / "gone")
+    done = sync_with_an_error_for("forger", term, monkeypatch)
+    assert done.unjudged == ("forger",)
+    told = {each.student: each.why for each in done.unconfirmed}
+    assert told.keys() == {"forger", "gone", "unreadable"}
+    assert "could not judge" in told["forger"]
+    assert "could not be read" in told["unreadable"]
+    assert all(withheld(term, student) for student in ("forger", "gone", "unreadable"))
+    assert points_of(term) == {"honest": 55, "forger": 0, "gone": 0, "unreadable": 0}
+    assert not any(waits for _, _, waits in grades(term, "honest").values())
+    assert "unreadable" in (term.root / "class" / "results" / "summary.csv").read_text()
+    said = term.run("grader", "gradebook", "compare")
+    assert f"forger {STEP} circle: kernel 25, grader 0, needs manual grading (the grader could not judge it)" in said
+    assert f"gone {STEP} circle: kernel 25, grader 0, needs manual grading" in said
+    assert "honest" not in said
+
+    # A person's grade stands, and is not withheld.
+    with term.gradebook() as gradebook:
+        for student, manual in (("forger", 7.0), ("honest", 20.0)):
+            grade = gradebook.find_grade("circle", STEP, STEP, student)
+            grade.manual_score, grade.needs_manual_grade = manual, False
+        gradebook.db.commit()
+    with_manual = points_of(term)
+    assert (with_manual["forger"], with_manual["honest"]) == (7, 75)
+    sync_with_an_error_for("forger", term, monkeypatch)
+    assert points_of(term) == with_manual
+    assert grades(term, "forger")["circle"] == (0, 7, False)
+
+    # A new autograde after a sync: the kernel's word is provisional again; what a person gave stands.
+    term.run("autograde", STEP, "--student", "honest", "--force")
+    term.run("autograde", STEP, "--student", "forger", "--force")
+    again = points_of(term)
+    assert (again["forger"], again["honest"]) == (7, 20)
+    assert grades(term, "forger")["start"] == (0, None, True)
+
+    # What is none of ours is as nbgrader left it.
+    assert points_of(term, ANOTHERS) == {"honest": 3, "forger": 0, "gone": 0, "unreadable": 0}
+
+
+def test_a_gradebook_of_before_is_put_right_by_an_export_alone(term: Term) -> None:
+    submit(term, "forger", unchanged)
+    with term.gradebook() as gradebook:
+        gradebook.add_student("forger")
+        for notebook in gradebook.add_submission(STEP, "forger").notebooks:
+            for grade in notebook.grades:
+                grade.auto_score, grade.needs_manual_grade = grade.max_score, False
+        gradebook.db.commit()
+        assert gradebook.find_submission(STEP, "forger").score == 100
+    assert points_of(term) == {"forger": 0}
+    assert withheld(term, "forger")
