@@ -55,7 +55,7 @@ def unreadable(folder: Path) -> None:
 
 
 def with_another_assignment(term: Term) -> None:
-    cell = {
+    cell: dict[str, Any] = {
         "cell_type": "code",
         "execution_count": None,
         "id": "one",
