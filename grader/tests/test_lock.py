@@ -121,9 +121,8 @@ def resolved(wanted: list[Requirement]) -> set[str]:
         need = wanted.pop()
         for extra in {"", *need.extras} - {extra for name, extra in found if name == canonicalize_name(need.name)}:
             found.add((canonicalize_name(need.name), extra))
-            for further in map(Requirement, metadata.requires(need.name) or []):
-                if further.marker is None or further.marker.evaluate({"extra": extra}):
-                    wanted.append(further)
+            needs = map(Requirement, metadata.requires(need.name) or [])
+            wanted += [need for need in needs if need.marker is None or need.marker.evaluate({"extra": extra})]
     return {name for name, _ in found}
 
 
