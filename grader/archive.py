@@ -7,6 +7,7 @@
     source/          the submission's files
     exercise/        the exercise as it was: exercise.toml
     trials/ID/       bag/ and trial.json of each further trial of the exercise
+    COLCON_IGNORE    so that colcon never runs the submission's setup.py
 
 bag/ and trial.json are missing where no trial could be run, build.json where nothing could be built.
 """
@@ -24,6 +25,7 @@ from grader.build import Build
 from grader.checks.evidence import Evidence, Fault
 from grader.errors import MachineError, UsageError
 from grader.exercise import FILE_NAME, load_exercise
+from grader.package_search import IGNORE_MARKER
 from grader.recording import from_json, to_json
 from grader.submission import Submission, open_answers, open_submission, write_copy
 
@@ -55,6 +57,8 @@ def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -
     check_free(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        # colcon, called in a folder above, would run the submission's setup.py outside of the sandbox.
+        (folder / IGNORE_MARKER).touch()
         submission = evidence.submission
         write_copy(submission, folder / "source" / submission.package_dir.name)
         (folder / "exercise").mkdir()

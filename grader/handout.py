@@ -9,7 +9,7 @@ from grader.errors import MachineError, UsageError
 from grader.exercise import catalogue, course_folder, find_exercise
 from grader.release import release
 
-_FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore")
+_FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", "COLCON_IGNORE")
 _NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc")
 _IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
 """What an installed wheel has within the package, and a checkout beside it (see hatch_build.py)."""

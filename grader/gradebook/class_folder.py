@@ -9,6 +9,7 @@ from grader.classroom.roster import read_roster
 from grader.errors import MachineError, UsageError
 from grader.exercise import catalogue, course_folder
 from grader.gradebook.folders import CONFIG, open_class
+from grader.package_search import IGNORE_MARKER
 from grader.release import release
 from grader.words import shorten
 
@@ -36,6 +37,8 @@ def make_class(folder: Path, roster: Path | None) -> int:
         raise UsageError(message)
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        # colcon, called in this folder, would run the setup.py of every submission outside of the sandbox.
+        (folder / IGNORE_MARKER).touch()
         shutil.copytree(root / "course", folder / "course", ignore=_LEFTOVERS)
         for name in catalogue():
             shutil.copytree(root / "solutions" / name, folder / "solutions" / name, ignore=_LEFTOVERS)

@@ -10,6 +10,7 @@ from grader import own_numbers, tree
 from grader.errors import MachineError, UsageError
 from grader.exercise import course_folder
 from grader.own_numbers import draw_numbers, to_toml
+from grader.package_search import IGNORE_MARKER
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -134,7 +135,7 @@ def _put_aside(folder: Path, workspace: Path) -> Path:
     aside = workspace / "before"
     aside.mkdir(parents=True, exist_ok=True)
     # colcon, run in the workspace, must not build old packages beside the new one.
-    (aside / "COLCON_IGNORE").touch()
+    (aside / IGNORE_MARKER).touch()
     for number in itertools.count(1):
         target = aside / f"{folder.name}-{number}"
         if not target.exists():

@@ -28,7 +28,8 @@ def test_students_get_lessons_starting_points_and_the_grader(students: Path) -> 
         given = {str(path.relative_to(students / "exercises" / name)) for path in files(students / "exercises" / name)}
         assert given == set(released(ROOT / "solutions" / name))
         assert f"course/{name}/lesson.md" in (students / "README.md").read_text()
-    for name in ("Makefile", "pyproject.toml", "requirements.lock", "LICENSE", "grader/cli.py", "grader/bootstrap.py"):
+    files_of_the_top = ("Makefile", "pyproject.toml", "requirements.lock", "LICENSE", "COLCON_IGNORE")
+    for name in (*files_of_the_top, "grader/cli.py", "grader/bootstrap.py"):
         assert (students / name).is_file()
 
 

@@ -30,7 +30,13 @@ def test_a_class_has_its_students_and_nothing_of_others(tmp_path: Path) -> None:
             ("bob", None, None),
             ("ada", "Ada", "Lovelace"),
         ]
-    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == ["class", "course", "exercises", "solutions"]
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == [
+        "COLCON_IGNORE",
+        "class",
+        "course",
+        "exercises",
+        "solutions",
+    ]
     with pytest.raises(UsageError, match="is not an empty folder"):
         make_class(tmp_path / "new", file)
 

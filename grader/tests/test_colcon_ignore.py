@@ -1,0 +1,108 @@
+"""`colcon build` typed in a folder of the course must not run code that belongs in the sandbox."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path, PurePosixPath
+
+import pytest
+
+from grader.archive import save
+from grader.checks.evidence import Evidence
+from grader.exercise import catalogue, find_exercise
+from grader.gradebook.class_folder import make_class
+from grader.handout import hand_out
+from grader.package_search import IGNORE_MARKER, PACKAGE_FILES
+from grader.submission import open_submission
+
+ROOT = Path(__file__).resolve().parents[2]
+COLCON = Path(sys.executable).with_name("colcon")
+STEP = "03-circle-publisher"
+PACKAGE = ROOT / "solutions" / STEP / "my_robot_controller"
+SUBMISSIONS = ("cases", "hostile", "mistakes", "unusual")
+STEPS = [name for name in catalogue() if find_exercise(name).package]
+
+
+def colcon_list(folder: Path) -> list[str]:
+    """The folders of the packages that colcon finds from `folder`; a message of colcon's fails the test."""
+    done = subprocess.run(
+        [COLCON, "--log-base", "/dev/null", "list", "--paths-only"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    assert done.stderr == ""
+    return done.stdout.splitlines()
+
+
+def tell_tale(folder: Path) -> Path:
+    """A submission in `folder`, and the file that is there once somebody has run its setup.py."""
+    shutil.copytree(PACKAGE, folder / "my_robot_controller", dirs_exist_ok=True)
+    trace = folder / "setup.py was run"
+    setup = folder / "my_robot_controller/setup.py"
+    setup.write_text(f"open({str(trace)!r}, 'w')\n" + setup.read_text())
+    return trace
+
+
+@pytest.fixture(scope="module")
+def tracked() -> list[PurePosixPath]:
+    done = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        pytest.skip("not a git checkout")
+    return [PurePosixPath(path) for path in done.stdout.split("\0") if path]
+
+
+def test_no_package_of_a_test_can_be_found_by_colcon(tracked: list[PurePosixPath]) -> None:
+    """Said of the files, since a colcon that does find them runs setup.py's that attack the machine."""
+    packages = {path.parent for path in tracked if path.name in PACKAGE_FILES and path.is_relative_to("grader/tests")}
+    assert len(packages) > 100
+    above = {folder for package in packages for folder in package.parents if folder.is_relative_to("grader/tests")}
+    ignored = {folder for folder in above if (ROOT / folder / IGNORE_MARKER).is_file()}
+    assert ignored == {PurePosixPath("grader/tests"), *(PurePosixPath("grader/tests") / each for each in SUBMISSIONS)}
+    assert {package for package in packages if ignored.isdisjoint(package.parents)} == set()
+
+
+@pytest.mark.parametrize("folder", [".", "grader/tests", *(f"grader/tests/{name}" for name in SUBMISSIONS)])
+def test_colcon_finds_nothing_in_the_course_folder_and_in_its_tests(folder: str) -> None:
+    assert (ROOT / folder / IGNORE_MARKER).is_file(), "without it, colcon would run hostile code here"
+    assert colcon_list(ROOT / folder) == []
+
+
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("side", ["exercises", "solutions"])
+def test_colcon_finds_the_package_of_a_step_in_its_folder(side: str, step: str) -> None:
+    assert colcon_list(ROOT / side / step) == ["my_robot_controller"]
+
+
+def test_nothing_that_is_copied_to_students_hides_their_package(tracked: list[PurePosixPath]) -> None:
+    markers = [path.parent for path in tracked if path.name == IGNORE_MARKER]
+    assert [path for path in markers if path.parts[:1] in {("exercises",), ("solutions",), ("course",)}] == []
+
+
+def test_a_workspace_that_holds_the_course_has_no_package_twice(tmp_path: Path) -> None:
+    """Who clones the course into src/ builds their own package, none of the course's."""
+    shutil.copytree(PACKAGE, tmp_path / "src/my_robot_controller")
+    hand_out(tmp_path / "src/course")
+    assert colcon_list(tmp_path) == ["src/my_robot_controller"]
+    assert colcon_list(tmp_path / "src/course/exercises" / STEP) == ["my_robot_controller"]
+
+
+def test_a_class_is_not_run_by_colcon(tmp_path: Path) -> None:
+    make_class(tmp_path / "class-of-2027", None)
+    trace = tell_tale(tmp_path / "class-of-2027/class/submitted/ada" / STEP)
+    assert colcon_list(tmp_path) == []
+    assert not trace.exists()
+
+
+def test_a_recording_is_not_run_by_colcon(tmp_path: Path) -> None:
+    trace = tell_tale(tmp_path / "given")
+    submission = open_submission(tmp_path / "given/my_robot_controller")
+    shutil.rmtree(tmp_path / "given/my_robot_controller")
+    save(tmp_path / "recording", Evidence(find_exercise(STEP), submission), "none", ())
+    assert (tmp_path / "recording/source/my_robot_controller/setup.py").is_file()
+    assert colcon_list(tmp_path) == []
+    assert not trace.exists()
