@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from grader import machine
+from grader import interpreter, machine
 
 ROOT = Path(__file__).resolve().parents[1]
 VENV = ROOT / ".venv"
@@ -140,10 +140,12 @@ def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool
     if ros:
         say(f"ROS 2 Jazzy is sourced from {ros.prefix}: it is used, and none is installed")
         options.append("--system-site-packages")
-    command = [python.path, "-m", "venv", *options, str(VENV)]
+    making = interpreter.interpreter(
+        "-m", "venv", *options, str(VENV), python=python.path, env=clean_environment(os.environ)
+    )
     try:
         # Kept back, since all it ever says is why it failed, or that it was interrupted.
-        subprocess.check_output(command, stderr=subprocess.STDOUT, env=clean_environment(os.environ), cwd=str(ROOT))
+        subprocess.check_output(making.argv, stderr=subprocess.STDOUT, env=making.env, cwd=str(ROOT))
     except subprocess.CalledProcessError as error:
         print(error.output.decode(errors="replace"), end="", file=sys.stderr)
         return False
@@ -216,8 +218,13 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
             return MACHINE_BROKEN
         seconds = {"environment": time.monotonic() - begin}
         stamp = Stamp(str(ROOT), kind, python.path, list(python.version), digest(), parts, seconds)
-    install = [str(PYTHON), "-m", "grader.install", json.dumps(stamp._asdict() if stamp else {})]
-    return subprocess.call(install, env=clean_environment(os.environ), cwd=str(ROOT))
+    install = interpreter.interpreter(
+        *("-m", "grader.install", json.dumps(stamp._asdict() if stamp else {})),
+        python=str(PYTHON),
+        env=clean_environment(os.environ),
+        root=ROOT,
+    )
+    return subprocess.call(install.argv, env=install.env, cwd=str(ROOT))
 
 
 if __name__ == "__main__":

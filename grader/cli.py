@@ -13,6 +13,7 @@ import typer
 from grader.classroom import cli as classroom
 from grader.errors import GraderError, UsageError
 from grader.gradebook import cli as gradebook
+from grader.interpreter import clean_own
 from grader.learner import cli as learner
 
 if TYPE_CHECKING:
@@ -174,6 +175,7 @@ def sim(
 ) -> None:
     """Run turtlesim as a node, at wall time, until Ctrl-C; it has no window, so --view shows it."""
     from grader import underlay
+    from grader.interpreter import interpreter
     from grader.ros import find_ros, users_environment
 
     _writable(image)
@@ -184,8 +186,11 @@ def sim(
     where = context.args.pop(0) if view and context.args[:1] in (["page"], ["terminal"]) else "page"
     given = [("--image", image), ("--view", where if view else None), ("--port", port)]
     options = [text for name, value in given if value is not None for text in (name, str(value))]
-    argv = [str(here.python), "-m", "grader.simulator", *options, *context.args]
-    os.execve(argv[0], argv, users_environment(here, extra))
+    env = users_environment(here, extra)
+    start = interpreter(
+        "-m", "grader.simulator", *options, *context.args, python=str(here.python), env=env, searches=True
+    )
+    os.execve(start.argv[0], start.argv, start.env)
 
 
 Domain = Annotated[
@@ -263,6 +268,7 @@ gradebook.add_to(app)
 
 def main() -> None:
     """Run the command; an error of ours is a sentence, and its exit code is that of design.md."""
+    clean_own()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's threads, as in ros.environment
     try:
         app()

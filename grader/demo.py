@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 
 from grader.bootstrap import ROOT, STAMP, read_stamp, say
+from grader.interpreter import interpreter
 
 STEP = "03-circle-publisher"
 FOLDER = Path("build/demo")
@@ -40,7 +41,8 @@ def main(arguments: list[str] | None = None) -> int:
     side = "solutions" if (ROOT / "solutions" / STEP).is_dir() else "exercises"
     command = ["grader", "check", f"{side}/{STEP}", "--image", str(image), "--json", str(report)]
     say("$ " + " ".join(command))
-    done = subprocess.run([Path(sys.prefix, "bin", command[0]), *command[1:]], cwd=ROOT, check=False)
+    checking = interpreter("-m", "grader.cli", *command[1:])
+    done = subprocess.run(checking.argv, env=checking.env, cwd=ROOT, check=False)
     if done.returncode != (0 if side == "solutions" else 1):
         print(closing_words(done.returncode))
         return done.returncode

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Literal
 from grader import bootstrap, machine, sandbox, underlay, xdg
 from grader.control_group import control_group
 from grader.errors import MachineError
+from grader.interpreter import interpreter
 from grader.ros import DISTRO, FASTDDS_PROFILE, Ros, environment, find_ros, has_turtlesim
 
 if TYPE_CHECKING:
@@ -55,7 +56,6 @@ while not heard and time.monotonic() < deadline:
     rclpy.spin_once(node, timeout_sec=0.5)
 sys.exit(None if heard else "nothing was heard of it within 20 s")
 """
-_TALK = 'setpriv --pdeathsig=KILL "$0" -c "$1" & exec "$0" -c "$2"'
 DOMAIN = 101
 """ROS domain of the nodes without a cell: the last that a trial would take."""
 
@@ -242,7 +242,8 @@ def look_at_node(ros: Ros, ours: Path | None, *, confined: bool = True) -> Line:
             command, env = _talk_from_a_cell(ros, ours), dict(os.environ)
         else:
             env = environment(ros, home=Path(home), underlay=ours, domain=DOMAIN)
-            command = ["sh", "-c", _TALK, str(ros.python), _TALKER, _LISTENER]
+            talker, listener = _talker_and_listener(ros, env)
+            command = ["sh", "-c", f"setpriv --pdeathsig=KILL {shlex.join(talker)} & exec {shlex.join(listener)}"]
         try:
             done = subprocess.run(
                 command, capture_output=True, text=True, timeout=60, check=False, stdin=subprocess.DEVNULL, env=env
@@ -262,10 +263,17 @@ def look_at_node(ros: Ros, ours: Path | None, *, confined: bool = True) -> Line:
 def _talk_from_a_cell(ros: Ros, ours: Path | None) -> list[str]:
     env = environment(ros, home=sandbox.HOME, underlay=ours, domain=None)
     view = sandbox.ros_view(ros, FASTDDS_PROFILE, *([ours] if ours else []))
-    talker = sandbox.cell([str(ros.python), "-c", _TALKER], view, env=env, network=True)
+    talker, listener = _talker_and_listener(ros, env)
+    confined = sandbox.cell(talker, view, env=env, network=True)
     # The talker goes when the listener does: cells die with their parent.
-    script = f"{shlex.join(talker)} & exec {shlex.join([str(ros.python), '-c', _LISTENER])}"
+    script = f"{shlex.join(confined)} & exec {shlex.join(listener)}"
     return sandbox.room(["sh", "-c", script], view, env=env)
+
+
+def _talker_and_listener(ros: Ros, env: Mapping[str, str]) -> tuple[list[str], list[str]]:
+    python = str(ros.python)
+    talker = interpreter("-c", _TALKER, python=python, env=env, searches=True)
+    return talker.argv, interpreter("-c", _LISTENER, python=python, env=env, searches=True).argv
 
 
 def _distribution() -> str:

@@ -7,6 +7,7 @@ it is written into .venv at the very end, so that an interrupted set-up is seen 
 from __future__ import annotations
 
 import json
+import os
 import re
 import ssl
 import subprocess
@@ -17,6 +18,7 @@ from pathlib import Path
 from grader import lock
 from grader.bootstrap import MACHINE_BROKEN, ROOT, STAMP, Stamp, say, write_stamp
 from grader.errors import MachineError
+from grader.interpreter import clean, interpreter
 
 BIN = Path(sys.prefix, "bin")
 _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
@@ -78,8 +80,8 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
 
 def _pip(requirements: Path) -> int:
     """`pip install` from the lock; returns the exit code."""
-    command = [sys.executable, "-m", "pip", "install", "--disable-pip-version-check", "--no-input", "--retries", "2"]
-    return _run([*command, "--progress-bar", "off", *_OPTIONS, "-r", str(requirements)])[0]
+    options = ("--disable-pip-version-check", "--no-input", "--retries", "2", "--progress-bar", "off", *_OPTIONS)
+    return _run(*interpreter("-m", "pip", "install", *options, "-r", str(requirements)))[0]
 
 
 def _uv(*arguments: str) -> float | None:
@@ -88,12 +90,12 @@ def _uv(*arguments: str) -> float | None:
     stores = ssl.get_default_verify_paths()
     if stores.cafile or (stores.capath and any(Path(stores.capath).iterdir())):
         command.append("--system-certs")  # As other programs here do; a minimal system has none, and uv brings some.
-    code, shown = _run(command)
+    code, shown = _run(command, clean(os.environ))
     prepared = next((line for line in shown if line.startswith("Prepared ")), "")
     return None if code else seconds_of(prepared)
 
 
-def _run(command: list[str]) -> tuple[int, list[str]]:
+def _run(command: list[str], env: dict[str, str]) -> tuple[int, list[str]]:
     """Run an installer and show its progress as lines, all the rest only if it fails; returns exit code and progress.
 
     Piped, both installers print a line where a download begins: a slow one is seen, and logs stay readable.
@@ -101,7 +103,7 @@ def _run(command: list[str]) -> tuple[int, list[str]]:
     shown: list[str] = []
     rest: list[str] = []
     with subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
+        command, env=env, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
     ) as process:
         for line in process.stdout or ():
             if line.strip().startswith(_PROGRESS):

@@ -12,6 +12,8 @@ import subprocess
 from pathlib import Path
 from typing import Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from grader.interpreter import clean, interpreter
+
 OLDEST, NEWEST = (3, 10), (3, 14)
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SYSTEM_PATH = ("/usr/local/bin", "/usr/bin", "/bin")
@@ -71,7 +73,7 @@ def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
     """The ROS 2 Jazzy that the caller has sourced, if any; `ours` is the prefix of the wheels, which does not count."""
     if env.get("ROS_DISTRO") != "jazzy":
         return None
-    for prefix in [Path(entry) for entry in env.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]:
+    for prefix in map(Path, clean(env).get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
         index = prefix / "share/ament_index/resource_index/packages"
         if prefix == ours or not (index / "rclpy").is_file():
             continue
@@ -111,7 +113,8 @@ def closed_folder(path: str) -> Optional[Path]:
 def probe(executable: str) -> Optional[Python]:
     """Ask an interpreter what it is; None if it does not answer, like a shim for one not installed."""
     try:
-        output = subprocess.check_output([executable, "-I", "-c", _PROBE], stderr=subprocess.DEVNULL, timeout=30)
+        asking = interpreter("-c", _PROBE, python=executable)
+        output = subprocess.check_output(asking.argv, env=asking.env, stderr=subprocess.DEVNULL, timeout=30)
         answer = json.loads(output.decode())
     except (OSError, ValueError, subprocess.SubprocessError):
         return None

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 from grader import machine, ros, xdg
 from grader.errors import MachineError
+from grader.interpreter import interpreter
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -160,7 +161,10 @@ def _build(here: ros.Ros, prefix: Path, tell: Callable[[str], None]) -> None:
         # Staged, so that all paths inside name the final place.
         _run(["cmake", "--install", str(folder / "build")], {**env, "DESTDIR": f"{folder}/staged"}, tell)
         # Compiled here, since those who use it may not be allowed to write into it.
-        _run([str(here.python), "-m", "compileall", "-q", "-s", f"{folder}/staged", str(staged / "lib")], env, tell)
+        compiling = interpreter(
+            *("-m", "compileall", "-q", "-s", f"{folder}/staged", str(staged / "lib")), python=str(here.python), env=env
+        )
+        _run(compiling.argv, compiling.env, tell)
         _make_readable(staged)
         staged.rename(prefix)
 
@@ -170,6 +174,8 @@ def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -
     told = 0
     with subprocess.Popen(
         command,
+        # Their Pythons are not started by us: this is the folder where they may look for modules.
+        cwd=env["HOME"],
         env=env,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,

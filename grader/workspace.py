@@ -20,6 +20,7 @@ from grader import process, ros, sandbox
 from grader.build import Build
 from grader.control_group import control_group
 from grader.errors import MachineError
+from grader.interpreter import interpreter
 from grader.system_calls import call_filter
 from grader.tar_stream import Member, read_tar
 
@@ -40,12 +41,13 @@ MOST_FILES = 20_000
 _SCRIPT = r"""
 echo cell-is-ready >&2
 cd "$WS" && mkdir -p src && tar -x -f - -C src || exit 90
-"$PYTHON" -c 'import sys; from colcon_core.command import main; sys.exit(main())' build --base-paths src \
+"$@" build --base-paths src \
     --executor sequential --event-handlers console_direct+ console_stderr- >&2 </dev/null
 code=$?
 [ -d install ] && tar -c --format=gnu -f - -C install .
 exit $code
 """
+_COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
 _READY = b"cell-is-ready\n"
 _LIMITS_HIT = {
     "disk": (b"No space left on device", b"File too large", b"Disk quota exceeded"),
@@ -73,8 +75,9 @@ def build(
     tell("Building with colcon")
     with _workspace(in_cell=in_cell) as (workspace, home):
         env = ros.environment(here, home=home, underlay=underlay)
-        env |= {"WS": str(workspace), "PYTHON": str(here.python)}
-        argv = ["sh", "-c", _SCRIPT]
+        env["WS"] = str(workspace)
+        colcon = interpreter("-c", _COLCON, python=str(here.python), env=env, searches=True)
+        argv = ["sh", "-c", _SCRIPT, "sh", *colcon.argv]
         if in_cell:
             view = sandbox.ros_view(here, *([underlay] if underlay else []))
             with call_filter() as filter_fd, control_group(LIMITS) as group:

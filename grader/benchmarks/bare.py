@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from grader import underlay
 from grader.benchmarks.measure import Cost, cost
+from grader.interpreter import interpreter
 from grader.ros import environment, find_ros
 from grader.submission import open_submission, write_copy
 
@@ -23,7 +24,9 @@ def bare_costs(submission: Path, folder: Path) -> dict[str, Cost]:
     opened = open_submission(submission)
     write_copy(opened, folder / "ws" / "src" / opened.package_dir.name)
     python = str(here.python)
+    colcon = interpreter(*("-c", _COLCON, "build", "--base-paths", "src"), python=python, env=env, searches=True)
+    node = interpreter("-c", _NODE, python=python, env=env, searches=True)
     return {
-        "colcon build": cost([python, "-c", _COLCON, "build", "--base-paths", "src"], env=env, cwd=folder / "ws"),
-        "rclpy node": cost([python, "-c", _NODE], env=env),
+        "colcon build": cost(colcon.argv, env=colcon.env, cwd=folder / "ws"),
+        "rclpy node": cost(node.argv, env=node.env),
     }

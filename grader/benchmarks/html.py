@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from grader.benchmarks.bare import bare_costs
 from grader.benchmarks.measure import cost
+from grader.interpreter import interpreter
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -67,7 +68,7 @@ def _making(submission: Path, folder: Path, times: int) -> None:
         home = folder / f"bare{number}"
         home.mkdir()
         bare.append(sum(each.wall_s for each in bare_costs(submission, home).values()))
-        argv = [sys.executable, "-c", _PAGE, str(recording), str(folder / "page.html")]
+        argv = interpreter("-c", _PAGE, str(recording), str(folder / "page.html")).argv
         seconds, size = subprocess.run(argv, check=True, capture_output=True, text=True).stdout.split()
         pages.append(float(seconds))
     f_s, page_s = statistics.median(bare), statistics.median(pages)
@@ -87,7 +88,7 @@ def _showing(folder: Path, times: int) -> None:
         named = replace(report, submission=f"submitted/student{number}/{report.exercise}")
         (reports / f"student{number}.json").write_text(to_json(named))
         (reports / f"student{number}.html").touch()
-    making = [sys.executable, "-c", "from grader.cli import main; main()", "class-page", str(reports)]
+    making = interpreter("-m", "grader.cli", "class-page", str(reports)).argv
     print(f"making a class page {cost(making).wall_s:6.2f} s for {_CLASS}, with the start of Python")
     browser = find_browser()
     if browser is None:

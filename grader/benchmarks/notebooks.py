@@ -24,6 +24,7 @@ from typing import Any
 
 from grader.exercise import course_folder
 from grader.gradebook.class_folder import make_class
+from grader.interpreter import interpreter
 
 STEP = "03-circle-publisher"
 AT_MOST = 1.5
@@ -43,7 +44,7 @@ def seconds(argv: list[str], cwd: Path) -> float:
 
 def nbgrader(root: Path, *words: str) -> float:
     """Seconds of one command of nbgrader."""
-    return seconds([sys.executable, "-m", "nbgrader", *words], root / "course")
+    return seconds(interpreter("-m", "nbgrader", *words).argv, root / "course")
 
 
 PLAIN = """\

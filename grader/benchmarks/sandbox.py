@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import statistics
-import sys
 import tempfile
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from grader import sandbox
 from grader.benchmarks.bare import bare_costs
 from grader.benchmarks.measure import Cost, cost
 from grader.errors import MachineError
+from grader.interpreter import interpreter
 
 _ROOT = Path(__file__).resolve().parents[2]
 _EXERCISE = "03-circle-publisher"
@@ -46,7 +46,7 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as folder:
             measured = dict(bare_costs(asked.submission, Path(folder)))
         for how in ("cell", "bare"):
-            command = [sys.executable, "-c", _GRADE, _EXERCISE, str(asked.submission), how]
+            command = interpreter("-c", _GRADE, _EXERCISE, str(asked.submission), how).argv
             measured[f"graded, {'confined' if how == 'cell' else 'not confined'}"] = cost(command)
         for name, one in measured.items():
             costs.setdefault(name, []).append(one)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import MachineError
+from grader.interpreter import interpreter
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -56,10 +56,15 @@ def unpacked(archive: Path) -> Iterator[Path]:
         raise NotUnpackedError(message)
     with tempfile.TemporaryDirectory(prefix="grader-unpacked-") as folder:
         # Its own process: what is made to take for ever, or all memory, takes this one only.
-        command = [*_LIMITS, sys.executable, "-I", "-S", str(_SCRIPT), str(archive.absolute()), folder]
+        start = interpreter("-S", str(_SCRIPT), str(archive.absolute()), folder)
         try:
             done = subprocess.run(
-                command, stdin=subprocess.DEVNULL, capture_output=True, timeout=_TIMEOUT_S, check=False
+                [*_LIMITS, *start.argv],
+                env=start.env,
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                timeout=_TIMEOUT_S,
+                check=False,
             )
         except subprocess.TimeoutExpired:
             done = None

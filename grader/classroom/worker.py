@@ -18,6 +18,8 @@ from multiprocessing.connection import Connection
 from threading import Thread
 from typing import IO, TYPE_CHECKING, Literal
 
+from grader.interpreter import interpreter
+
 if TYPE_CHECKING:
     from grader.classroom.task import Done, Pace, Task
 
@@ -35,8 +37,10 @@ class Worker:
         self._errors: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed in `close`
         with theirs:
             # A session of its own: Ctrl-C is its owner's to handle.
+            start = interpreter("-m", "grader.classroom.worker", str(theirs.fileno()))
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "grader.classroom.worker", str(theirs.fileno())],
+                start.argv,
+                env=start.env,
                 pass_fds=(theirs.fileno(),),
                 stdin=subprocess.DEVNULL,
                 stdout=self._errors,

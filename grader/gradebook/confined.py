@@ -10,7 +10,6 @@ import math
 import os
 import signal
 import subprocess
-import sys
 import tempfile
 from contextlib import suppress
 from pathlib import Path
@@ -24,6 +23,7 @@ from traitlets import Bool, Instance, Integer, Unicode
 
 from grader import sandbox, tree, underlay
 from grader.exercise import course_folder
+from grader.interpreter import interpreter
 from grader.notebook.mode import CONFINED
 from grader.ros import environment, find_ros
 from grader.sandbox import HOME, Limits, View, lone_cell, ros_view
@@ -51,7 +51,9 @@ class ConfinedKernelManager(AsyncKernelManager):
     @property
     def kernel_spec(self) -> KernelSpec:
         """The course's own, whatever the notebook asks for."""
-        argv = [sys.executable, "-m", "grader.notebook.confined", "{submission}", "-f", "{connection_file}"]
+        argv = interpreter(
+            *("-m", "grader.notebook.confined", "{submission}", "-f", "{connection_file}"), searches=True
+        ).argv
         return KernelSpec(argv=argv, display_name="", language="python", interrupt_mode="message")
 
     async def _async_pre_start_kernel(self, **kw: Any) -> Any:  # noqa: ANN401 - as the base class

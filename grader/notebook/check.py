@@ -10,7 +10,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import tempfile
 from contextlib import suppress
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from grader.errors import MachineError, UsageError
 from grader.exercise import find_exercise
+from grader.interpreter import interpreter
 from grader.notebook.mode import grading
 
 if TYPE_CHECKING:
@@ -84,9 +84,10 @@ class Checking:
 
 def _graded(exercise: Exercise, folder: Path) -> Verdict:
     with tempfile.TemporaryFile() as answer, _Progress() as progress:
+        start = interpreter("-m", "grader.notebook.worker", exercise.id, str(folder))
         worker = subprocess.Popen(
-            [sys.executable, "-m", "grader.notebook.worker", exercise.id, str(folder)],
-            # Not the notebook's folder: a student's random.py is not Python's.
+            start.argv,
+            env=start.env,
             cwd="/",
             stdin=subprocess.DEVNULL,
             stdout=answer,

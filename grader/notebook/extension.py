@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import secrets
 import subprocess
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import GraderError
+from grader.interpreter import interpreter
 from grader.notebook import guardian
 from grader.notebook.cells import Cells
 from grader.notebook.check import Checking
@@ -52,15 +52,17 @@ def _guard() -> None:
     """Mark this kernel's future children, and start the guardian that looks for the mark when the kernel has gone."""
     mark = f"{os.getpid()}-{secrets.token_hex(8)}"
     # Only this process holds the pipe: Python's descriptors are closed in its children.
+    # Nothing of the kernel's: neither its folder nor its marks.
+    env = {"PATH": os.environ.get("PATH", ""), "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
+    start = interpreter(str(Path(guardian.__file__).absolute()), mark, env=env)
     started = subprocess.Popen(
-        [sys.executable, "-I", str(Path(guardian.__file__)), mark],
+        start.argv,
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,
-        # Nothing of the kernel's: neither its folder nor its marks.
         cwd="/",
-        env={"PATH": os.environ.get("PATH", ""), "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"},
+        env=start.env,
     )
     _guardians.append(started)
     os.environ[guardian.VARIABLE] = mark

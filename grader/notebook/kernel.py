@@ -14,6 +14,7 @@ import tempfile
 from pathlib import Path
 
 from grader.errors import MachineError
+from grader.interpreter import interpreter
 
 NAME = "ros2-jazzy-course"
 DISPLAY_NAME = "ROS 2 Jazzy (course)"
@@ -29,14 +30,14 @@ def main() -> None:
     except GraderError as error:
         print(error, file=sys.stderr)
         env = dict(os.environ)
-    argv = [sys.executable, "-m", "ipykernel_launcher", *sys.argv[1:]]
-    os.execve(argv[0], argv, env)
+    kernel = interpreter("-m", "ipykernel_launcher", *sys.argv[1:], env=env, searches=True)
+    os.execve(kernel.argv[0], kernel.argv, kernel.env)
 
 
 def kernelspec() -> dict[str, object]:
     """What kernel.json says."""
     return {
-        "argv": [sys.executable, "-m", "grader.notebook.kernel", "-f", "{connection_file}"],
+        "argv": interpreter("-m", "grader.notebook.kernel", "-f", "{connection_file}").argv,
         "display_name": DISPLAY_NAME,
         "language": "python",
         "metadata": {"debugger": True},

@@ -13,7 +13,6 @@ import os
 import signal
 import struct
 import subprocess
-import sys
 import threading
 import time
 from contextlib import suppress
@@ -21,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import MachineError, UsageError
+from grader.interpreter import interpreter
 from grader.notebook.cells import run_below
 from grader.notebook.mode import grading
 
@@ -50,10 +50,11 @@ class Simulator:
         from IPython.display import Image, display
 
         self._env = environment()
+        live = interpreter("-m", "grader.simulator.live", env=self._env, searches=True)
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "grader.simulator.live"],
+            live.argv,
             cwd="/",
-            env=self._env,
+            env=live.env,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -178,8 +179,8 @@ def _command(executable: str) -> tuple[list[str], Path]:
         message = f"There is no {name}.py in the package beside this notebook: write it with `%%node {name}.py`."
         raise UsageError(message)
     package = files[0].parent
-    start = f"import sys; sys.path[0] = {str(package.parent)!r}; from {package.name}.{name} import main; main()"
-    return [sys.executable, "-c", start], package.parent
+    start = f"import sys; sys.path.insert(0, {str(package.parent)!r}); from {package.name}.{name} import main; main()"
+    return interpreter("-c", start, searches=True).argv, package.parent
 
 
 def environment() -> dict[str, str]:

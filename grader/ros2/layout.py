@@ -16,6 +16,7 @@ from typing import Literal
 from xml.sax.saxutils import escape
 
 from grader.errors import MachineError
+from grader.interpreter import interpreter
 
 Format = Literal["svg", "png", "json0"]
 _PNG_DPI = 144
@@ -29,11 +30,10 @@ def render(dot: str, kind: Format) -> bytes:
         MachineError: Graphviz is not here or cannot draw.
     """
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-I", "-m", "grader.ros2.layout", kind]
-        env = {**os.environ, **_our_font(Path(folder))}
+        start = interpreter("-m", "grader.ros2.layout", kind, env={**os.environ, **_our_font(Path(folder))})
         try:
             done = subprocess.run(
-                command, input=dot.encode(), capture_output=True, env=env, timeout=_HANG_S, check=False
+                start.argv, input=dot.encode(), capture_output=True, env=start.env, timeout=_HANG_S, check=False
             )
         except subprocess.TimeoutExpired as error:
             message = f"Graphviz did not draw the graph within {_HANG_S:.0f} s; --output graph.dot writes it undrawn."

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.interpreter import interpreter
 from grader.ros2 import index
 
 if TYPE_CHECKING:
@@ -37,4 +38,6 @@ def see_to_environment(needed: Collection[str]) -> None:
     from grader import shell
 
     wanted = shell.users_environment(None, lambda text: print(f"{text} ...", file=sys.stderr, flush=True))
-    os.execve(sys.executable, [sys.executable, *sys.argv], {**wanted, _STARTED_AGAIN: "1"})
+    command = str(Path(sys.argv[0]).absolute())
+    again = interpreter(command, *sys.argv[1:], env={**wanted, _STARTED_AGAIN: "1"}, searches=True)
+    os.execve(again.argv[0], again.argv, again.env)

@@ -49,7 +49,11 @@ class Course:
     @property
     def programs(self) -> list[str]:
         """What was run: venv, grader.install or apt-get's verb."""
-        return [command[1] if command[0] == "apt-get" else command[2] for command in self.commands]
+        known = ("venv", "grader.install")
+        return [
+            command[1] if command[0] == "apt-get" else next(word for word in command if word in known)
+            for command in self.commands
+        ]
 
     def set_up(self, parts: list[str] = LEARNER, ros: SourcedRos | None = None) -> int:
         self.commands = []

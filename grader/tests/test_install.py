@@ -81,9 +81,9 @@ def test_without_a_network_it_is_the_machine(installers: Installers) -> None:
 
 def test_progress_is_shown_and_the_rest_only_on_failure(capfd: pytest.CaptureFixture[str]) -> None:
     talk = "print('  Downloading numpy (from -r x)'); print('noise'); print('Prepared 3 packages in 2s')"
-    assert install._run([sys.executable, "-c", talk]) == (0, ["Downloading numpy", "Prepared 3 packages in 2s"])
+    assert install._run([sys.executable, "-c", talk], {}) == (0, ["Downloading numpy", "Prepared 3 packages in 2s"])
     assert capfd.readouterr().out == "  Downloading numpy\n  Prepared 3 packages in 2s\n"
-    assert install._run([sys.executable, "-c", talk + "; raise SystemExit(7)"])[0] == 7
+    assert install._run([sys.executable, "-c", talk + "; raise SystemExit(7)"], {})[0] == 7
     assert capfd.readouterr().out.endswith("Prepared 3 packages in 2s\nnoise\n")
 
 

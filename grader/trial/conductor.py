@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from grader import ros, sandbox
+from grader.interpreter import interpreter
 from grader.recording import Pose, Recording, frames_of, to_json
 from grader.trial.inputs import Inputs
 from grader.trial.node_process import LaunchError, NodeProcess
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from grader.trial.simulated import SimulatedTrial
     from grader.trial.wall import WallTrial
 
-LAUNCHER = Path(__file__).with_name("launcher.py")
+LAUNCHER = Path(__file__).absolute().with_name("launcher.py")
 BUSY = 0.5
 BUSY_S = 0.04
 """While the node's processes worked for this share of a stall and this long, they made it, not the machine; so too
@@ -138,7 +139,7 @@ def _command(
     here: ros.Ros, underlay: Path | None, order: dict[str, Any], info_fd: int, filter_fd: int | None
 ) -> Sequence[str]:
     env = ros.environment(here, home=Path(order["home"]), underlay=underlay, domain=order["domain"])
-    launch = [str(here.python), str(LAUNCHER)]
+    launch, env = interpreter(str(LAUNCHER), python=str(here.python), env=env, searches=True)
     if not order["in_cell"]:
         return [
             "env",

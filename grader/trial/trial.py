@@ -21,6 +21,7 @@ import grader
 from grader import ros, sandbox
 from grader.control_group import ControlGroup, control_group
 from grader.errors import MachineError
+from grader.interpreter import interpreter
 from grader.recording import from_json
 from grader.trial.inputs import Inputs
 
@@ -170,7 +171,7 @@ class Trial:
         self._errors: IO[bytes] = self._stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
         env = ros.environment(self._here, home=self._home, underlay=self._underlay, domain=self._domain)
         env["ROS_PYTHON_CHECK_FIELDS"] = "0"  # for beginners; ours would pay for it in each frame
-        argv = [str(self._here.python), "-m", "grader.trial.conductor"]
+        argv, env = interpreter("-m", "grader.trial.conductor", python=str(self._here.python), env=env, searches=True)
         more = [self._underlay] if self._underlay else []
         if self._in_cell:
             view = sandbox.ros_view(self._here, _FOLDER, *more)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-import sys
+
+from grader.interpreter import clean, interpreter
 
 _OPENED_S = 3.0
 """A program that has not failed by then has opened the page."""
@@ -26,15 +27,16 @@ def open_page(url: str) -> bool:
         return False
     opener = shutil.which("xdg-open")
     if _screen() and opener is not None and not os.environ.get("BROWSER"):
-        return _started([opener, url])
+        return _started([opener, url], clean(os.environ))
     # In a process of its own: some browsers only come back when they are closed.
-    return _started([sys.executable, "-m", "webbrowser", url])
+    return _started(*interpreter("-m", "webbrowser", url))
 
 
-def _started(command: list[str]) -> bool:
+def _started(command: list[str], env: dict[str, str]) -> bool:
     try:
         started = subprocess.Popen(
             command,
+            env=env,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,

@@ -12,13 +12,14 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Literal
 
 from grader.errors import MachineError, UsageError
+from grader.interpreter import interpreter
 from grader.view.address import listen
 from grader.view.feed import Feed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from typing import Any
 
+    from grader.interpreter import Start
     from grader.simulator.node import TurtlesimNode
 
 Kind = Literal["page", "terminal"]
@@ -102,11 +103,12 @@ def _page(feed: socket.socket, port: int | None) -> Iterator[subprocess.Popen[by
     with place.listening as listening:
         given = ["--feed", str(feed.fileno()), "--listen", str(listening.fileno())]
         before = ["--before"] if place.before else []
+        # The token is for nobody else's eyes, and arguments can be seen by all.
+        start = _start("page", *given, *before, GRADER_VIEW_TOKEN=place.address.token)
         with subprocess.Popen(
-            [*_command("page"), *given, *before],
+            start.argv,
             pass_fds=[feed.fileno(), listening.fileno()],
-            # The token is for nobody else's eyes, and arguments can be seen by all.
-            env=_environment(place.address.token),
+            env=start.env,
             stdin=subprocess.DEVNULL,
             # Ctrl-C is for the simulator; the view ends with it.
             start_new_session=True,
@@ -135,11 +137,8 @@ def _terminal(feed: socket.socket) -> Iterator[subprocess.Popen[bytes]]:
     sys.stderr.flush()
     kept = [(number, os.dup(number)) for number in (1, 2)]
     try:
-        process = subprocess.Popen(
-            [*_command("terminal"), "--feed", str(feed.fileno()), "--said", str(reading)],
-            pass_fds=[feed.fileno(), reading],
-            env=_environment(),
-        )
+        start = _start("terminal", "--feed", str(feed.fileno()), "--said", str(reading))
+        process = subprocess.Popen(start.argv, env=start.env, pass_fds=[feed.fileno(), reading])
         os.close(reading)
         os.dup2(writing, 1)
         os.dup2(writing, 2)
@@ -154,9 +153,5 @@ def _terminal(feed: socket.socket) -> Iterator[subprocess.Popen[bytes]]:
             termios.tcsetattr(sys.stdin.fileno(), termios.TCSADRAIN, before)
 
 
-def _command(kind: Kind) -> list[str]:
-    return [sys.executable, "-m", "grader.view", kind]
-
-
-def _environment(token: str = "") -> dict[str, Any]:
-    return {**os.environ, "PYTHONSAFEPATH": "1", **({"GRADER_VIEW_TOKEN": token} if token else {})}
+def _start(kind: Kind, *arguments: str, **more: str) -> Start:
+    return interpreter("-m", "grader.view", kind, *arguments, env={**os.environ, **more}, searches=True)

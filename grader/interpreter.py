@@ -1,0 +1,94 @@
+"""How every Python of ours is started: no module is ever imported from the current folder, which may be a student's.
+
+`python -m` and `python -c` put the current folder first on sys.path, and an empty or relative entry of PYTHONPATH names
+the current folder too. A `numpy.py` or a package `grader` in the folder where a command was typed would then run
+with the rights of whoever typed it. So all command lines of our interpreters are made here; a test finds any other.
+
+Like machine.py, this runs under any Python 3 before anything is installed: syntax of Python 3.6.
+"""
+
+import os
+import sys
+from pathlib import Path
+from typing import Dict, List, Mapping, NamedTuple, Optional, Tuple
+
+SEARCHED = (
+    *("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH"),
+    *("CMAKE_MODULE_PATH", "PKG_CONFIG_PATH", "PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX", "PYTHONSTARTUP"),
+)
+"""Variables that hold a path or a list of paths from which programs, libraries or modules are loaded."""
+_SAFE_PATH = (3, 11)
+"""The first Python with the option -P."""
+_MODULE = (
+    "import sys; del sys.path[0], sys.argv[0]; import runpy; "
+    "runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)"
+)
+"""What `python -P -m MODULE` does, for a Python that has no -P."""
+
+_MODULE_BELOW = (
+    "import sys; sys.path.insert(0, sys.argv[1]); del sys.argv[:2]; import runpy; "
+    "runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)"
+)
+"""The same with a folder that modules are looked for in first."""
+
+
+class Start(NamedTuple):
+    """A command line and its environment."""
+
+    argv: List[str]
+    env: Dict[str, str]
+
+
+def interpreter(
+    *arguments: str,
+    python: str = sys.executable,
+    env: Optional[Mapping[str, str]] = None,
+    searches: bool = False,
+    root: Optional[Path] = None,
+    version: Tuple[int, int] = sys.version_info[:2],
+) -> Start:
+    """How to start an interpreter: `arguments` are `-m MODULE ...`, `-c CODE ...` or the absolute path of a script.
+
+    `python` is its path, and `version` its version; `env` is the caller's when left out. `searches`: PYTHONPATH counts,
+    as it must for what imports rclpy; without it the interpreter is isolated (-I). `root`: the folder that holds the
+    module's package, where that is not installed yet.
+
+    Raises:
+        ValueError: the script's path is relative.
+    """
+    kind = arguments[0]
+    if not kind.startswith("-") and not Path(kind).is_absolute():
+        message = f"A script of ours is named by its absolute path, not {kind!r}"
+        raise ValueError(message)
+    if root is not None:
+        argv = [python, "-I", "-c", _MODULE_BELOW, str(root), *arguments[1:]]
+    elif not searches:
+        argv = [python, "-I", *arguments]
+    elif not kind.startswith("-"):
+        argv = [python, *arguments]  # its folder comes first on the path, and is ours
+    elif version >= _SAFE_PATH:
+        argv = [python, "-P", *arguments]
+    elif kind == "-m":
+        argv = [python, "-c", _MODULE, *arguments[1:]]
+    else:
+        argv = [python, "-c", "import sys; del sys.path[0]\n" + arguments[1], *arguments[2:]]
+    return Start(argv, clean(os.environ if env is None else env))
+
+
+def clean(env: Mapping[str, str]) -> Dict[str, str]:
+    """The environment without what leads to the current folder: empty and relative entries of search paths."""
+    cleaned = dict(env)
+    for name in SEARCHED:
+        if name in cleaned:
+            cleaned[name] = os.pathsep.join(entry for entry in cleaned[name].split(os.pathsep) if entry.startswith("/"))
+            if not cleaned[name]:
+                del cleaned[name]
+    return cleaned
+
+
+def clean_own() -> None:
+    """Clean this process's own environment, for all that it looks for and starts from now on."""
+    cleaned = clean(os.environ)
+    for name in [name for name in os.environ if name not in cleaned]:
+        del os.environ[name]
+    os.environ.update(cleaned)
