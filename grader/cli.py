@@ -19,11 +19,11 @@ from grader.learner import cli as learner
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
-    from grader.checks.evidence import Evidence
-    from grader.exercise import Exercise
-    from grader.outcome import Report
+    from grader.checks.outcome import Report
+    from grader.evidence.evidence import Evidence
+    from grader.exercise.model import Exercise
     from grader.report.progress import Progress
-    from grader.submission import Submission
+    from grader.submission.package import Submission
 
 app = typer.Typer(
     name="grader",
@@ -80,9 +80,10 @@ def check(
     ] = False,
 ) -> None:
     """Build and run one submission, and say what is right and what is not."""
-    from grader import archive, sandbox
-    from grader.grade import Options, grade
+    from grader.evidence import archive
+    from grader.grading.grade import Options, grade
     from grader.report.terminal import early
+    from grader.sandbox import bubblewrap
 
     for file in (json, image, html):
         _writable(file)
@@ -94,7 +95,7 @@ def check(
         known, submission = place(None, exercise)
         exercise = known.id
     asked, opened = _opened(exercise, submission)
-    options = Options(in_cell=sandbox.require() if confined else sandbox.usable(), clock=clock.value, seed=seed)
+    options = Options(in_cell=bubblewrap.require() if confined else bubblewrap.usable(), clock=clock.value, seed=seed)
     with _progress() as tell:
         graded = grade(asked, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)))
         if recording:
@@ -117,10 +118,10 @@ def regrade(
     html: Html = None,
 ) -> None:
     """Judge a stored recording again; nothing of the student's is run."""
-    from grader import archive
     from grader.checks.judge import judge
-    from grader.exercise import find_exercise
-    from grader.grade import report_of
+    from grader.evidence import archive
+    from grader.exercise.model import find_exercise
+    from grader.grading.grade import report_of
 
     for file in (json, image, html):
         _writable(file)
@@ -152,7 +153,7 @@ def doctor() -> None:
     """See whether this machine can grade: which ROS 2, colcon, compiler, sandbox; and what to do about the rest."""
     from rich.console import Console
 
-    from grader.doctor import exit_code, render, run_doctor
+    from grader.setup.doctor import exit_code, render, run_doctor
 
     with _progress() as tell:
         lines = run_doctor(tell=tell)
@@ -174,9 +175,9 @@ def sim(
     port: Annotated[Optional[int], typer.Option(help="Of the page; the one of the last time when left out.")] = None,  # noqa: UP045
 ) -> None:
     """Run turtlesim as a node, at wall time, until Ctrl-C; it has no window, so --view shows it."""
-    from grader import underlay
     from grader.interpreter import interpreter
-    from grader.ros import find_ros, users_environment
+    from grader.ros import underlay
+    from grader.ros.installation import find_ros, users_environment
 
     _writable(image)
     here = find_ros()
@@ -188,7 +189,7 @@ def sim(
     options = [text for name, value in given if value is not None for text in (name, str(value))]
     env = users_environment(here, extra)
     start = interpreter(
-        "-m", "grader.simulator", *options, *context.args, python=str(here.python), env=env, searches=True
+        "-m", "grader.turtlesim", *options, *context.args, python=str(here.python), env=env, searches=True
     )
     os.execve(start.argv[0], start.argv, start.env)
 
@@ -202,7 +203,7 @@ Domain = Annotated[
 @app.command(epilog="Example: source <(grader env)")
 def env(domain: Domain = None) -> None:
     """Print shell code that puts ROS 2 into this shell: for `source <(grader env)`, in bash and zsh."""
-    from grader import shell
+    from grader.ros import shell
 
     try:
         with _progress() as tell:
@@ -217,7 +218,7 @@ def env(domain: Domain = None) -> None:
 @app.command(epilog="Example: grader shell --domain 7")
 def shell(domain: Domain = None) -> None:
     """Open a shell in which ROS 2 is there, until you type exit."""
-    from grader import shell as shells
+    from grader.ros import shell as shells
 
     with _progress() as tell:
         wanted = shells.users_environment(domain, tell)
@@ -235,10 +236,10 @@ def release(
     ] = None,
 ) -> None:
     """Make exercises/ from solutions/, for authors."""
-    from grader.release import main as make_exercises
+    from grader.authoring.release import main as make_exercises
 
     if to:
-        from grader.handout import hand_out
+        from grader.authoring.handout import hand_out
 
         hand_out(to)
         typer.echo(f"The students' repository: {to}")
@@ -251,7 +252,7 @@ def validate(
     exercises: Annotated[list[str] | None, typer.Argument(help="Which ones; all when left out.", metavar="ID")] = None,
 ) -> None:
     """See whether exercises, solutions, starting points and lessons are as they should be, for authors."""
-    from grader.validate import validate as problems_of
+    from grader.authoring.validate import validate as problems_of
 
     with _progress() as tell:
         problems = problems_of(exercises or [], tell)
@@ -290,8 +291,8 @@ def main() -> None:
 
 
 def _opened(name: str | None, path: Path) -> tuple[Exercise, Submission]:
-    from grader.exercise import exercise_of_folder, find_exercise
-    from grader.submission import open_answers, open_submission
+    from grader.exercise.model import exercise_of_folder, find_exercise
+    from grader.submission.package import open_answers, open_submission
 
     known = find_exercise(name) if name else exercise_of_folder(path)
     if known is not None and not known.package:
@@ -301,7 +302,7 @@ def _opened(name: str | None, path: Path) -> tuple[Exercise, Submission]:
 
 
 def _exercise(name: str | None, package: Path) -> Exercise:
-    from grader.exercise import catalogue, exercise_of_folder, find_exercise
+    from grader.exercise.model import catalogue, exercise_of_folder, find_exercise
 
     found = find_exercise(name) if name else exercise_of_folder(package)
     if found is None:

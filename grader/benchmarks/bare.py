@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader import underlay
 from grader.benchmarks.measure import Cost, cost
 from grader.interpreter import interpreter
-from grader.ros import environment, find_ros
-from grader.submission import open_submission, write_copy
+from grader.ros import underlay
+from grader.ros.installation import environment, find_ros
+from grader.submission.package import open_submission, write_copy
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -21,18 +21,18 @@ from typing import TYPE_CHECKING
 
 from grader.benchmarks.bare import bare_costs
 from grader.benchmarks.measure import cost, median
-from grader.checks.evidence import Evidence
 from grader.checks.judge import judge_early
-from grader.exercise import find_exercise
-from grader.submission import open_answers, open_submission
+from grader.evidence.evidence import Evidence
+from grader.exercise.model import find_exercise
+from grader.submission.package import open_answers, open_submission
 from grader.tests.case import ROOT, Case, make_submission, read_cases
 from grader.tests.catalogue import MISTAKES
-from grader.tests.grading import GRADER, grade
+from grader.tests.gradings import GRADER, grade
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from grader.exercise import Exercise
+    from grader.exercise.model import Exercise
 
 SOLUTION = ROOT / "solutions/03-circle-publisher"
 MOST_STATIC_S = 0.4

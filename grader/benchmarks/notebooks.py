@@ -22,7 +22,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from grader.exercise import course_folder
+from grader.exercise.model import course_folder
 from grader.gradebook.class_folder import make_class
 from grader.interpreter import interpreter
 

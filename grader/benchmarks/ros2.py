@@ -18,7 +18,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from grader import ros, underlay
+from grader.ros import installation, underlay
 
 _ROS2 = str(Path(sys.executable).with_name("ros2"))
 _NODE = "import rclpy; rclpy.init(); node = rclpy.create_node('bare'); node.destroy_node(); rclpy.shutdown()"
@@ -32,11 +32,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=40, help="repetitions (40)")
     times = parser.parse_args().times
-    here = ros.find_ros()
+    here = installation.find_ros()
     with tempfile.TemporaryDirectory() as home:
         user = {"HOME": home, "PATH": os.environ.get("PATH", "/usr/bin:/bin")}
         # A domain that no user has by default.
-        env = ros.users_environment(here, underlay.ensure(here), user, domain=0)
+        env = installation.users_environment(here, underlay.ensure(here), user, domain=0)
         commands = {
             "topic list": [_ROS2, "topic", "list"],
             "interface show": [_ROS2, "interface", "show", "geometry_msgs/msg/Twist"],

@@ -12,11 +12,11 @@ import statistics
 import tempfile
 from pathlib import Path
 
-from grader import sandbox
 from grader.benchmarks.bare import bare_costs
 from grader.benchmarks.measure import Cost, cost
 from grader.errors import MachineError
 from grader.interpreter import interpreter
+from grader.sandbox import bubblewrap
 
 _ROOT = Path(__file__).resolve().parents[2]
 _EXERCISE = "03-circle-publisher"
@@ -40,7 +40,7 @@ def main() -> None:
     parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _EXERCISE)
     asked = parser.parse_args()
-    sandbox.require()
+    bubblewrap.require()
     costs: dict[str, list[Cost]] = {}
     for _ in range(asked.times):
         with tempfile.TemporaryDirectory() as folder:

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 from grader.checks.kind import STAGES
 from grader.checks.kinds import KINDS
-from grader.outcome import Finding, Outcome, Status, failed
-from grader.words import shorten
+from grader.checks.outcome import Finding, Outcome, Status, failed
+from grader.common.words import shorten
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from grader.checks.evidence import Evidence
-    from grader.exercise import CheckSpec
+    from grader.evidence.evidence import Evidence
+    from grader.exercise.model import CheckSpec
 
 
 def judge(evidence: Evidence) -> tuple[Outcome, ...]:

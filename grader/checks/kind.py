@@ -11,13 +11,13 @@ import math
 from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 
-from grader.words import a_list
+from grader.common.words import a_list
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from grader.checks.evidence import Evidence
-    from grader.outcome import Finding
+    from grader.checks.outcome import Finding
+    from grader.evidence.evidence import Evidence
 
 Stage = Literal["source", "build", "trial"]
 """What a check needs: the submission's files alone, what colcon made of them, or the recording of a trial."""

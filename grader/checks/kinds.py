@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from grader.checks import (
+from grader.checks.subjects import (
     advice,
     answers,
     building,

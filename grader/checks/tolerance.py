@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.outcome import Finding, Status
+from grader.checks.outcome import Finding, Status
 
 if TYPE_CHECKING:
-    from grader.recording import Recording
+    from grader.trial.recording import Recording
 
 NEAR = 0.2
 """A value is near an edge when this share of the tolerance or less lies between (design, decision 3)."""

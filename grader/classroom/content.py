@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 from grader.classroom import archives
 from grader.errors import MachineError, UsageError
-from grader.submission import ANSWERS, Submission, open_answers, open_submission
-from grader.tree import shown
+from grader.submission.package import ANSWERS, Submission, open_answers, open_submission
+from grader.submission.tree import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
     from grader.classroom.found import Found
-    from grader.exercise import Exercise
+    from grader.exercise.model import Exercise
 
 MOST_DEEP = 4
 """Folders that may lie around answers.toml."""

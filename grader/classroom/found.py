@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.classroom import archives
+from grader.common.words import a_list
 from grader.errors import UsageError
-from grader.exercise import catalogue, find_exercise
-from grader.package_search import PACKAGE_FILES
-from grader.tree import shown, sort_key
-from grader.words import a_list
+from grader.exercise.model import catalogue, find_exercise
+from grader.submission.search import PACKAGE_FILES
+from grader.submission.tree import shown, sort_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

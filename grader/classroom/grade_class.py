@@ -6,17 +6,18 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader import sandbox, underlay
+from grader.checks.outcome import Status
 from grader.classroom import outputs, results
 from grader.classroom.found import find_submissions, passed_over
 from grader.classroom.order import Order, sort_out, sources_for
 from grader.classroom.roster import read_owners
 from grader.classroom.run import run
 from grader.classroom.show import screen, summary
+from grader.common.words import a_list, count
 from grader.errors import MachineError, UsageError
-from grader.outcome import Status
-from grader.ros import find_ros
-from grader.words import a_list, count
+from grader.ros import underlay
+from grader.ros.installation import find_ros
+from grader.sandbox import bubblewrap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from grader.classroom.found import Found
     from grader.classroom.order import Todo
     from grader.classroom.results import Result
-    from grader.grade import ClockChoice
+    from grader.grading.grade import ClockChoice
 
 DASK = "dask://"
 
@@ -75,7 +76,7 @@ def grade_found(
         clock=asked.clock,
         seed=asked.seed,
         # Dask's workers see to it themselves, each where it is.
-        in_cell=sandbox.require(trusted=asked.trusted) if local else not asked.trusted,
+        in_cell=bubblewrap.require(trusted=asked.trusted) if local else not asked.trusted,
         trusted=asked.trusted,
     )
     assert order.exercises  # a mistake in private checks is told before anything is graded

@@ -7,9 +7,9 @@ import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.classroom.private_checks import sources_of
 from grader.errors import MachineError, UsageError
-from grader.exercise import FILE_NAME, course_folder, find_exercise
+from grader.exercise.model import FILE_NAME, course_folder, find_exercise
+from grader.exercise.private_checks import sources_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

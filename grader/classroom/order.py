@@ -6,21 +6,21 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from grader.checks.outcome import Status
 from grader.classroom.content import Refused, fingerprint, read
 from grader.classroom.key import Key, changed, grader_key
-from grader.classroom.private_checks import sources_of
 from grader.classroom.task import Task, lesson_folder
-from grader.outcome import Status
+from grader.exercise.private_checks import sources_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
     from grader.classroom.found import Found
-    from grader.classroom.private_checks import Sources
     from grader.classroom.results import Result, Results
-    from grader.exercise import Exercise
-    from grader.grade import ClockChoice
+    from grader.exercise.model import Exercise
+    from grader.exercise.private_checks import Sources
+    from grader.grading.grade import ClockChoice
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ import csv
 import io
 from typing import TYPE_CHECKING
 
+from grader.common.words import a_list, shorten
 from grader.errors import UsageError
-from grader.words import a_list, shorten
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

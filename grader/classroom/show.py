@@ -11,8 +11,8 @@ import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Protocol
 
+from grader.common.words import count, printable
 from grader.report.verdict import tone, verdict
-from grader.words import count, printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

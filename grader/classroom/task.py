@@ -7,23 +7,23 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.classroom.key import grader_key
 from grader.errors import MachineError
-from grader.exercise import catalogue
-from grader.grade import Graded, Options, grade, report_of
-from grader.outcome import Finding, Outcome, Status, failed
+from grader.exercise.model import catalogue
+from grader.grading.grade import Graded, Options, grade, report_of
 from grader.report.hidden import evidence_for_students, for_students
-from grader.submission import Submission
+from grader.submission.package import Submission
 from grader.trial.trial import Trial
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from grader.classroom.private_checks import Sources
-    from grader.exercise import Exercise
-    from grader.grade import ClockChoice
-    from grader.outcome import Report
-    from grader.recording import Recording
+    from grader.checks.outcome import Report
+    from grader.exercise.model import Exercise
+    from grader.exercise.private_checks import Sources
+    from grader.grading.grade import ClockChoice
+    from grader.trial.recording import Recording
 
 
 Pace = Literal["waits", "works"]
@@ -108,9 +108,9 @@ def perform(
 
 @cache
 def _confined(*, trusted: bool) -> bool:
-    from grader import sandbox
+    from grader.sandbox import bubblewrap
 
-    return sandbox.require(trusted=trusted)  # tried once a process: the answer does not change
+    return bubblewrap.require(trusted=trusted)  # tried once a process: the answer does not change
 
 
 def set_aside(task: Task, why: str) -> Done:
@@ -142,8 +142,8 @@ def _refused(task: Task, exercise: Exercise, reason: str) -> Graded:
 
 
 def _unjudged(task: Task, exercise: Exercise, finding: Finding, *first: Outcome) -> Graded:
-    from grader.checks.evidence import Evidence
     from grader.checks.kinds import KINDS
+    from grader.evidence.evidence import Evidence
 
     outcomes = [
         Outcome(spec.id, spec.kind, spec.title, 0.0, spec.points, finding, spec.hidden, KINDS[spec.kind].advice)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import shutil
 from typing import TYPE_CHECKING
 
+from grader.authoring.release import release
 from grader.classroom.roster import read_roster
+from grader.common.words import shorten
 from grader.errors import MachineError, UsageError
-from grader.exercise import catalogue, course_folder
+from grader.exercise.model import catalogue, course_folder
 from grader.gradebook.folders import CONFIG, open_class
-from grader.package_search import IGNORE_MARKER
-from grader.release import release
-from grader.words import shorten
+from grader.submission.search import IGNORE_MARKER
 
 if TYPE_CHECKING:
     from pathlib import Path

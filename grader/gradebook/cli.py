@@ -55,10 +55,10 @@ def sync(
     ] = False,
 ) -> None:
     """Grade the submitted packages themselves, in parallel, and write the scores into nbgrader's gradebook."""
+    from grader.common.words import a_list, count, printable
     from grader.gradebook.folders import open_class
     from grader.gradebook.scores import sync as write
     from grader.report.progress import progress
-    from grader.words import a_list, count, printable
 
     folders = open_class(course)
     with progress() as tell:
@@ -77,9 +77,9 @@ def sync(
 
 def compare(steps: Steps = None, course: Course = None) -> None:
     """List where the kernel that autograde ran and the grader disagree, and what the grader has not confirmed."""
+    from grader.common.words import count, printable
     from grader.gradebook.folders import open_class
     from grader.gradebook.scores import compare as differences_of
-    from grader.words import count, printable
 
     differences = differences_of(open_class(course), steps or [])
     for each in differences:
@@ -97,8 +97,8 @@ def new(
     ] = None,
 ) -> None:
     """Make a course folder for a class: lessons, solutions, notebooks, nbgrader's gradebook with the roster."""
+    from grader.common.words import count
     from grader.gradebook.class_folder import make_class
-    from grader.words import count
 
     students = make_class(folder, roster)
     typer.echo(f"A class of {count(students, 'student')}: {folder}")
@@ -112,11 +112,11 @@ def install(
     ] = None,
 ) -> None:
     """Make the kernel "ROS 2 Jazzy (course)" known to Jupyter: ROS 2 is there in it, without sourcing anything."""
-    from grader import underlay
     from grader.notebook.kernel import DISPLAY_NAME
     from grader.notebook.kernel import install as install_kernel
     from grader.report.progress import progress
-    from grader.ros import find_ros
+    from grader.ros import underlay
+    from grader.ros.installation import find_ros
 
     with progress() as tell:
         # Now, and not while Jupyter waits for the kernel.

@@ -21,15 +21,17 @@ from nbclient.exceptions import CellTimeoutError, DeadKernelError
 from nbgrader.preprocessors import Execute
 from traitlets import Bool, Instance, Integer, Unicode
 
-from grader import sandbox, tree, underlay
-from grader.exercise import course_folder
+from grader.exercise.model import course_folder
 from grader.interpreter import interpreter
 from grader.notebook.mode import CONFINED
-from grader.ros import environment, find_ros
-from grader.sandbox import HOME, Limits, View, lone_cell, ros_view
-from grader.submission import Submission, write_copy
-from grader.system_calls import call_filter
-from grader.watch import Guard
+from grader.ros import underlay
+from grader.ros.installation import environment, find_ros
+from grader.sandbox import bubblewrap
+from grader.sandbox.bubblewrap import HOME, Limits, View, lone_cell, ros_view
+from grader.sandbox.system_calls import call_filter
+from grader.sandbox.usage import Guard
+from grader.submission import tree
+from grader.submission.package import Submission, write_copy
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
@@ -68,7 +70,7 @@ class ConfinedKernelManager(AsyncKernelManager):
         return await super()._async_pre_start_kernel(**kw)
 
     async def _async_launch_kernel(self, kernel_cmd: list[str], **kw: Any) -> None:  # noqa: ANN401 - as the base class
-        confined = sandbox.require(trusted=self.trusted)
+        confined = bubblewrap.require(trusted=self.trusted)
         assert self._folder is not None
         copy = Path(self._folder.name) / "submission"
         _copy(Path(self.submission), copy)

@@ -12,14 +12,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from grader.exercise import catalogue
-from grader.outcome import Status
+from grader.checks.outcome import Status
+from grader.exercise.model import catalogue
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
+    from grader.checks.outcome import Outcome, Report
     from grader.classroom.results import Results
-    from grader.outcome import Outcome, Report
 
 NOT_SYNCED = "not confirmed by `grader gradebook sync`"
 NOT_JUDGED = "the grader could not judge it"

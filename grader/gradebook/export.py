@@ -8,10 +8,10 @@ from typing import Any
 from nbgrader.plugins import CsvExportPlugin
 
 from grader.classroom.results import Results
+from grader.common.words import a_list, count
 from grader.gradebook.config import CLASS
 from grader.gradebook.confirmed import withhold_unconfirmed
 from grader.gradebook.folders import RESULTS
-from grader.words import a_list, count
 
 
 class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]

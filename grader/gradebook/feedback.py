@@ -18,7 +18,7 @@ from grader.report.hidden import for_students
 if TYPE_CHECKING:
     from nbformat import NotebookNode
 
-    from grader.outcome import Report
+    from grader.checks.outcome import Report
 
 Resources = dict[str, Any]
 BEGIN = ClearHiddenTests.begin_test_delimeter.default_value

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.errors import MachineError, UsageError
-from grader.exercise import catalogue, find_exercise
+from grader.exercise.model import catalogue, find_exercise
 from grader.gradebook.config import CLASS
 
 if TYPE_CHECKING:

@@ -11,17 +11,17 @@ import json
 import shutil
 from typing import TYPE_CHECKING
 
-from grader import tree
 from grader.learner.workspace import starting_point
 from grader.notebook.place import Part, counts, ended, parts_of, starting_text
-from grader.package_search import PACKAGE_FILES
-from grader.submission import Submission, write_copy
+from grader.submission import tree
+from grader.submission.package import Submission, write_copy
+from grader.submission.search import PACKAGE_FILES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from grader.exercise import Exercise
+    from grader.exercise.model import Exercise
 
 
 def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:

@@ -12,11 +12,13 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from grader.checks.outcome import Status
 from grader.classroom.found import Found
 from grader.classroom.grade_class import Asked, grade_found
 from grader.classroom.results import Results
+from grader.common.words import shorten
 from grader.errors import UsageError
-from grader.exercise import find_exercise
+from grader.exercise.model import find_exercise
 from grader.gradebook.confirmed import (
     Unconfirmed,
     outcome_of,
@@ -26,9 +28,7 @@ from grader.gradebook.confirmed import (
     withhold_unconfirmed,
 )
 from grader.gradebook.put_together import graded_folder
-from grader.outcome import Status
-from grader.tree import OF_THE_MACHINE
-from grader.words import shorten
+from grader.submission.tree import OF_THE_MACHINE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from nbgrader import utils
 from nbgrader.preprocessors import NbGraderPreprocessor
 
+from grader.authoring.release import release
 from grader.notebook.released import solved_away
-from grader.release import release
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from nbgrader.preprocessors import SaveAutoGrades
 from nbgrader.utils import is_solution
 
-from grader.exercise import catalogue
+from grader.exercise.model import catalogue
 from grader.gradebook.confirmed import withhold
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import typer
 from grader.errors import UsageError
 
 if TYPE_CHECKING:
-    from grader.exercise import Exercise
+    from grader.exercise.model import Exercise
 
 Workspace = Annotated[
     Optional[Path],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
@@ -88,7 +88,7 @@ def place(path: Path | None, exercise: str | None, workspace: Path | None = None
     Raises:
         UsageError: neither path nor progress says it.
     """
-    from grader.exercise import exercise_of_folder, find_exercise
+    from grader.exercise.model import exercise_of_folder, find_exercise
     from grader.learner import steps
 
     current = steps.current(workspace)

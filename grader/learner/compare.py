@@ -5,12 +5,12 @@ from __future__ import annotations
 import difflib
 from typing import TYPE_CHECKING
 
-from grader import tree
+from grader.common.words import printable
 from grader.errors import UsageError
-from grader.exercise import find_exercise
+from grader.exercise.markers import MEANT, solved, syntax_of
+from grader.exercise.model import find_exercise
 from grader.learner import progress, workspace
-from grader.markers import MEANT, solved, syntax_of
-from grader.words import printable
+from grader.submission import tree
 
 if TYPE_CHECKING:
     from pathlib import Path

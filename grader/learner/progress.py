@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from grader import xdg
+from grader.common import xdg
 from grader.errors import MachineError
 
 if TYPE_CHECKING:

@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from grader import sandbox
 from grader.errors import GraderError, UsageError
-from grader.grade import Options
+from grader.grading.grade import Options
 from grader.learner import steps
 from grader.learner.keys import single_keys
 from grader.learner.watch import Events, Watched
 from grader.report import terminal
+from grader.sandbox import bubblewrap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from grader.exercise import Exercise
-    from grader.outcome import Report
+    from grader.checks.outcome import Report
+    from grader.exercise.model import Exercise
 
 BELOW = 5
 """Lines below a report: where it watches, the keys, what a key answers."""
@@ -37,7 +37,7 @@ def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
         message = f"There is no folder {folder}. Begin a step with `grader start`, or name the folder of your package."
         raise UsageError(message)
     console = Console(highlight=False)
-    options = Options(in_cell=sandbox.usable())
+    options = Options(in_cell=bubblewrap.usable())
     with single_keys() as read_key, closing(Events(read_key)) as events:
         told = ""
         while True:

@@ -5,19 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from grader.common.words import count
 from grader.errors import UsageError
-from grader.exercise import catalogue, find_exercise
+from grader.exercise.model import catalogue, find_exercise
 from grader.learner import progress, workspace
-from grader.words import count
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from rich.console import Console
 
-    from grader.exercise import Exercise
+    from grader.checks.outcome import Report
+    from grader.exercise.model import Exercise
     from grader.learner.workspace import Started
-    from grader.outcome import Report
 
 
 @dataclass(frozen=True)

@@ -14,18 +14,18 @@ from typing import TYPE_CHECKING, Literal
 from watchfiles import DefaultFilter, watch
 
 from grader.errors import UsageError
-from grader.grade import Graded, Options, grade
+from grader.grading.grade import Graded, Options, grade
 from grader.learner.rebuild import Rebuild
-from grader.submission import open_answers, open_submission
+from grader.submission.package import open_answers, open_submission
 from grader.trial.trial import Plan, Trial
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from grader.exercise import Exercise
-    from grader.ros import Ros
-    from grader.submission import Submission
+    from grader.exercise.model import Exercise
+    from grader.ros.installation import Ros
+    from grader.submission.package import Submission
 
 DEBOUNCE_MS = 50
 """An editor that saves by renaming makes several events; they count as one."""

@@ -6,17 +6,18 @@ import itertools
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from grader import own_numbers, tree
 from grader.errors import MachineError, UsageError
-from grader.exercise import course_folder
-from grader.own_numbers import draw_numbers, to_toml
-from grader.package_search import IGNORE_MARKER
+from grader.exercise import own_numbers
+from grader.exercise.model import course_folder
+from grader.exercise.own_numbers import draw_numbers, to_toml
+from grader.submission import tree
+from grader.submission.search import IGNORE_MARKER
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from grader.exercise import Exercise
+    from grader.exercise.model import Exercise
 
 
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")

@@ -12,16 +12,16 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.words import a_list
 from grader.errors import UsageError
-from grader.exercise import find_exercise
+from grader.exercise.model import find_exercise
 from grader.notebook import place
 from grader.notebook.mode import grading
-from grader.words import a_list
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from grader.exercise import Exercise
+    from grader.exercise.model import Exercise
 
 
 class Cells:

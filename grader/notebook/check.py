@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import MachineError, UsageError
-from grader.exercise import find_exercise
+from grader.exercise.model import find_exercise
 from grader.interpreter import interpreter
 from grader.notebook.mode import grading
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self
 
-    from grader.exercise import Exercise
+    from grader.exercise.model import Exercise
     from grader.notebook.cells import Cells
 
 GRACE_S = 5.0

@@ -10,7 +10,7 @@ import os
 import shutil
 import sys
 
-from grader.sandbox import WORKSPACE
+from grader.sandbox.bubblewrap import WORKSPACE
 
 
 def main() -> None:

@@ -16,16 +16,16 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from grader import own_numbers
 from grader.errors import UsageError
+from grader.exercise import own_numbers
+from grader.exercise.own_numbers import draw_numbers, to_toml
 from grader.learner import progress, workspace
-from grader.own_numbers import draw_numbers, to_toml
-from grader.submission import ANSWERS
+from grader.submission.package import ANSWERS
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from grader.exercise import Exercise
+    from grader.exercise.model import Exercise
 
 MAGICS = ("node", "package", "answers")
 KEPT = ".kept"

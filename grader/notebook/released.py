@@ -12,7 +12,7 @@ import re
 from typing import Any
 
 from grader.errors import UsageError
-from grader.markers import ANGLE, HASH, MEANT, Syntax, stripped, syntax_of
+from grader.exercise.markers import ANGLE, HASH, MEANT, Syntax, stripped, syntax_of
 
 Cell = dict[str, Any]
 

@@ -50,7 +50,7 @@ class Simulator:
         from IPython.display import Image, display
 
         self._env = environment()
-        live = interpreter("-m", "grader.simulator.live", env=self._env, searches=True)
+        live = interpreter("-m", "grader.turtlesim.live", env=self._env, searches=True)
         self._process = subprocess.Popen(
             live.argv,
             cwd="/",
@@ -185,8 +185,8 @@ def _command(executable: str) -> tuple[list[str], Path]:
 
 def environment() -> dict[str, str]:
     """The kernel's environment with ROS 2 in it: the course's kernel has it already, others get it here."""
-    from grader import underlay
-    from grader.ros import find_ros, users_environment
+    from grader.ros import underlay
+    from grader.ros.installation import find_ros, users_environment
 
     here = find_ros()
     return users_environment(here, underlay.ensure(here), os.environ)

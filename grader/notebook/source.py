@@ -16,7 +16,7 @@ from grader.notebook.released import Cell, to_bytes
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from grader.exercise import CheckSpec, Exercise
+    from grader.exercise.model import CheckSpec, Exercise
 
 BEGIN = "begin"
 """The id of the cell that loads everything and names the step; locked."""

@@ -15,19 +15,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader import sandbox
+from grader.checks.outcome import Status
 from grader.errors import GraderError
-from grader.exercise import find_exercise
-from grader.grade import Graded, Options, grade
+from grader.exercise.model import find_exercise
+from grader.grading.grade import Graded, Options, grade
 from grader.notebook.mode import confined
-from grader.outcome import Status
 from grader.report.plain import plain_line
-from grader.submission import open_answers, open_submission
+from grader.sandbox import bubblewrap
+from grader.submission.package import open_answers, open_submission
 
 if TYPE_CHECKING:
-    from grader.exercise import Exercise
-    from grader.outcome import Outcome
-    from grader.submission import Submission
+    from grader.checks.outcome import Outcome
+    from grader.exercise.model import Exercise
+    from grader.submission.package import Submission
 
 
 def opened(exercise: Exercise, folder: Path) -> Submission:
@@ -83,7 +83,7 @@ def main() -> int:
     try:
         exercise = find_exercise(name)
         submission = opened(exercise, Path(folder))
-        options = Options(in_cell=not confined() and sandbox.usable())
+        options = Options(in_cell=not confined() and bubblewrap.usable())
         graded = grade(exercise, submission, options, lambda text: print(text, file=sys.stderr, flush=True))
     except GraderError as error:
         json.dump({"error": str(error)}, sys.stdout)

@@ -10,18 +10,18 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks import seen
-from grader.checks.rate import Rate, measure
-from grader.checks.values import FIELDS, Values
-from grader.report.asked import params_of
+from grader.checks.subjects.rate import Rate, measure
+from grader.checks.subjects.values import FIELDS, Values
+from grader.common.words import number
+from grader.evidence import observed
+from grader.report.requested import params_of
 from grader.report.svg import coordinate, picture, points, tag, words
-from grader.words import number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from grader.checks.evidence import Evidence
-    from grader.recording import Command
+    from grader.evidence.evidence import Evidence
+    from grader.trial.recording import Command
 
 WIDTH = 440.0
 LEFT, RIGHT, TOP, BOTTOM = 58.0, 12.0, 24.0, 34.0
@@ -192,7 +192,7 @@ def six(command: Command) -> tuple[float, ...]:
 
 
 def _end_s(evidence: Evidence) -> float:
-    return max(seen.end_s(evidence.trial), 0.1)
+    return max(observed.end_s(evidence.trial), 0.1)
 
 
 def _steps(series: Series, wanted: float | None, label: str, end_s: float, where: tuple[float, int]) -> str:

@@ -11,8 +11,8 @@ from grader.report.plain import LONGEST_LINE, plain_line, size
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from grader.checks.evidence import Evidence
-    from grader.outcome import Where
+    from grader.checks.outcome import Where
+    from grader.evidence.evidence import Evidence
 
 AROUND = 4
 """Lines before and after the place."""

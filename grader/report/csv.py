@@ -22,14 +22,14 @@ import csv
 import io
 from typing import TYPE_CHECKING
 
-from grader.outcome import Status
+from grader.checks.outcome import Status
+from grader.common.words import printable
 from grader.report.verdict import tone
-from grader.words import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from grader.outcome import Report
+    from grader.checks.outcome import Report
 
 COLUMNS = (
     "submission",

@@ -10,15 +10,15 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from grader.outcome import Status
+from grader.checks.outcome import Status
+from grader.common.words import printable, shorten
 from grader.report.hidden import for_students
 from grader.report.verdict import verdict
-from grader.words import printable, shorten
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from grader.outcome import Outcome, Report
+    from grader.checks.outcome import Outcome, Report
 
 MOST_SUMMARY = 900_000
 """Bytes; GitHub takes a MiB a step."""

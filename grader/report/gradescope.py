@@ -8,13 +8,13 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from grader.outcome import Status
+from grader.checks.outcome import Status
+from grader.common.words import printable
 from grader.report.hidden import for_students
 from grader.report.verdict import verdict
-from grader.words import printable
 
 if TYPE_CHECKING:
-    from grader.outcome import Outcome, Report
+    from grader.checks.outcome import Outcome, Report
 
 
 def to_gradescope(report: Report) -> str:

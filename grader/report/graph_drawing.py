@@ -9,15 +9,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.common.words import a_list, shorten
+from grader.graph.graph import Topic
+from grader.graph.graph import picture as choose
 from grader.report.svg import coordinate, picture, tag, words
-from grader.ros2.graph import Topic
-from grader.ros2.graph import picture as choose
-from grader.words import a_list, shorten
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from grader.recording import Recording
+    from grader.trial.recording import Recording
 
 WIDTH = 640.0
 ROW, BOX = 62.0, 40.0

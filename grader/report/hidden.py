@@ -8,11 +8,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from grader.outcome import Finding, Status
+from grader.checks.outcome import Finding, Status
 
 if TYPE_CHECKING:
-    from grader.checks.evidence import Evidence
-    from grader.outcome import Outcome, Report
+    from grader.checks.outcome import Outcome, Report
+    from grader.evidence.evidence import Evidence
 
 
 def for_students(report: Report) -> Report:

@@ -10,7 +10,7 @@ import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.outcome import Status
+from grader.checks.outcome import Status
 from grader.report.code_excerpt import excerpt
 from grader.report.html_run import runs_of
 from grader.report.logs import logs_of
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from grader.checks.evidence import Evidence
-    from grader.outcome import Outcome, Report, Where
+    from grader.checks.outcome import Outcome, Report, Where
+    from grader.evidence.evidence import Evidence
     from grader.report.code_excerpt import Excerpt
 
 CODE_BYTES = 50_000

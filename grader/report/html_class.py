@@ -13,8 +13,8 @@ from urllib.parse import quote
 
 from markupsafe import Markup
 
+from grader.checks.outcome import Report, Status
 from grader.errors import UsageError
-from grader.outcome import Report, Status
 from grader.report.json import from_json
 from grader.report.page import make_page, save_page
 from grader.report.svg import picture, tag, words
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-    from grader.outcome import Outcome
+    from grader.checks.outcome import Outcome
 
 LARGEST = 4_000_000
 """Bytes: no report is as large."""

@@ -9,15 +9,15 @@ from __future__ import annotations
 import hashlib
 from typing import TYPE_CHECKING
 
-from grader.outcome import Status
+from grader.checks.outcome import Status
 from grader.report.html import ShownCheck
 from grader.report.html_run import runs_of
 from grader.report.template import fill
 from grader.report.verdict import UNCONFINED, tone, verdict
 
 if TYPE_CHECKING:
-    from grader.checks.evidence import Evidence
-    from grader.outcome import Report
+    from grader.checks.outcome import Report
+    from grader.evidence.evidence import Evidence
 
 
 def html_fragment(evidence: Evidence, report: Report) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from grader.checks import seen
+from grader.evidence import observed
 from grader.report import charts
 from grader.report.graph_drawing import GraphDrawing, draw_graph
 from grader.report.scene import scene_of
@@ -18,7 +18,7 @@ from grader.report.svg import LEFT, SIDE, TOP, scene_svg, sign
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from grader.checks.evidence import Evidence
+    from grader.evidence.evidence import Evidence
 
 MOST_FRAMES = 1500
 """Of the turtle's way in the players of a page together."""
@@ -122,7 +122,7 @@ def _rows(evidence: Evidence) -> list[tuple[str, ...]]:
 def _data(evidence: Evidence, among: int) -> dict[str, object]:
     """What the player needs: the turtle (m, rad) at times (s), the commands; null for what is no finite number."""
     recording = evidence.trial
-    end_s = seen.end_s(recording)
+    end_s = observed.end_s(recording)
     frames = recording.frames
     count = int((frames.t_s <= end_s).sum())
     every = count * among // MOST_FRAMES + 1

@@ -22,8 +22,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from grader.checks.outcome import Finding, Outcome, Report, Status, Where
 from grader.errors import UsageError
-from grader.outcome import Finding, Outcome, Report, Status, Where
 
 SCHEMA = 2
 READ = (1, SCHEMA)

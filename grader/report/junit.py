@@ -8,15 +8,15 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING
 
-from grader.outcome import Status
+from grader.checks.outcome import Status
+from grader.common.words import printable
 from grader.report.hidden import for_students
 from grader.report.verdict import verdict
-from grader.words import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from grader.outcome import Outcome, Report
+    from grader.checks.outcome import Outcome, Report
 
 TAGS = {Status.FAILED: "failure", Status.SKIPPED: "skipped", Status.ERROR: "error"}
 

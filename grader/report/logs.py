@@ -11,8 +11,8 @@ from grader.report.plain import Cut, cut, plain_line, size
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from grader.checks.evidence import Evidence
-    from grader.recording import Output
+    from grader.evidence.evidence import Evidence
+    from grader.trial.recording import Output
 
 HEAD_BYTES, TAIL_BYTES, ERROR_BYTES = 20_000, 14_000, 6_000
 LOOKED_AT = 400_000

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 from PIL import Image, ImageDraw, ImageFont
 
+from grader.checks.outcome import Report, Status
+from grader.common.words import printable
 from grader.errors import UsageError
-from grader.outcome import Report, Status
 from grader.report.canvas import paint
 from grader.report.scene import Scene, scene_of
 from grader.report.shapes import DEEP, LOOKS, SEA, SIDE_M, Rgb, Role
-from grader.words import printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from grader.checks.evidence import Evidence
+    from grader.evidence.evidence import Evidence
 
 SIDE_PX = 640
 LEFT, TOP, RIGHT, BOTTOM = 64, 72, 300, 60

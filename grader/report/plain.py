@@ -10,7 +10,7 @@ import re
 import unicodedata
 from dataclasses import dataclass
 
-from grader.words import UNSAFE_CATEGORIES
+from grader.common.words import UNSAFE_CATEGORIES
 
 COLOURS = re.compile(r"\x1b\[[0-9;?]*[ -/]*[@-~]")
 """A terminal's control sequences."""

@@ -9,13 +9,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks import seen
-from grader.report.asked import asked_circle, asked_shapes
+from grader.evidence import observed
+from grader.report.requested import asked_circle, asked_shapes
 from grader.report.shapes import SIDE_M, Arrow, Line, Point, Ring, Role
 
 if TYPE_CHECKING:
-    from grader.checks.evidence import Evidence
-    from grader.checks.track import Track
+    from grader.evidence.evidence import Evidence
+    from grader.evidence.track import Track
 
 MOST_TICKS = 150
 TICK_M = 0.11
@@ -43,7 +43,7 @@ def scene_of(evidence: Evidence) -> Scene:
     track = evidence.track
     shapes: list[Line | Ring | Arrow] = []
     legend: list[tuple[Role, str]] = []
-    facts = [f"{len(evidence.commands)} commands in {seen.end_s(recording):.1f} s"]
+    facts = [f"{len(evidence.commands)} commands in {observed.end_s(recording):.1f} s"]
     points = finite_way(track)
     moved = track.finite and len(track.points[0]) > 1
     if len(points) > 1:

@@ -10,8 +10,8 @@ import math
 from html import escape
 from typing import TYPE_CHECKING
 
+from grader.common.words import printable
 from grader.report.shapes import DEEP, LOOKS, SEA, SIDE_M, Line, Point, Rgb, Ring, Role
-from grader.words import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 from rich.text import Text
 
-from grader.outcome import Outcome, Report, Status
+from grader.checks.outcome import Outcome, Report, Status
+from grader.common.words import count, printable
 from grader.report.verdict import UNCONFINED, tone, verdict
-from grader.words import count, printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

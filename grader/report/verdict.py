@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from grader.outcome import Status
-from grader.words import count
+from grader.checks.outcome import Status
+from grader.common.words import count
 
 if TYPE_CHECKING:
-    from grader.outcome import Report
+    from grader.checks.outcome import Report
 
 UNCONFINED = (
     "The code ran without a sandbox, with limits on time, memory, processes and file size only: "

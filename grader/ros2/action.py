@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.ros2 import index
-from grader.ros2.failure import Ros2Error, did_you_mean
-from grader.ros2.names import add_wait, completed, nodes
+from grader.graph.names import add_wait, completed, nodes
+from grader.ros import index
+from grader.ros.failure import Ros2Error, did_you_mean
 
 if TYPE_CHECKING:
     import argparse
@@ -42,7 +42,7 @@ def add(group: argparse.ArgumentParser) -> None:
 def _list(args: argparse.Namespace) -> int:
     from rclpy.action import get_action_names_and_types
 
-    from grader.ros2.discovery import cli_node, settle
+    from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
         settle(node, deadline_s=args.spin_time)
@@ -62,7 +62,7 @@ def _info(args: argparse.Namespace) -> int:
         get_action_server_names_and_types_by_node,
     )
 
-    from grader.ros2.discovery import cli_node, settle
+    from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
         settle(node, deadline_s=args.spin_time)

@@ -8,8 +8,9 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from grader.ros2 import index, show
-from grader.ros2.failure import Ros2Error
+from grader.ros import index
+from grader.ros.failure import Ros2Error
+from grader.ros2 import show
 
 if TYPE_CHECKING:
     import argparse

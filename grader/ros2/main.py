@@ -14,8 +14,8 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn
 
 from grader.errors import GraderError
-from grader.ros2.failure import did_you_mean
-from grader.ros2.start import hand_over, see_to_environment
+from grader.ros.failure import did_you_mean
+from grader.ros.start import hand_over, see_to_environment
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from grader.ros2.failure import Ros2Error, did_you_mean
-from grader.ros2.names import absolute, add_wait, completed, nodes, shown
+from grader.graph.names import absolute, add_wait, completed, nodes, shown
+from grader.ros.failure import Ros2Error, did_you_mean
 
 if TYPE_CHECKING:
     import argparse
@@ -56,7 +56,7 @@ def require_node(node: Node, name: str, text: str) -> str:
 
 
 def _list(args: argparse.Namespace) -> int:
-    from grader.ros2.discovery import cli_node, settle
+    from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
         settle(node, deadline_s=args.spin_time)
@@ -74,7 +74,7 @@ def _list(args: argparse.Namespace) -> int:
 def _info(args: argparse.Namespace) -> int:
     from rclpy.action import get_action_client_names_and_types_by_node, get_action_server_names_and_types_by_node
 
-    from grader.ros2.discovery import cli_node, settle
+    from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
         settle(node, deadline_s=args.spin_time)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from grader.ros2.names import add_wait, completed
+from grader.graph.names import add_wait, completed
 
 if TYPE_CHECKING:
     import argparse

@@ -10,9 +10,9 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
 from rclpy.parameter import get_parameter_value, parameter_value_to_python
 
-from grader.ros2.discovery import cli_node, settle, spin_until
-from grader.ros2.failure import Ros2Error, did_you_mean
-from grader.ros2.names import nodes
+from grader.graph.discovery import cli_node, settle, spin_until
+from grader.graph.names import nodes
+from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros2.node import require_node
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from grader.ros2 import index
+from grader.ros import index
 
 if TYPE_CHECKING:
     import argparse

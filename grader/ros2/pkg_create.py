@@ -10,7 +10,7 @@ from string import Template
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
 
-from grader.ros2.failure import Ros2Error
+from grader.ros.failure import Ros2Error
 
 if TYPE_CHECKING:
     import argparse

@@ -12,8 +12,8 @@ import signal
 import sys
 from typing import TYPE_CHECKING, Any
 
-from grader.ros2 import index
-from grader.ros2.failure import Ros2Error, did_you_mean
+from grader.ros import index
+from grader.ros.failure import Ros2Error, did_you_mean
 
 if TYPE_CHECKING:
     import argparse

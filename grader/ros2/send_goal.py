@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient, get_action_names_and_types
 
-from grader.ros2 import values
-from grader.ros2.discovery import cli_node, settle, spin_until
-from grader.ros2.failure import Ros2Error, did_you_mean
-from grader.ros2.names import absolute
+from grader.graph.discovery import cli_node, settle, spin_until
+from grader.graph.names import absolute
+from grader.ros import values
+from grader.ros.failure import Ros2Error, did_you_mean
 
 if TYPE_CHECKING:
     import argparse

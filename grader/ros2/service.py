@@ -6,9 +6,9 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
-from grader.ros2 import index
-from grader.ros2.failure import Ros2Error, did_you_mean
-from grader.ros2.names import absolute, add_wait, completed, hidden, shown
+from grader.graph.names import absolute, add_wait, completed, hidden, shown
+from grader.ros import index
+from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros2.topic import above_zero
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def _services(node: Node, *, all_of_them: bool = False) -> list[tuple[str, list[
 
 
 def _list(args: argparse.Namespace) -> int:
-    from grader.ros2.discovery import cli_node, settle
+    from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
         settle(node, deadline_s=args.spin_time)
@@ -69,7 +69,7 @@ def _list(args: argparse.Namespace) -> int:
 
 
 def _type(args: argparse.Namespace) -> int:
-    from grader.ros2.discovery import cli_node, settle
+    from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
         settle(node, deadline_s=args.spin_time)
@@ -82,7 +82,7 @@ def _type(args: argparse.Namespace) -> int:
 
 
 def _find(args: argparse.Namespace) -> int:
-    from grader.ros2.discovery import cli_node, settle
+    from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
         settle(node, deadline_s=args.spin_time)
@@ -97,8 +97,8 @@ def _find(args: argparse.Namespace) -> int:
 
 
 def _call(args: argparse.Namespace) -> int:
-    from grader.ros2 import values
-    from grader.ros2.discovery import cli_node, nap, settle, spin_until
+    from grader.graph.discovery import cli_node, nap, settle, spin_until
+    from grader.ros import values
 
     made = values.load_type(args.service_type, "srv", "service type")
     request = values.fill(made.Request(), values.parse(args.values))

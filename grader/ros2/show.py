@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from grader.ros2 import index
-from grader.ros2.failure import Ros2Error
+from grader.ros import index
+from grader.ros.failure import Ros2Error
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -8,9 +8,9 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from grader.ros2 import index
-from grader.ros2.failure import Ros2Error, did_you_mean
-from grader.ros2.names import add_wait, completed, hidden, shown
+from grader.graph.names import add_wait, completed, hidden, shown
+from grader.ros import index
+from grader.ros.failure import Ros2Error, did_you_mean
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -117,7 +117,7 @@ def _types(node: Node, topic: str) -> list[str]:
 
 
 def _list(args: argparse.Namespace) -> int:
-    from grader.ros2.discovery import cli_node, settle
+    from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
         settle(node, deadline_s=args.spin_time)
@@ -146,7 +146,7 @@ def _print_ends(title: str, kind: str, topics: list[tuple[str, list[str], int]])
 
 
 def _info(args: argparse.Namespace) -> int:
-    from grader.ros2.discovery import cli_node, settle
+    from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
         settle(node, deadline_s=args.spin_time)
@@ -174,7 +174,7 @@ def _info(args: argparse.Namespace) -> int:
 
 
 def _type(args: argparse.Namespace) -> int:
-    from grader.ros2.discovery import cli_node, settle
+    from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
         settle(node, deadline_s=args.spin_time)
@@ -187,7 +187,7 @@ def _type(args: argparse.Namespace) -> int:
 
 
 def _find(args: argparse.Namespace) -> int:
-    from grader.ros2.discovery import cli_node, settle
+    from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
         settle(node, deadline_s=args.spin_time)

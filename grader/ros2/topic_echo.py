@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 
-from grader.ros2 import values
-from grader.ros2.discovery import cli_node, published, settle, spin_until
-from grader.ros2.failure import Ros2Error
-from grader.ros2.names import absolute
+from grader.graph.discovery import cli_node, published, settle, spin_until
+from grader.graph.names import absolute
+from grader.ros import values
+from grader.ros.failure import Ros2Error
 from grader.ros2.topic import unknown_topic
 
 if TYPE_CHECKING:

@@ -47,10 +47,10 @@ def hz(args: argparse.Namespace) -> int:
     """Print the rate every second in which something arrived, until Ctrl-C."""
     import rclpy
 
-    from grader.ros2 import values
-    from grader.ros2.discovery import cli_node, published, settle, spin_until
-    from grader.ros2.failure import did_you_mean
-    from grader.ros2.names import absolute
+    from grader.graph.discovery import cli_node, published, settle, spin_until
+    from grader.graph.names import absolute
+    from grader.ros import values
+    from grader.ros.failure import did_you_mean
     from grader.ros2.topic_echo import qos_of, type_of
 
     topic = absolute(args.topic_name)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.machine import BROWSERS, SYSTEM_PATH
+from grader.setup.machine import BROWSERS, SYSTEM_PATH
 from grader.tests.lacking import give_up
 
 if TYPE_CHECKING:

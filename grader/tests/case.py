@@ -15,7 +15,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from grader.markers import solved, syntax_of
+from grader.exercise.markers import solved, syntax_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

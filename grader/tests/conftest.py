@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader import ros, underlay
+from grader.ros import installation, underlay
 from grader.tests.domains import default_domain
-from grader.tests.grading import gradings_of
+from grader.tests.gradings import gradings_of
 from grader.tests.in_ros import InRos
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from grader.tests.grading import Gradings
+    from grader.tests.gradings import Gradings
 
 # Started in the background of a script or by nohup, tests have signals ignored, and all that they start would too.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -31,7 +31,7 @@ collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
 @pytest.fixture(scope="session")
 def in_ros(tmp_path_factory: pytest.TempPathFactory) -> InRos:
     """Processes with ROS 2 and turtlesim's interfaces, which are built if they were not yet."""
-    here = ros.find_ros()
+    here = installation.find_ros()
     home: Path = tmp_path_factory.mktemp("ros")
     return InRos(here, underlay.ensure(here), home)
 

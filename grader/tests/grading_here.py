@@ -9,24 +9,25 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from grader import sandbox, workspace
+from grader.build import colcon
 from grader.errors import UsageError
-from grader.exercise import find_exercise
-from grader.grade import Options, grade
+from grader.exercise.model import find_exercise
+from grader.grading.grade import Options, grade
 from grader.learner.rebuild import renewed
 from grader.report import terminal
 from grader.report.json import to_data
-from grader.submission import open_answers, open_submission
+from grader.sandbox import bubblewrap
+from grader.submission.package import open_answers, open_submission
 from grader.tests.case import make_submission
-from grader.tests.grading import EXERCISE, Graded
+from grader.tests.gradings import EXERCISE, Graded
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from grader.grade import ClockChoice
-    from grader.ros import Ros
-    from grader.submission import Submission
+    from grader.grading.grade import ClockChoice
+    from grader.ros.installation import Ros
+    from grader.submission.package import Submission
     from grader.tests.case import Case
 
 
@@ -45,7 +46,7 @@ class Builds:
         *,
         in_cell: bool,
         tell: Callable[[str], None],
-    ) -> workspace.Built:
+    ) -> colcon.Built:
         """Build the submission, with colcon or without."""
         with self._lock:
             kept = self._known.setdefault(_alike(submission), _Kept(threading.Lock()))
@@ -53,7 +54,7 @@ class Builds:
             again = renewed(submission, *kept.first) if kept.first else None
             if again is not None:
                 return again
-            built = workspace.build(submission, here, underlay, in_cell=in_cell, tell=tell)
+            built = colcon.build(submission, here, underlay, in_cell=in_cell, tell=tell)
             kept.first = kept.first or (submission, built)
             return built
 
@@ -61,7 +62,7 @@ class Builds:
 @dataclass
 class _Kept:
     lock: threading.Lock
-    first: tuple[Submission, workspace.Built] | None = None
+    first: tuple[Submission, colcon.Built] | None = None
 
 
 def _alike(submission: Submission) -> object:
@@ -78,7 +79,7 @@ def grade_here(case: Case, clock: ClockChoice, folder: Path, builds: Builds) -> 
     except UsageError as error:
         return Graded(2, "", str(error), None)
     told: list[str] = []
-    report = grade(exercise, submission, Options(sandbox.usable(), clock), told.append, build=builds).report
+    report = grade(exercise, submission, Options(bubblewrap.usable(), clock), told.append, build=builds).report
     page = Console(file=io.StringIO(), width=120)
     terminal.render(report, page)
     assert isinstance(page.file, io.StringIO)

@@ -13,7 +13,7 @@ import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from grader import ros
+from grader.ros import installation
 from grader.tests.domains import own_domain
 
 if TYPE_CHECKING:
@@ -35,13 +35,13 @@ class Ran:
 class InRos:
     """Starts processes that have ROS 2, each in a domain of its own."""
 
-    here: ros.Ros
+    here: installation.Ros
     underlay: Path | None
     home: Path
 
     def environment(self) -> dict[str, str]:
         """The environment of one process; whoever has another hears nothing of it."""
-        return ros.environment(self.here, home=self.home, underlay=self.underlay, domain=own_domain())
+        return installation.environment(self.here, home=self.home, underlay=self.underlay, domain=own_domain())
 
     def run(self, name: str, *arguments: object) -> Ran:
         """Call a function, named as in "simulator.scenarios:graph" from grader.tests, in a process of its own."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader import grade, underlay
-from grader.ros import Ros
+from grader.grading import grade
+from grader.ros import underlay
+from grader.ros.installation import Ros
 
 if TYPE_CHECKING:
     import pytest

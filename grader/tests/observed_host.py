@@ -67,7 +67,7 @@ class Host:
         (scratch / "other/student/submission.txt").write_text(SECRET)
         if interfaces is not None:
             shutil.copytree(interfaces, scratch / "cache/grader" / interfaces.name, symlinks=True)
-        source = (ROOT / "grader/watch.py").read_text("utf-8")
+        source = (ROOT / "grader/sandbox/usage.py").read_text("utf-8")
         (scratch / "shims/watch.py").write_text(source + "\n\ndef exceeded(*_):\n    return None\n")
         _program(scratch / "shims/bwrap", "exit 1")
         _program(scratch / "shims/prlimit", 'while [ "$1" != "--" ]; do shift; done; shift; exec "$@"')
@@ -128,7 +128,7 @@ class Host:
         for path in map(str, _ours()):
             command += ["--ro-bind", path, path]
         if not defended:
-            real["watch.py"] = str(ROOT / "grader/watch.py")
+            real["watch.py"] = str(ROOT / "grader/sandbox/usage.py")
             command += [word for name, at in real.items() for word in ("--ro-bind", str(scratch / "shims" / name), at)]
         if ordinary or not defended:
             command += ["--proc", "/proc"]

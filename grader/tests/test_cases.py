@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.tests.case import read_cases
-from grader.tests.grading import check_clocks_agree, check_report, each
+from grader.tests.gradings import check_clocks_agree, check_report, each
 
 if TYPE_CHECKING:
     from grader.tests.case import Case
-    from grader.tests.grading import Gradings
+    from grader.tests.gradings import Gradings
 
 CASES = read_cases()
 

@@ -9,13 +9,13 @@ from pathlib import Path, PurePosixPath
 
 import pytest
 
-from grader.archive import save
-from grader.checks.evidence import Evidence
-from grader.exercise import catalogue, find_exercise
+from grader.authoring.handout import hand_out
+from grader.evidence.archive import save
+from grader.evidence.evidence import Evidence
+from grader.exercise.model import catalogue, find_exercise
 from grader.gradebook.class_folder import make_class
-from grader.handout import hand_out
-from grader.package_search import IGNORE_MARKER, PACKAGE_FILES
-from grader.submission import open_submission
+from grader.submission.package import open_submission
+from grader.submission.search import IGNORE_MARKER, PACKAGE_FILES
 
 ROOT = Path(__file__).resolve().parents[2]
 COLCON = Path(sys.executable).with_name("colcon")

@@ -16,24 +16,26 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader import archive, ros, sandbox, underlay
 from grader.checks.judge import judge
-from grader.outcome import Status
+from grader.checks.outcome import Status
+from grader.evidence import archive
+from grader.ros import installation, underlay
+from grader.sandbox import bubblewrap
 from grader.tests.attack import Attack, make_attack, read_attacks
 from grader.tests.case import copy_solution
-from grader.tests.grading import AT_ONCE
+from grader.tests.gradings import AT_ONCE
 from grader.tests.observed_host import SECRET, USER, Host, Left
 from grader.trial.recorder import NAMESAKE, OWN_NAMESPACE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from grader.checks.evidence import Evidence
+    from grader.evidence.evidence import Evidence
 
 EXERCISE = "03-circle-publisher"
 ATTACKS = read_attacks()
 WAYS = ("defended", "as-user", "undefended")
-pytestmark = pytest.mark.skipif(not sandbox.usable(), reason="there is no sandbox here")
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,7 @@ class Runs:
 
 
 def run(attack: Attack, way: str, folder: Path) -> Run:
-    host = Host(folder, underlay.ensure(ros.find_ros()), as_user=way == "as-user")
+    host = Host(folder, underlay.ensure(installation.find_ros()), as_user=way == "as-user")
     make_attack(attack, host.work)
     if way == "undefended" and attack.raw:
         raw = attack.raw.replace("{python}", shlex.quote(sys.executable))
@@ -210,7 +212,7 @@ def is_double(node: str) -> bool:
 
 
 def test_the_next_submission_is_graded_as_if_the_attacker_had_not_been_there(tmp_path: Path) -> None:
-    host = Host(tmp_path / "host", underlay.ensure(ros.find_ros()))
+    host = Host(tmp_path / "host", underlay.ensure(installation.find_ros()))
     chosen = [attack for attack in ATTACKS if attack.name[:3] in ("301", "304", "406")]
     commands = []
     for attack in chosen:

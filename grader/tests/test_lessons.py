@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import pexpect
 import pytest
 
-from grader.checks.answers_file import read_answers
-from grader.checks.manifest import read_manifest
-from grader.ros import environment, find_ros
+from grader.ros.installation import environment, find_ros
+from grader.submission.answers import read_answers
+from grader.submission.package_xml import read_manifest
 from grader.tests.console import Block, blocks, differs, run
 from grader.tests.domains import own_domain
 

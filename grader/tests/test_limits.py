@@ -7,22 +7,22 @@ import sys
 
 import pytest
 
-from grader import process, sandbox
+from grader.sandbox import bubblewrap, process
 
 
 def test_limits_alone_need_no_bubblewrap() -> None:
-    done = subprocess.run(sandbox.limited(["true"], sandbox.Limits()), check=False)
+    done = subprocess.run(bubblewrap.limited(["true"], bubblewrap.Limits()), check=False)
     assert done.returncode == 0
 
 
 def test_limits_never_exceed_those_of_the_user() -> None:
     """Nobody but root may raise a hard limit, and prlimit would refuse to start anything."""
-    code = "from grader.sandbox import *; print(*limited([], Limits()))"
-    command = ["prlimit", f"--fsize={100 * sandbox.MIB}", "--nofile=512", "--", sys.executable, "-c", code]
+    code = "from grader.sandbox.bubblewrap import *; print(*limited([], Limits()))"
+    command = ["prlimit", f"--fsize={100 * bubblewrap.MIB}", "--nofile=512", "--", sys.executable, "-c", code]
     told = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    assert f"--fsize={100 * sandbox.MIB} " in told
+    assert f"--fsize={100 * bubblewrap.MIB} " in told
     assert "--nofile=512 " in told
-    assert f"--as={sandbox.Limits().memory} " in told
+    assert f"--as={bubblewrap.Limits().memory} " in told
 
 
 @pytest.mark.parametrize(
@@ -33,7 +33,7 @@ def test_limits_never_exceed_those_of_the_user() -> None:
     ],
 )
 def test_without_a_cell_the_grader_counts_what_all_processes_hold(code: str, out_of: str) -> None:
-    limits = sandbox.Limits(processes=20, total_memory=100 * sandbox.MIB)
-    command = sandbox.limited([sys.executable, "-c", code], limits)
+    limits = bubblewrap.Limits(processes=20, total_memory=100 * bubblewrap.MIB)
+    command = bubblewrap.limited([sys.executable, "-c", code], limits)
     done = process.run(command, timeout_s=15.0, most_stdout=1000, most_stderr=1000, watch=limits)
     assert (done.out_of, done.timed_out) == (out_of, False)

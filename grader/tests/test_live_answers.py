@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader import sandbox
-from grader.exercise import load_exercise
-from grader.grade import Options, grade
-from grader.submission import open_answers
+from grader.exercise.model import load_exercise
+from grader.grading.grade import Options, grade
+from grader.sandbox import bubblewrap
+from grader.submission.package import open_answers
 from grader.tests.case import copy_solution
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from grader.outcome import Report
+    from grader.checks.outcome import Report
 
 ROOT = Path(__file__).parent.parent.parent
 STEP = "02-discover-topics"
@@ -38,7 +38,7 @@ def judged(tmp_path: Path) -> Callable[[str, dict[str, str]], Report]:
             assert old in text
             text = text.replace(old, new)
         given.write_text(text)
-        return grade(load_exercise(file), open_answers(tmp_path / "given"), Options(in_cell=sandbox.usable())).report
+        return grade(load_exercise(file), open_answers(tmp_path / "given"), Options(in_cell=bubblewrap.usable())).report
 
     return judge
 

@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.checks.diagnoses import DIAGNOSES
-from grader.checks.evidence import Evidence
 from grader.checks.judge import judge_early
-from grader.exercise import find_exercise
-from grader.submission import open_submission
+from grader.evidence.evidence import Evidence
+from grader.exercise.model import find_exercise
+from grader.submission.package import open_submission
 from grader.tests.case import ROOT, Case, make_submission, read_cases
 from grader.tests.catalogue import MISTAKES, PAGE, SHOWN_BY_TESTS, TESTS, cases, page
-from grader.tests.grading import AT_ONCE, Graded, check_report, each, place_of
 from grader.tests.grading_here import Builds, grade_here
+from grader.tests.gradings import AT_ONCE, Graded, check_report, each, place_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from grader.grade import ClockChoice
+    from grader.grading.grade import ClockChoice
 
     Grade = Callable[[Case, ClockChoice], Graded]
 

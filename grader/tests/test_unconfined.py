@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader import sandbox
+from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 STEP = "03-circle-publisher"
-WITHOUT = "import grader.sandbox\ngrader.sandbox.bubblewrap = lambda: None\n"
+WITHOUT = "import grader.sandbox.bubblewrap\ngrader.sandbox.bubblewrap = lambda: None\n"
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def alike(report: dict[str, Any]) -> Sequence[object]:
 def test_the_verdict_is_that_of_a_sandbox_and_the_report_says_so(
     tmp_path: Path, without: dict[str, str], clock: str
 ) -> None:
-    if not sandbox.usable():
+    if not bubblewrap.usable():
         pytest.skip("there is no sandbox here to compare with")
     package = tmp_path / "my_robot_controller"
     copy_solution(STEP, package)

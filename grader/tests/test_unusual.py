@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.tests.case import CASES, read_cases
-from grader.tests.grading import check_clocks_agree, check_report, each
+from grader.tests.gradings import check_clocks_agree, check_report, each
 
 if TYPE_CHECKING:
     from grader.tests.case import Case
-    from grader.tests.grading import Gradings
+    from grader.tests.gradings import Gradings
 
 EVERY = 3
 UNUSUAL = tuple(

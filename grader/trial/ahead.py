@@ -14,7 +14,7 @@ from threading import Lock
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from grader.recording import Recording
+    from grader.trial.recording import Recording
     from grader.trial.trial import Trial
 
 

@@ -10,7 +10,7 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.code import module_file, read_code
+from grader.submission.code import module_file, read_code
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -16,11 +16,12 @@ import time
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-from grader import ros, sandbox
 from grader.interpreter import interpreter
-from grader.recording import Pose, Recording, frames_of, to_json
+from grader.ros import installation
+from grader.sandbox import bubblewrap
 from grader.trial.inputs import Inputs
 from grader.trial.node_process import LaunchError, NodeProcess
+from grader.trial.recording import Pose, Recording, frames_of, to_json
 from grader.trial.rest import DoubtError
 
 if TYPE_CHECKING:
@@ -57,18 +58,18 @@ def main() -> None:
 
 
 def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
-    here = ros.find_ros()
+    here = installation.find_ros()
     underlay = Path(order["underlay"]) if order["underlay"] else None
     start, inputs = Pose(*order["start"]), Inputs.from_json(order["inputs"])
     prefixes = [*here.prefixes, *([underlay] if underlay else [])]
     if order["alone"]:
-        from grader.trial.alone import AloneTrial
+        from grader.trial.without_node import AloneTrial
 
         recording = AloneTrial(start, prefixes, inputs).record(order["duration_s"], order["seed"])
         _say(answers, {"recording": to_json(recording)})
         return
     with NodeProcess(
-        lambda *fds: _command(here, underlay, order, *fds), sandbox.NODE_LIMITS, in_cell=order["in_cell"]
+        lambda *fds: _command(here, underlay, order, *fds), bubblewrap.NODE_LIMITS, in_cell=order["in_cell"]
     ) as node:
         # Imported here: while it takes its time, the launcher imports too.
         from grader.trial.simulated import SimulatedTrial
@@ -136,20 +137,20 @@ def _own_doing(stall: tuple[float, float], node: NodeProcess, now_s: float) -> b
 
 
 def _command(
-    here: ros.Ros, underlay: Path | None, order: dict[str, Any], info_fd: int, filter_fd: int | None
+    here: installation.Ros, underlay: Path | None, order: dict[str, Any], info_fd: int, filter_fd: int | None
 ) -> Sequence[str]:
-    env = ros.environment(here, home=Path(order["home"]), underlay=underlay, domain=order["domain"])
+    env = installation.environment(here, home=Path(order["home"]), underlay=underlay, domain=order["domain"])
     launch, env = interpreter(str(LAUNCHER), python=str(here.python), env=env, searches=True)
     if not order["in_cell"]:
         return [
             "env",
             "-i",
             *(f"{key}={value}" for key, value in env.items()),
-            *sandbox.limited(launch, sandbox.NODE_LIMITS),
+            *bubblewrap.limited(launch, bubblewrap.NODE_LIMITS),
         ]
-    view = sandbox.ros_view(here, ros.FASTDDS_PROFILE, LAUNCHER, *([underlay] if underlay else []))
-    return sandbox.cell(
-        launch, view, env=env, limits=sandbox.NODE_LIMITS, network=True, info_fd=info_fd, filter_fd=filter_fd
+    view = bubblewrap.ros_view(here, installation.FASTDDS_PROFILE, LAUNCHER, *([underlay] if underlay else []))
+    return bubblewrap.cell(
+        launch, view, env=env, limits=bubblewrap.NODE_LIMITS, network=True, info_fd=info_fd, filter_fd=filter_fd
     )
 
 

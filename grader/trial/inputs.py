@@ -6,13 +6,13 @@ import random
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from grader.simulator.turtle import FRAME_S, SIDE_M, Start, Turtle
 from grader.trial.start import MARGIN_M
+from grader.turtlesim.turtle import FRAME_S, SIDE_M, Start, Turtle
 
 if TYPE_CHECKING:
-    from grader.exercise import Scenario
-    from grader.recording import Pose
-    from grader.simulator.turtle import Pen, Rgb
+    from grader.exercise.model import Scenario
+    from grader.trial.recording import Pose
+    from grader.turtlesim.turtle import Pen, Rgb
 
 MOST_DRAWS = 200
 """After so many draws a way that leads into a wall is taken as it is."""

@@ -13,14 +13,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.recording import Output, ProcessEnd
-from grader.system_calls import call_filter
-from grader.watch import Guard
+from grader.sandbox.system_calls import call_filter
+from grader.sandbox.usage import Guard
+from grader.trial.recording import Output, ProcessEnd
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from grader.sandbox import Limits
+    from grader.sandbox.bubblewrap import Limits
 
 READY = b"\x00ready\n"
 """What the launcher writes on standard output before any of the student's code runs."""

@@ -12,7 +12,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
-from grader.recording import Command, Endpoint, Graph, LogLine, Message
+from grader.trial.recording import Command, Endpoint, Graph, LogLine, Message
 
 if TYPE_CHECKING:
     from collections.abc import Callable

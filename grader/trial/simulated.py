@@ -16,18 +16,18 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from rosgraph_msgs.msg import Clock
 
-from grader.simulator.turtle import FRAME_S
 from grader.trial.node_process import FULL
 from grader.trial.patience import HandshakePatience, TickPatience
 from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, only_sends, receives
 from grader.trial.stage import Stage
+from grader.turtlesim.turtle import FRAME_S
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from grader.recording import Pose
     from grader.trial.inputs import Inputs
     from grader.trial.node_process import NodeProcess
+    from grader.trial.recording import Pose
 
 QUIET_S = 0.02
 """How long discovery must be silent before it counts as over: less than half the time between two announcements

@@ -10,18 +10,18 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor, TimeoutException
 from rclpy.subscription import Subscription
 
-from grader.simulator.node import TurtlesimNode
-from grader.simulator.turtle import FRAME_S
 from grader.trial.recorder import Recorder
+from grader.turtlesim.node import TurtlesimNode
+from grader.turtlesim.turtle import FRAME_S
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from rclpy.node import Node
 
-    from grader.recording import Pose
     from grader.trial.inputs import Inputs
     from grader.trial.node_process import NodeProcess
+    from grader.trial.recording import Pose
 
 PUBLISHED = {"/turtle1/pose": "turtlesim/msg/Pose", "/turtle1/color_sensor": "turtlesim/msg/Color"}
 _MOST_AT_ONCE = 2000

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import random
 
-from grader.recording import Pose
-from grader.simulator.turtle import SIDE_M, Start
+from grader.trial.recording import Pose
+from grader.turtlesim.turtle import SIDE_M, Start
 
 MARGIN_M = 0.5
 """How far the ideal path keeps from every wall."""

@@ -18,18 +18,19 @@ from threading import Timer
 from typing import IO, TYPE_CHECKING, Any
 
 import grader
-from grader import ros, sandbox
-from grader.control_group import ControlGroup, control_group
 from grader.errors import MachineError
 from grader.interpreter import interpreter
-from grader.recording import from_json
+from grader.ros import installation
+from grader.sandbox import bubblewrap
+from grader.sandbox.control_group import ControlGroup, control_group
 from grader.trial.inputs import Inputs
+from grader.trial.recording import from_json
 
 if TYPE_CHECKING:
-    from grader.recording import ClockName, Pose, Recording
+    from grader.trial.recording import ClockName, Pose, Recording
 
 _FOLDER = Path(grader.__file__).parent
-MOST_MEMORY = 3 * 1024 * sandbox.MIB
+MOST_MEMORY = 3 * 1024 * bubblewrap.MIB
 """Address space of the conductor (bytes)."""
 
 
@@ -70,7 +71,7 @@ def compile_conductor() -> None:
 class Trial:
     """A context manager: entering starts simulator and launcher, so that both are ready when the build is done."""
 
-    def __init__(self, plan: Plan, here: ros.Ros, underlay: Path | None, *, in_cell: bool) -> None:
+    def __init__(self, plan: Plan, here: installation.Ros, underlay: Path | None, *, in_cell: bool) -> None:
         self._plan = plan
         self._here = here
         self._underlay = underlay
@@ -127,7 +128,7 @@ class Trial:
         """
         install = self._workspace / "install"
         prefix = install / package
-        env = ros.environment(
+        env = installation.environment(
             self._here, home=self._home, underlay=self._underlay, overlays=[prefix], domain=self._domain
         )
         argv = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []
@@ -160,7 +161,7 @@ class Trial:
     def _start(self) -> None:
         compile_conductor()
         if self._in_cell:
-            self._workspace, self._home, self._domain = sandbox.WORKSPACE, sandbox.HOME, None
+            self._workspace, self._home, self._domain = bubblewrap.WORKSPACE, bubblewrap.HOME, None
         else:
             folder = self._stack.enter_context(
                 tempfile.TemporaryDirectory(prefix="grader-", ignore_cleanup_errors=True)
@@ -169,16 +170,16 @@ class Trial:
             self._home.mkdir()
             self._domain = self._own_domain()
         self._errors: IO[bytes] = self._stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
-        env = ros.environment(self._here, home=self._home, underlay=self._underlay, domain=self._domain)
+        env = installation.environment(self._here, home=self._home, underlay=self._underlay, domain=self._domain)
         env["ROS_PYTHON_CHECK_FIELDS"] = "0"  # for beginners; ours would pay for it in each frame
         argv, env = interpreter("-m", "grader.trial.conductor", python=str(self._here.python), env=env, searches=True)
         more = [self._underlay] if self._underlay else []
         if self._in_cell:
-            view = sandbox.ros_view(self._here, _FOLDER, *more)
+            view = bubblewrap.ros_view(self._here, _FOLDER, *more)
             # What a node sends fills the memory of whoever listens; the conductor itself needs 1 GiB of addresses.
             argv = ["prlimit", f"--as={MOST_MEMORY}:", "--", *argv]
-            self._group = self._stack.enter_context(control_group(sandbox.NODE_LIMITS))
-            argv = self._group.joined(sandbox.room(argv, sandbox.View(view.read_only), env=env))
+            self._group = self._stack.enter_context(control_group(bubblewrap.NODE_LIMITS))
+            argv = self._group.joined(bubblewrap.room(argv, bubblewrap.View(view.read_only), env=env))
         self._process = subprocess.Popen(
             argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, env=env, start_new_session=True
         )

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 
-from grader.simulator.turtle import FRAME_S
 from grader.trial.crowd import Others, Stalls, is_crowded
 from grader.trial.stage import Stage
+from grader.turtlesim.turtle import FRAME_S
 
 DISCOVERY_S = 10.0
 GRAPH_EVERY = 31

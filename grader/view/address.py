@@ -14,7 +14,7 @@ import socket
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
-from grader import xdg
+from grader.common import xdg
 from grader.errors import UsageError
 
 if TYPE_CHECKING:

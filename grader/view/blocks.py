@@ -11,7 +11,7 @@ from rich.color import Color
 from rich.segment import Segment
 from rich.style import Style
 
-from grader.simulator.turtle import PIXELS_PER_M, SIDE_M, SIDE_PX
+from grader.turtlesim.turtle import PIXELS_PER_M, SIDE_M, SIDE_PX
 from grader.view.trail import paint
 
 if TYPE_CHECKING:

@@ -15,13 +15,13 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from grader.simulator.canvas import Canvas
+from grader.turtlesim.canvas import Canvas
 
 if TYPE_CHECKING:
     import socket
     from collections.abc import Mapping
 
-    from grader.simulator.turtle import Pen, Turtle
+    from grader.turtlesim.turtle import Pen, Turtle
 
 EVERY_FRAMES = 2
 """A view is told of every second frame (32 ms) while anything changes: 31 pictures a second."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from grader.ros2.graph import to_dot
-from grader.ros2.layout import render
+from grader.graph.graph import to_dot
+from grader.graph.layout import render
 
 if TYPE_CHECKING:
     from typing import Any
 
-    from grader.ros2.graph import Picture
+    from grader.graph.graph import Picture
 
 _INCH = 72.0
 """Graphviz gives sizes in inches and places in points, y upwards."""

@@ -6,7 +6,7 @@ import json
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from grader.turtles.keys import Cancel, Drive, Key, Turn, keys
+from grader.turtlesim.programs.keys import Cancel, Drive, Key, Turn, keys
 
 if TYPE_CHECKING:
     import socket

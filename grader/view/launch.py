@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from grader.interpreter import Start
-    from grader.simulator.node import TurtlesimNode
+    from grader.turtlesim.node import TurtlesimNode
 
 Kind = Literal["page", "terminal"]
 _SERVED_WITH = ("starlette", "uvicorn", "websockets")

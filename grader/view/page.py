@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import uvicorn
 
 from grader.errors import GraderError
-from grader.ros2.discovery import cli_node
-from grader.ros2.graph import Show, picture
+from grader.graph.discovery import cli_node
+from grader.graph.graph import Show, picture
 from grader.view import browser
 from grader.view.feed import LARGEST
 from grader.view.graph import laid_out

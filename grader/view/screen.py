@@ -10,10 +10,10 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from grader.ros2.graph import Show
+from grader.common.words import printable
+from grader.graph.graph import Show
 from grader.view.blocks import Blocks, Picture
 from grader.view.topics import rows
-from grader.words import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

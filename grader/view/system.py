@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 
-from grader.ros2 import values
-from grader.ros2.failure import Ros2Error
-from grader.ros2.graph import DEBUG_TOPICS
-from grader.ros2.heard import Heard, heard
-from grader.ros2.names import hidden
-from grader.turtles.keys import Cancel, Drive, Turn
+from grader.graph.endpoints import Heard, heard
+from grader.graph.graph import DEBUG_TOPICS
+from grader.graph.names import hidden
+from grader.ros import values
+from grader.ros.failure import Ros2Error
+from grader.turtlesim.programs.keys import Cancel, Drive, Turn
 from grader.view.rates import Arrivals
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from typing_extensions import Self
 
-    from grader.turtles.turtle_teleop_key import Teleop
+    from grader.turtlesim.programs.turtle_teleop_key import Teleop
 
 LOOKED_EVERY_S = 0.4
 MOST_HZ = 500.0
@@ -132,7 +132,7 @@ class Ears:
     async def _drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
         if self._driver is None or self._driver[0] != turtle:
             # Only here, since it needs turtlesim, and the graph may be that of other nodes.
-            from grader.turtles.turtle_teleop_key import Teleop
+            from grader.turtlesim.programs.turtle_teleop_key import Teleop
 
             self._leave()
             made = Teleop(DRIVER, turtle, tell=lambda _: None)

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.live import Live
 
-from grader.ros2.discovery import cli_node
-from grader.turtles.keys import Drive, Quit, keys
-from grader.turtles.terminal import keyboard
+from grader.graph.discovery import cli_node
+from grader.turtlesim.programs.keys import Drive, Quit, keys
+from grader.turtlesim.programs.raw_terminal import keyboard
 from grader.view.blocks import Picture
 from grader.view.feed import LARGEST
 from grader.view.hands import ARROWS, Hands

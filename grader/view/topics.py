@@ -5,10 +5,10 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from grader.ros2.graph import picture
+from grader.graph.graph import picture
 
 if TYPE_CHECKING:
-    from grader.ros2.graph import Show
+    from grader.graph.graph import Show
     from grader.view.state import State
     from grader.view.system import System
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from PIL import Image, ImageDraw
 
-from grader.simulator.turtle import PIXELS_PER_M, SIDE_M, SIDE_PX
+from grader.turtlesim.turtle import PIXELS_PER_M, SIDE_M, SIDE_PX
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from grader.tests.checks.made import BUILD, PACKAGE_XML, SETUP_PY, evidence, finding, submission
 
 if TYPE_CHECKING:
-    from grader.build import Build
-    from grader.outcome import Finding
+    from grader.build.build import Build
+    from grader.checks.outcome import Finding
 
 Files = dict[str, str | bytes | None]
 

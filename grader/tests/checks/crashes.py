@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grader.checks.crash import START, crash_of
-from grader.checks.why_crashed import crash_finding
-from grader.recording import Output
+from grader.checks.causes.crash import START, crash_of
+from grader.checks.causes.why_crashed import crash_finding
 from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
 from grader.tests.checks.shapes import crashed
+from grader.trial.recording import Output
 
 CRASHED, LOOK = "# crashed", "# look"
 """Comments in a source: the line of the exception; the line that the learner is to be led to, if it is another one."""

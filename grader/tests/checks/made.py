@@ -8,19 +8,30 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from grader.build import Build
-from grader.checks.evidence import Evidence
+from grader.build.build import Build
 from grader.checks.judge import judge
-from grader.exercise import Exercise, find_exercise
-from grader.recording import Command, Endpoint, Frames, Graph, Message, Output, Pose, ProcessEnd, Recording, frames_of
-from grader.simulator.turtle import FRAME_S, Pen, Rgb, Start, Turtle
-from grader.submission import Submission
+from grader.evidence.evidence import Evidence
+from grader.exercise.model import Exercise, find_exercise
+from grader.submission.package import Submission
+from grader.trial.recording import (
+    Command,
+    Endpoint,
+    Frames,
+    Graph,
+    Message,
+    Output,
+    Pose,
+    ProcessEnd,
+    Recording,
+    frames_of,
+)
+from grader.turtlesim.turtle import FRAME_S, Pen, Rgb, Start, Turtle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from grader.checks.kind import Kind, Value
-    from grader.outcome import Finding
+    from grader.checks.outcome import Finding
 
 TOPIC = "/turtle1/cmd_vel"
 TWIST = "geometry_msgs/msg/Twist"

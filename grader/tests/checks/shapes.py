@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from grader.recording import Command, Output, Pose, ProcessEnd
 from grader.tests.checks.made import DURATION_S, as_command, every, good, graph, recording
+from grader.trial.recording import Command, Output, Pose, ProcessEnd
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from grader.recording import Recording
     from grader.tests.checks.made import Timed
+    from grader.trial.recording import Recording
 
 TRACEBACK = """\
 Traceback (most recent call last):

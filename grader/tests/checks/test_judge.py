@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.checks.evidence import Evidence, Fault
 from grader.checks.judge import judge, near_edge, wants_trial
 from grader.checks.kinds import KINDS
-from grader.outcome import Finding, Outcome, Report, Status
-from grader.recording import Command, Output
+from grader.checks.outcome import Finding, Outcome, Report, Status
+from grader.evidence.evidence import Evidence, Fault
 from grader.tests.checks.made import BUILD, NODE_FILE, every, evidence, exercise, good, recording, submission
 from grader.tests.checks.shapes import SHAPES
+from grader.trial.recording import Command, Output
 
 NO_BUILD = replace(BUILD, exit_code=1, executables=(), entry_points={}, installed=())
 FULL_DISK = "The disk is full: make room."

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from grader.checks.judge import judge
-from grader.outcome import Outcome, Status
+from grader.checks.outcome import Outcome, Status
 from grader.tests.checks.made import BUILD, NODE_FILE, SETUP_PY, evidence, good, node, submission
 from grader.tests.checks.shapes import SHAPES
 

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.checks.code import module_file, read_code, read_module
-from grader.checks.constants import evaluate, number, single_names
-from grader.checks.crash import read_traceback
-from grader.checks.manifest import read_manifest
-from grader.checks.setup_py import read_setup_py
+from grader.checks.causes.crash import read_traceback
+from grader.submission.code import module_file, read_code, read_module
+from grader.submission.constants import evaluate, number, single_names
+from grader.submission.package_xml import read_manifest
+from grader.submission.setup_py import read_setup_py
 from grader.tests.checks.made import NODE_FILE, SETUP_PY
 from grader.tests.checks.shapes import TRACEBACK
 

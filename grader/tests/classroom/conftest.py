@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader import sandbox
+from grader.sandbox import bubblewrap
 from grader.tests.classroom.a_class import STEP, grade, make_class
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ class Run:
 
 @pytest.fixture(scope="session")
 def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Run:
-    if not sandbox.usable():
+    if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")
     folder = tmp_path_factory.mktemp("class")
     submitted = make_class(folder / "submitted")

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader import sandbox
 from grader.classroom import dask_engine
 from grader.classroom.dask_engine import DaskEngine
 from grader.errors import UsageError
+from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import STEP, environment, grade, judged
 from grader.tests.classroom.test_run import assert_set_aside, graded, make_four, order_of, waited
@@ -65,7 +65,7 @@ class Cluster:
 
 @pytest.fixture
 def cluster(tmp_path: Path) -> Iterator[Cluster]:
-    if not sandbox.usable():
+    if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")
     (tmp_path / "dask").mkdir()
     made = Cluster(tmp_path / "dask")

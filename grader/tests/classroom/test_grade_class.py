@@ -11,20 +11,22 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.checks.evidence import Evidence
 from grader.checks.judge import judge
 from grader.classroom.found import Found
 from grader.classroom.order import Order
-from grader.classroom.private_checks import sources_of
-from grader.submission import open_submission
+from grader.evidence.evidence import Evidence
+from grader.exercise.private_checks import sources_of
+from grader.submission.package import open_submission
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import ACTS, POINTS, STEP, grade, judged, make_class, reports, rows
-from grader.tests.test_grade import busy
+from grader.tests.grading.test_grade import busy
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.tests.classroom.conftest import Run
+
+WITHOUT_SANDBOX = "from grader.sandbox import bubblewrap\nbubblewrap.program = lambda: None\n"
 
 
 def test_every_submission_gets_its_points(undisturbed: Run) -> None:
@@ -125,7 +127,7 @@ def test_a_wrong_command_is_a_sentence(undisturbed: Run, tmp_path: Path, argumen
 
 
 def test_without_a_sandbox_nothing_is_run(undisturbed: Run, tmp_path: Path) -> None:
-    (tmp_path / "sitecustomize.py").write_text("import grader.sandbox\ngrader.sandbox.bubblewrap = lambda: None\n")
+    (tmp_path / "sitecustomize.py").write_text(WITHOUT_SANDBOX)
     command = (undisturbed.submitted, "--exercise", STEP, "--out", tmp_path / "new")
     done = grade(*command, PYTHONPATH=str(tmp_path))
     assert (done.returncode, "Code of others runs in a sandbox only" in done.stderr) == (3, True), done.stderr
@@ -133,7 +135,7 @@ def test_without_a_sandbox_nothing_is_run(undisturbed: Run, tmp_path: Path) -> N
 
 
 def test_who_trusts_the_submissions_has_them_graded_without(tmp_path: Path) -> None:
-    (tmp_path / "sitecustomize.py").write_text("import grader.sandbox\ngrader.sandbox.bubblewrap = lambda: None\n")
+    (tmp_path / "sitecustomize.py").write_text(WITHOUT_SANDBOX)
     copy_solution(STEP, tmp_path / "class" / "anna")
     command = (tmp_path / "class", "--exercise", STEP, "--out", tmp_path / "new", "--trust-submissions")
     done = grade(*command, PYTHONPATH=str(tmp_path))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import pytest
 
-from grader import sandbox
+from grader.checks.outcome import Status
 from grader.classroom.found import Found, find_submissions
 from grader.classroom.local import LocalEngine, default_jobs
 from grader.classroom.order import Order, sort_out, sources_for
@@ -21,8 +21,8 @@ from grader.classroom.run import run
 from grader.classroom.show import Lines
 from grader.classroom.task import Task
 from grader.classroom.worker import Worker
-from grader.outcome import Status
-from grader.ros import find_ros
+from grader.ros.installation import find_ros
+from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def assert_set_aside(done: dict[str, Result]) -> None:
     assert (done["anna"].report.points, done["ben"].report.points) == (100.0, 0.0)
 
 
-@pytest.mark.skipif(not sandbox.usable(), reason="there is no sandbox here")
+@pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 def test_what_kills_workers_is_set_aside_after_two_tries_and_the_others_go_on(tmp_path: Path) -> None:
     order = order_of(make_four(tmp_path / "class"))
     done = graded(order, LocalEngine(2), tmp_path / "grades")
@@ -122,7 +122,7 @@ def test_a_worker_of_another_version_does_not_grade(tmp_path: Path) -> None:
         worker.close()
 
 
-@pytest.mark.skipif(not sandbox.usable(), reason="there is no sandbox here")
+@pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 def test_with_the_grader_everything_ends(tmp_path: Path) -> None:
     from grader.tests.classroom.a_class import command, environment
 

@@ -16,10 +16,10 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 import yaml
 
-from grader import sandbox
 from grader.classroom.gradescope import TEMPLATES, build_archive
 from grader.classroom.unpack import unpack
 from grader.errors import UsageError
+from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import STEP, environment
 from grader.tests.lacking import give_up
@@ -49,7 +49,7 @@ def template(name: str) -> Any:  # noqa: ANN401 - YAML
 
 
 def test_the_script_grades_and_tells_github(tmp_path: Path) -> None:
-    if not sandbox.usable():
+    if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")
     copy_solution(STEP, tmp_path / "package")
     (tmp_path / "package" / "setup.py").unlink()  # not built, not run: quick
@@ -79,7 +79,7 @@ def test_the_script_called_wrongly_says_so(tmp_path: Path, arguments: tuple[str,
 
 
 def test_gradescopes_archive_grades_a_submission(tmp_path: Path) -> None:
-    if not sandbox.usable():
+    if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")
     root = tmp_path / "autograder"
     build_archive(STEP, tmp_path / "autograder.zip", None)

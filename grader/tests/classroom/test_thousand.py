@@ -10,7 +10,7 @@ import pytest
 from grader.tests.attack import make_attack, read_attacks
 from grader.tests.case import make_submission, read_cases
 from grader.tests.classroom.a_class import STEP, grade, judged
-from grader.tests.test_grade import busy
+from grader.tests.grading.test_grade import busy
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

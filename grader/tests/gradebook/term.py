@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from grader.exercise import course_folder
+from grader.exercise.model import course_folder
 from grader.gradebook.class_folder import make_class
 
 if TYPE_CHECKING:

@@ -8,16 +8,16 @@ import nbformat
 import pytest
 from nbclient import NotebookClient
 
-from grader import sandbox
-from grader.exercise import course_folder
+from grader.exercise.model import course_folder
 from grader.gradebook.confined import ConfinedKernelManager
+from grader.sandbox import bubblewrap
 from grader.tests.notebook.kernels import Notebook
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-pytestmark = pytest.mark.skipif(not sandbox.usable(), reason="there is no sandbox here")
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 
 
 @pytest.fixture

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader import sandbox
 from grader.classroom.grade_class import grade_found
 from grader.classroom.order import Order, sources_for
 from grader.classroom.results import Results
 from grader.classroom.task import set_aside
 from grader.gradebook import scores
 from grader.gradebook.folders import open_class
+from grader.sandbox import bubblewrap
 from grader.tests.gradebook.term import STEP, Term, edit, too_slow, unchanged, with_cell
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from grader.classroom.results import Result
     from grader.gradebook.scores import Synced
 
-pytestmark = pytest.mark.skipif(not sandbox.usable(), reason="autograde runs others' code in a sandbox only")
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="autograde runs others' code in a sandbox only")
 
 FULL_MARKS = """\
 class Verdict:

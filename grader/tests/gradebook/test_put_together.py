@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.exercise import course_folder, find_exercise
+from grader.exercise.model import course_folder, find_exercise
 from grader.gradebook.put_together import graded_folder
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader.exercise import catalogue, course_folder
+from grader.exercise.model import catalogue, course_folder
 from grader.notebook.kernel import install
 from grader.tests.gradebook.term import STEP, Term
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader import sandbox
+from grader.sandbox import bubblewrap
 from grader.tests.gradebook.term import (
     LATER,
     NODE,
@@ -28,7 +28,7 @@ from grader.tests.gradebook.term import (
 if TYPE_CHECKING:
     from pathlib import Path
 
-pytestmark = pytest.mark.skipif(not sandbox.usable(), reason="autograde runs others' code in a sandbox only")
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="autograde runs others' code in a sandbox only")
 
 FORGED = """\
 class Verdict:

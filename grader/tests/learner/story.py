@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pexpect
 
-from grader.exercise import catalogue, find_exercise
+from grader.exercise.model import catalogue, find_exercise
+from grader.exercise.own_numbers import OwnNumbers, from_toml
 from grader.learner.workspace import work_folder
-from grader.own_numbers import OwnNumbers, from_toml
 
 ROOT = Path(__file__).resolve().parents[3]
 GRADER = str(Path(sys.executable).with_name("grader"))

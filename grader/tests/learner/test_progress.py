@@ -10,11 +10,11 @@ import pytest
 from rich.console import Console
 
 from grader.errors import MachineError, UsageError
-from grader.exercise import catalogue
+from grader.exercise.model import catalogue
+from grader.exercise.own_numbers import draw_numbers, from_toml
 from grader.learner import progress, steps, workspace
 from grader.learner.compare import print_solution
 from grader.learner.progress import Progress, StepProgress
-from grader.own_numbers import draw_numbers, from_toml
 
 if TYPE_CHECKING:
     from pathlib import Path

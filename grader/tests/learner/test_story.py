@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.exercise import catalogue
+from grader.exercise.model import catalogue
 from grader.tests.learner.story import Learner, walk
 
 if TYPE_CHECKING:

@@ -15,23 +15,23 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
-from grader import sandbox
 from grader.errors import UsageError
-from grader.exercise import find_exercise
-from grader.grade import Options
+from grader.exercise.model import find_exercise
+from grader.grading.grade import Options
 from grader.learner.rebuild import Rebuild
 from grader.learner.screen import _Screen
 from grader.learner.watch import Events, Watched
-from grader.recording import Pose
-from grader.ros import find_ros
-from grader.submission import open_submission
+from grader.ros.installation import find_ros
+from grader.ros.underlay import ensure
+from grader.sandbox import bubblewrap
+from grader.submission.package import open_submission
+from grader.trial.recording import Pose
 from grader.trial.trial import Plan
-from grader.underlay import ensure
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from grader.submission import Submission
+    from grader.submission.package import Submission
 
 ROOT = Path(__file__).resolve().parents[3]
 STEP = "03-circle-publisher"
@@ -46,7 +46,7 @@ def package(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def watched(package: Path) -> Iterator[Watched]:
-    made = Watched(find_exercise(STEP), package, Options(in_cell=sandbox.usable()))
+    made = Watched(find_exercise(STEP), package, Options(in_cell=bubblewrap.usable()))
     yield made
     made.close()
 
@@ -86,7 +86,7 @@ def test_what_symlink_install_would_not_see_is_built_anew(package: Path) -> None
     told: list[str] = []
 
     def build() -> dict[str, str]:
-        built = rebuild(open_submission(package), here, ensure(here), in_cell=sandbox.usable(), tell=told.append)
+        built = rebuild(open_submission(package), here, ensure(here), in_cell=bubblewrap.usable(), tell=told.append)
         return built.build.entry_points
 
     build()

@@ -119,7 +119,7 @@ def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="python -m grader.tests.mutation",
         description="Change the code that makes diagnoses, one place at a time, and see whether some case notices.",
-        epilog="example: python -m grader.tests.mutation grader/checks/rate.py",
+        epilog="example: python -m grader.tests.mutation grader/checks/subjects/rate.py",
     )
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE", help="only these (all that make diagnoses)")
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count() or 1, help="at once (one a processor)")

@@ -14,9 +14,9 @@ import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.outcome import Report
+from grader.checks.outcome import Report
 from grader.report.json import to_data
-from grader.tests.grading import Graded, compare
+from grader.tests.gradings import Graded, compare
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Iterator
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from coverage import Coverage
 
-    from grader.checks.evidence import Evidence
+    from grader.evidence.evidence import Evidence
     from grader.tests.case import Case
     from grader.tests.mutation.mutants import Mutant
     from grader.tests.mutation.recordings import Recorded
@@ -58,7 +58,7 @@ class Job:
 
 def load(recorded: Iterable[Recorded]) -> list[Material]:
     """Read recordings; then forget the checks, so that whoever imports them next gets them fresh."""
-    from grader.archive import load as open_archive
+    from grader.evidence.archive import load as open_archive
 
     loaded = []
     for each in recorded:
@@ -108,8 +108,8 @@ def _graded(material: Material) -> Graded:
 
 def _anew(seen: Evidence) -> Evidence:
     """The same, made of the classes as they are imported now, with nothing kept from an earlier judging."""
-    from grader.checks.evidence import Evidence as Anew
-    from grader.checks.evidence import Fault
+    from grader.evidence.evidence import Evidence as Anew
+    from grader.evidence.evidence import Fault
 
     fault = None if seen.fault is None else Fault(seen.fault.stage, seen.fault.message)
     plain = {field.name: getattr(seen, field.name) for field in dataclasses.fields(seen)}

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader import xdg
+from grader.common import xdg
 from grader.tests.case import CASES, ROOT, make_submission, read_cases
-from grader.tests.grading import EXERCISE
+from grader.tests.gradings import EXERCISE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.exercise import course_folder
+from grader.exercise.model import course_folder
 from grader.notebook import guardian
 from grader.tests.notebook.kernels import Notebook, open_notebook
 

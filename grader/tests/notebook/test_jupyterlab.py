@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.exercise import course_folder
-from grader.markers import HASH, solved
+from grader.exercise.markers import HASH, solved
+from grader.exercise.model import course_folder
 from grader.notebook.kernel import DISPLAY_NAME, install
 from grader.tests.browser import browser_or_reason, launched
 from grader.tests.notebook.jupyterlab import run_all, serving, type_cell

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from grader.errors import UsageError
-from grader.exercise import find_exercise
+from grader.exercise.model import find_exercise
 from grader.notebook.place import Part, counts, part_path, parts_of
 
 CIRCLE = find_exercise("03")

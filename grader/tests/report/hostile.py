@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from grader.recording import Endpoint, Graph, LogLine, Output
 from grader.tests.checks.made import BUILD, NODE, NODE_FILE, TOPIC, TWIST, every, evidence, recording, submission
+from grader.trial.recording import Endpoint, Graph, LogLine, Output
 
 if TYPE_CHECKING:
-    from grader.checks.evidence import Evidence
+    from grader.evidence.evidence import Evidence
 
 SCRIPTS = (
     "<script>pwned(1)</script>",

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from grader.checks.evidence import Fault
 from grader.checks.judge import judge
-from grader.outcome import Report
+from grader.checks.outcome import Report
+from grader.evidence.evidence import Fault
 from grader.tests.checks.made import BUILD, evidence, exercise, good
 from grader.tests.checks.shapes import SHAPES
 
 if TYPE_CHECKING:
-    from grader.checks.evidence import Evidence
+    from grader.evidence.evidence import Evidence
 
 NOT_BUILT = replace(BUILD, exit_code=1, log="error: no such option", executables=(), entry_points={}, installed=())
 

@@ -15,7 +15,7 @@ import pytest
 from junitparser import Error, Failure, JUnitXml, Skipped, TestCase
 from markdown_it import MarkdownIt
 
-from grader.outcome import Finding, Outcome, Report, Status, Where
+from grader.checks.outcome import Finding, Outcome, Report, Status, Where
 from grader.report.csv import COLUMNS, to_csv
 from grader.report.github import MOST_ANNOTATIONS, MOST_SUMMARY, to_annotations, to_summary
 from grader.report.gradescope import to_gradescope

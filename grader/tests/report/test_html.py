@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.exercise import find_exercise
-from grader.outcome import Finding, Outcome, Status
-from grader.recording import Output
+from grader.checks.outcome import Finding, Outcome, Status
+from grader.exercise.model import find_exercise
 from grader.report.html import html_page, save_html
 from grader.report.verdict import verdict
 from grader.tests.case import ROOT
@@ -25,9 +24,10 @@ from grader.tests.checks.made import NODE, NODE_FILE, every, evidence, good, nod
 from grader.tests.checks.shapes import SHAPES
 from grader.tests.report.hostile import enormous, hostile
 from grader.tests.report.reports import EVIDENCE, report_of
+from grader.trial.recording import Output
 
 if TYPE_CHECKING:
-    from grader.checks.evidence import Evidence
+    from grader.evidence.evidence import Evidence
 
 LARGEST = 400_000
 GIVEN: dict[str, Evidence] = {

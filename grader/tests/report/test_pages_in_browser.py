@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import pytest
 
-from grader.outcome import Finding, Status
+from grader.checks.outcome import Finding, Status
 from grader.report.html import save_html
 from grader.report.html_class import save_class_page
 from grader.report.json import to_json
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from playwright.sync_api import Browser, Dialog, Page
 
-    from grader.checks.evidence import Evidence
+    from grader.evidence.evidence import Evidence
 
 GIVEN: dict[str, Evidence] = {
     **EVIDENCE,

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.checks.outcome import Finding, Outcome, Status, Where
 from grader.errors import UsageError
-from grader.outcome import Finding, Outcome, Status, Where
 from grader.report.json import from_json, to_json
 from grader.tests.report.reports import EVIDENCE, report
 

@@ -11,17 +11,17 @@ import pytest
 from PIL import Image
 
 from grader.errors import UsageError
-from grader.recording import Pose
 from grader.report.picture import BOTTOM, HEADING, LEFT, RIGHT, SIDE_PX, SMALL_PX, TOP, draw_picture, save_picture
 from grader.report.shapes import LOOKS, SEA, SIDE_M
 from grader.tests.checks.made import every, evidence, good, recording
 from grader.tests.checks.shapes import SHAPES
 from grader.tests.report.reports import EVIDENCE, report_of
+from grader.trial.recording import Pose
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from grader.checks.evidence import Evidence
+    from grader.evidence.evidence import Evidence
 
 EXPECTED, FITTED, PEN, TICK, WALL = (LOOKS[role].color for role in ("expected", "fitted", "way", "tick", "wall"))
 Pixels = npt.NDArray[np.int16]

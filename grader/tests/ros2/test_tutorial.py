@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import pexpect
 import pytest
 
-from grader import ros
+from grader.ros import installation
 from grader.tests.domains import own_domain
 from grader.tests.ros2.world import SOLUTION, golden
 from grader.tests.waiting import HANG_S, until_gone
@@ -214,6 +214,6 @@ def test_a_lost_terminal_leaves_no_process_behind(terminals: list[Terminal], dom
 
 
 def test_users_of_one_machine_have_domains_of_their_own() -> None:
-    ordinary = [ros.domain_of(uid) for uid in range(1000, 1100)]
+    ordinary = [installation.domain_of(uid) for uid in range(1000, 1100)]
     assert len(set(ordinary)) == len(ordinary)
-    assert all(1 <= domain <= 101 for domain in [*ordinary, ros.domain_of(0), ros.domain_of(65534)])
+    assert all(1 <= domain <= 101 for domain in [*ordinary, installation.domain_of(0), installation.domain_of(65534)])

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader import machine, ros, underlay
+from grader.ros import installation, underlay
+from grader.setup import machine
 from grader.tests.ros2.world import World
 from grader.tests.waiting import HANG_S
 
@@ -27,14 +28,16 @@ START = "5.544444561004639,5.544444561004639,0.0,0.0,0.0\n"
 @pytest.fixture
 def users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[World]]:
     """What `grader env` gives to each of two users, who choose nothing."""
-    here = ros.find_ros()
+    here = installation.find_ros()
     prefix = underlay.ensure(here)
     worlds = []
     for uid in UIDS:
         home = tmp_path / str(uid)
         home.mkdir()
         monkeypatch.setattr(os, "getuid", lambda uid=uid: uid)
-        worlds.append(World(home, ros.users_environment(here, prefix, {"HOME": str(home), "PATH": os.environ["PATH"]})))
+        worlds.append(
+            World(home, installation.users_environment(here, prefix, {"HOME": str(home), "PATH": os.environ["PATH"]}))
+        )
     monkeypatch.undo()
     yield worlds
     for world in worlds:
@@ -92,4 +95,4 @@ def test_two_real_users(everybodys_folder: Path) -> None:
         domain, topics = done.stdout.split()
         assert topics == "2"
         domains.add(domain)
-    assert domains == {str(ros.domain_of(uid)) for uid in UIDS}
+    assert domains == {str(installation.domain_of(uid)) for uid in UIDS}

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from grader import ros, underlay
+from grader.ros import installation, underlay
 from grader.tests.domains import own_domain
 from grader.tests.waiting import HANG_S
 
@@ -124,7 +124,7 @@ class World:
 
 def environment(home: Path, domain: int | None = None) -> dict[str, str]:
     """What a user has after `source <(grader env)`, in a domain of its own."""
-    here = ros.find_ros()
+    here = installation.find_ros()
     own = own_domain() if domain is None else domain
     user = {
         "HOME": str(home),
@@ -132,7 +132,7 @@ def environment(home: Path, domain: int | None = None) -> dict[str, str]:
         "LANG": "C.UTF-8",
         "TERM": "dumb",
     }
-    return ros.users_environment(here, underlay.ensure(here), {**user, "LOGNAME": "root"}, own)
+    return installation.users_environment(here, underlay.ensure(here), {**user, "LOGNAME": "root"}, own)
 
 
 def world(home: Path) -> Iterator[World]:

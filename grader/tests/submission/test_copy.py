@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.errors import MachineError, UsageError
-from grader.submission import Submission, open_submission, write_copy
+from grader.submission.package import Submission, open_submission, write_copy
 from grader.tests.submission.folder import ODD_NAMES, make
 
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader import tree
 from grader.errors import MachineError
-from grader.submission import MAX_REJECTED, open_submission
+from grader.submission import tree
+from grader.submission.package import MAX_REJECTED, open_submission
 from grader.tests.submission.folder import ODD_NAMES, PACKAGE, make
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.errors import UsageError
-from grader.submission import open_submission
+from grader.submission.package import open_submission
 from grader.tests.submission.folder import PACKAGE, make
 
 if TYPE_CHECKING:
@@ -138,6 +138,6 @@ def test_several_packages_are_listed(tmp_path: Path) -> None:
 
 
 def test_too_many_folders_end_the_search(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("grader.package_search.MAX_FOLDERS", 3)
+    monkeypatch.setattr("grader.submission.search.MAX_FOLDERS", 3)
     make(tmp_path, {f"{number}/a": "" for number in range(4)})
     assert "more than 3 folders" in refused(tmp_path)

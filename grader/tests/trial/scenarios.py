@@ -13,12 +13,12 @@ from rclpy.action import ActionClient
 from turtlesim.action import RotateAbsolute
 from turtlesim.srv import SetPen, Spawn
 
-from grader.recording import Pose
 from grader.tests.waiting import until
-from grader.trial.alone import AloneTrial
 from grader.trial.inputs import Inputs
+from grader.trial.recording import Pose
 from grader.trial.simulated import QUIET_S
 from grader.trial.wall import WallTrial
+from grader.trial.without_node import AloneTrial
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -14,7 +14,7 @@ from grader.trial.trial import OverwhelmedError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from grader.recording import Recording
+    from grader.trial.recording import Recording
     from grader.trial.trial import Trial
 
 SEEN = good()

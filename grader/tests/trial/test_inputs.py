@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import math
 
-from grader.exercise import Drive, Scenario
-from grader.recording import Pose
-from grader.simulator.turtle import SIDE_M, Start
+from grader.exercise.model import Drive, Scenario
 from grader.trial.inputs import Inputs, draw_inputs
+from grader.trial.recording import Pose
+from grader.turtlesim.turtle import SIDE_M, Start
 
 MIDDLE = Pose(*Start())
 AHEAD = Scenario(10.0, (Drive(1.0, (0.5, 3.0), (0.0, 0.0)), Drive(2.0, (0.0, 0.0), (-1.0, 1.0))))

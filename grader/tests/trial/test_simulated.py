@@ -3,7 +3,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
-from grader.ros import FASTDDS_PROFILE
+from grader.ros.installation import FASTDDS_PROFILE
 
 if TYPE_CHECKING:
     from grader.tests.in_ros import InRos

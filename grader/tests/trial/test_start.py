@@ -5,9 +5,9 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.recording import Pose
-from grader.simulator.turtle import SIDE_M
+from grader.trial.recording import Pose
 from grader.trial.start import MARGIN_M, start_pose
+from grader.turtlesim.turtle import SIDE_M
 
 
 def test_without_a_seed_the_turtle_starts_where_turtlesim_starts_it() -> None:

@@ -7,9 +7,9 @@ from pathlib import Path
 from threading import Timer
 from typing import TYPE_CHECKING
 
-from grader.recording import Pose
-from grader.ros import find_ros
+from grader.ros.installation import find_ros
 from grader.tests.waiting import until, until_gone
+from grader.trial.recording import Pose
 from grader.trial.trial import Plan, Trial, compile_conductor
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def test_the_end_of_a_trial_is_the_end_of_a_child_that_does_not_die_with_its_par
     # As bubblewrap's own child between its birth and its prctl(PR_SET_PDEATHSIG).
     said = tmp_path / "pid"
     starter = ["sh", "-c", f"sleep 300 & echo $! > {said}.new; mv {said}.new {said}; wait"]
-    monkeypatch.setattr("grader.sandbox.room", lambda *_, **__: starter)
+    monkeypatch.setattr("grader.sandbox.bubblewrap.room", lambda *_, **__: starter)
     trial = Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), None, in_cell=True)
     trial.start()
     until(said.exists)
@@ -42,7 +42,7 @@ def test_a_trial_that_is_ready_may_wait_for_its_turn_as_long_as_it_takes(monkeyp
 
     monkeypatch.setattr("grader.trial.trial.Timer", Limit)
     starter = ["sh", "-c", """read plan; echo '{"ready": true}'; read order"""]
-    monkeypatch.setattr("grader.sandbox.room", lambda *_, **__: starter)
+    monkeypatch.setattr("grader.sandbox.bubblewrap.room", lambda *_, **__: starter)
     with Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), None, in_cell=True) as trial:
         trial.await_ready()
         assert [limit.finished.is_set() for limit in limits] == [True]
@@ -54,7 +54,7 @@ def test_what_the_conductor_imports_is_compiled_when_it_starts(monkeypatch: pyte
         module.parent.mkdir(exist_ok=True)
         module.write_text("pass\n")
     monkeypatch.setattr("grader.trial.trial._FOLDER", tmp_path)
-    monkeypatch.setattr("grader.sandbox.room", lambda *_, **__: ["true"])
+    monkeypatch.setattr("grader.sandbox.bubblewrap.room", lambda *_, **__: ["true"])
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     compile_conductor.cache_clear()
     try:

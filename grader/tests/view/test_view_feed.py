@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import pytest
 from PIL import Image
 
-from grader.simulator.turtle import FRAME_S, SIDE_PX, Start
-from grader.simulator.world import World
+from grader.turtlesim.turtle import FRAME_S, SIDE_PX, Start
+from grader.turtlesim.world import World
 from grader.view.feed import LARGEST, MOST_LINES, Feed
 from grader.view.state import State
 from grader.view.trail import place

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.simulator.turtle import SIDE_M
+from grader.turtlesim.turtle import SIDE_M
 from grader.view.trail import FAR, MOST_POINTS, Stroke, Trail, place, told
 
 INK = (179, 184, 255, 3)

@@ -1,0 +1,1 @@
+"""For authors: solutions become exercises, and the course is validated."""

@@ -1,0 +1,70 @@
+"""Handout: the course as an instructor gives it to students, without solutions and without what tests them."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from grader.authoring.release import release
+from grader.errors import MachineError, UsageError
+from grader.exercise.model import catalogue, course_folder, find_exercise
+
+_FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", "COLCON_IGNORE")
+_NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc")
+_IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
+"""What an installed wheel has within the package, and a checkout beside it (see hatch_build.py)."""
+
+
+def hand_out(to: Path) -> None:
+    """Write the students' repository into the new folder `to`.
+
+    Raises:
+        UsageError: the folder holds something already, or this copy of the course has no solutions itself.
+        MachineError: it cannot be written.
+    """
+    root = course_folder().parent
+    if to.exists() and (not to.is_dir() or any(to.iterdir())):
+        message = f"{to} is not an empty folder: name a new one."
+        raise UsageError(message)
+    if not (root / "solutions").is_dir():
+        message = f"The course is handed out from its solutions/, and {root} has none."
+        raise UsageError(message)
+    package = Path(__file__).parent.parent
+    files = package / "repository" if (package / "repository").is_dir() else root
+    skipped = shutil.ignore_patterns(*_NOT_FOR_STUDENTS, *_IN_A_WHEEL)
+    try:
+        to.mkdir(parents=True, exist_ok=True)
+        for name in _FILES:
+            shutil.copyfile(files / name, to / name)
+        shutil.copytree(root / "course", to / "course", ignore=shutil.ignore_patterns(*_NOT_FOR_STUDENTS))
+        shutil.copytree(package, to / "grader", ignore=skipped)
+        for name in catalogue():
+            release(root / "solutions" / name, to / "exercises" / name)
+        (to / "README.md").write_text(_readme(), encoding="utf-8")
+    except OSError as error:
+        message = f"{error.filename or to} could not be written: {error.strerror}."
+        raise MachineError(message) from error
+
+
+def _readme() -> str:
+    steps = "\n".join(
+        f"{number}. [{find_exercise(name).title}](course/{name}/lesson.md)"
+        for number, name in enumerate(catalogue(), start=1)
+    )
+    return f"""# ROS 2 topics, graded by doing
+
+You need Linux on x86-64 and Python 3.10 or newer; nothing of ROS. Once:
+
+    make demo
+    source .venv/bin/activate
+
+Then, step by step:
+
+    grader start 01      # puts the step's starting point into ~/ros2_ws
+    grader watch         # a verdict after every save; h is for a hint
+    grader start next    # when the step has passed
+
+Or in notebooks: `make notebooks`, then `jupyter lab exercises`.
+
+{steps}
+"""

@@ -1,0 +1,189 @@
+"""Release: make exercises/ from solutions/, so that each has one source.
+
+    python -m grader.authoring.release [--check]
+
+Marked regions (grader/exercise/markers.py) are replaced by their starting point, notebooks are made as nbgrader makes
+them (grader/notebook/released.py), every other file is copied as it is. A file of which nothing is left is one that the
+student makes: it is not written. Before that, what a source notebook repeats of the solution is brought up to date.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import sys
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import GraderError, UsageError
+from grader.exercise.markers import MEANT, stripped, syntax_of
+from grader.exercise.model import FILE_NAME, course_folder, load_exercise
+from grader.notebook.released import released_notebook
+from grader.notebook.source import refreshed
+from grader.submission import tree
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+
+@dataclass(frozen=True)
+class ReleasedFile:
+    """A file as the student gets it."""
+
+    data: bytes
+    executable: bool
+
+
+def released(solution: Path) -> dict[str, ReleasedFile]:
+    """What the student starts from, by POSIX path; `solution` is one step's folder in solutions/.
+
+    Raises UsageError, with file and line, where markers are amiss or what is left does not parse.
+    """
+    files: dict[str, ReleasedFile] = {}
+    found = _read(solution)
+    for path in sorted(found.files, key=tree.sort_key):
+        data = release_file(found.files[path], path, f"{solution}/{path}")
+        if data is not None:
+            files[path] = ReleasedFile(data, path in found.executable)
+    return files
+
+
+def release(solution: Path, to: Path) -> None:
+    """Make the folder `to` hold what `released` says and nothing else."""
+    wanted = released(solution)
+    present = _read(to) if to.is_dir() else tree.Tree()
+    for path in present.files.keys() - wanted.keys():
+        (to / path).unlink()
+    for path, file in wanted.items():
+        if present.files.get(path) != file.data:
+            (to / path).parent.mkdir(parents=True, exist_ok=True)
+            (to / path).write_bytes(file.data)
+        (to / path).chmod(0o755 if file.executable else 0o644)
+
+
+def refresh_notebook(solution: Path) -> None:
+    """Bring the step's source notebook up to date with its files and checks, if there is one.
+
+    Raises:
+        UsageError: it is amiss, or the exercise is.
+    """
+    for path, data in _fresh_notebooks(solution).items():
+        (solution / path).write_bytes(data)
+
+
+def _fresh_notebooks(solution: Path) -> dict[str, bytes]:
+    """The source notebooks that are not as they should be, as they should be."""
+    exercise_file = solution.parent.parent / "course" / solution.name / FILE_NAME
+    if not solution.is_dir() or not exercise_file.is_file():
+        return {}
+    files = _read(solution).files
+    notebooks = [path for path in files if path.endswith(".ipynb") and "/" not in path]
+    exercise = load_exercise(exercise_file) if notebooks else None
+    fresh = {path: refreshed(files[path], exercise, files, f"{solution}/{path}") for path in notebooks if exercise}
+    return {path: data for path, data in fresh.items() if data != files[path]}
+
+
+def stale(solutions: Path, exercises: Path) -> tuple[str, ...]:
+    """How exercises/ differs from what `release` would make of solutions/; a sentence a file."""
+    steps = sorted({folder.name for root in (solutions, exercises) for folder in root.iterdir() if folder.is_dir()})
+    return tuple(line for step in steps for line in _stale_step(solutions / step, exercises / step))
+
+
+def _stale_step(solution: Path, exercise: Path) -> list[str]:
+    wanted = released(solution) if solution.is_dir() else {}
+    present = _read(exercise) if exercise.is_dir() else tree.Tree()
+    lines = [
+        f"{solution}/{path} is not what the solution's files and checks make." for path in _fresh_notebooks(solution)
+    ]
+    for path in sorted(wanted.keys() | present.files.keys()):
+        if path not in present.files:
+            lines.append(f"{exercise}/{path} is missing.")
+        elif path not in wanted:
+            lines.append(f"{exercise}/{path} comes from no solution: delete it.")
+        elif present.files[path] != wanted[path].data:
+            lines.append(f"{exercise}/{path} is not what its solution makes.")
+        elif (path in present.executable) != wanted[path].executable:
+            lines.append(f"{exercise}/{path} has another executable bit than its solution.")
+    return lines
+
+
+def release_file(data: bytes, path: str, name: str) -> bytes | None:
+    """One file as it is released, None for a file that the student makes. `name` stands in messages."""
+    if path.endswith(".ipynb"):
+        return released_notebook(data, name)
+    syntax = syntax_of(path)
+    if syntax is None:
+        if MEANT.search(data.decode("utf-8", "replace")):
+            message = (
+                f"{name}: a marker in a file of an unknown kind; grader/exercise/markers.py lists the known endings."
+            )
+            raise UsageError(message)
+        return data
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        message = f"{name}: is not UTF-8 ({error.reason} at byte {error.start})."
+        raise UsageError(message) from error
+    result = stripped(text, syntax, name)
+    if result == text:
+        return data
+    if not result.strip():
+        return None
+    _must_parse(result, path, name)
+    return result.encode()
+
+
+def _must_parse(text: str, path: str, name: str) -> None:
+    parsers: dict[str, Callable[[str], object]] = {".py": ast.parse, ".xml": ET.fromstring, ".toml": tomllib.loads}
+    parse = parsers.get(Path(path).suffix)
+    if parse is None:
+        return
+    try:
+        parse(text)
+    except (SyntaxError, ET.ParseError, tomllib.TOMLDecodeError) as error:
+        message = f"{name}: what is released does not parse: {error}. Let a STARTER block below the region mend it."
+        raise UsageError(message) from error
+
+
+def _read(folder: Path) -> tree.Tree:
+    with tree.open_folder(str(folder)) as descriptor:
+        found = tree.read_tree(descriptor)
+    for path, why in found.rejected.items():
+        message = f"{folder}/{tree.shown(path)} {why}."
+        raise UsageError(message)
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """The author's command; exit code 1 when --check finds something stale."""
+    parser = argparse.ArgumentParser(
+        prog="python -m grader.authoring.release", description="Make exercises/ from solutions/."
+    )
+    parser.add_argument("--check", action="store_true", help="change nothing; fail when exercises/ is stale")
+    parser.add_argument("--root", type=Path, help="the folder that holds both; the course's own when left out")
+    options = parser.parse_args(arguments)
+    root = options.root or course_folder().parent
+    solutions, exercises = root / "solutions", root / "exercises"
+    try:
+        if options.check:
+            lines = stale(solutions, exercises)
+            print(*lines, "Run: python -m grader.authoring.release" if lines else "exercises/ is up to date.", sep="\n")
+            return 1 if lines else 0
+        for step in sorted(folder for folder in solutions.iterdir() if folder.is_dir()):
+            refresh_notebook(step)
+            release(step, exercises / step.name)
+    except GraderError as error:
+        print(error, file=sys.stderr)
+        return error.exit_code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,147 @@
+"""Validate the course, for its authors: every exercise, its solution, its starting point, its lesson."""
+
+from __future__ import annotations
+
+import os
+import re
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING
+
+from grader.authoring.release import stale
+from grader.checks.outcome import Status
+from grader.common.words import a_list
+from grader.errors import UsageError
+from grader.exercise.model import catalogue, course_folder, load_exercise
+from grader.grading.grade import Options, grade
+from grader.sandbox import bubblewrap
+from grader.submission.package import open_answers, open_submission
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from concurrent.futures import Executor, Future
+    from pathlib import Path
+
+    from grader.checks.outcome import Outcome, Report
+    from grader.exercise.model import Exercise
+
+LESSON_WORDS = (1200, 2000)
+_LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+_CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
+
+
+def validate(
+    names: list[str], tell: Callable[[str], None] = lambda _: None, *, course: Path | None = None
+) -> list[str]:
+    """The problems of these exercises (all of the course when empty), a sentence each, with what to do.
+
+    `tell` hears what is being done: grading takes its time. `course` is the folder course/, ours when left out.
+
+    Raises:
+        UsageError: there is no exercise of such a name.
+    """
+    course = course or course_folder()
+    files = catalogue(course)
+    unknown = [name for name in names if name not in files]
+    if unknown:
+        message = f"There is no exercise {a_list(unknown, 'or')}. The exercises are {a_list(list(files))}."
+        raise UsageError(message)
+    problems = [
+        f"{line} Run: grader release" for line in stale(course.parent / "solutions", course.parent / "exercises")
+    ]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        looked = [_Validation(name, files[name], course.parent, pool, tell) for name in names or files]
+        for each in looked:
+            problems += each.problems()
+    return problems
+
+
+class _Validation:
+    """What is wrong with one exercise; its gradings begin at once, beside those of others."""
+
+    def __init__(self, name: str, file: Path, root: Path, pool: Executor, tell: Callable[[str], None]) -> None:
+        self._name = name
+        self._file = file
+        self._root = root
+        self._tell = tell
+        try:
+            self._exercise = load_exercise(file)
+        except UsageError as error:
+            self._unreadable = str(error)
+        else:
+            self._unreadable = ""
+            self._solution = pool.submit(self._graded, "solution", "solutions")
+            self._starting_point = pool.submit(self._graded, "starting point", "exercises")
+
+    def problems(self) -> Iterator[str]:
+        """A sentence each."""
+        if self._unreadable:
+            yield self._unreadable
+            return
+        if not self._exercise.hints:
+            yield f"{self._file}: there is no [[hint]]; a learner who is stuck needs some."
+        yield from _lesson(self._file.with_name("lesson.md"))
+        yield from _judged(self._exercise, self._solution, _solution)
+        yield from _judged(self._exercise, self._starting_point, _starting_point)
+
+    def _graded(self, what: str, side: str) -> Report:
+        self._tell(f"{self._name}: grading the {what}")
+        folder = self._root / side / self._name
+        opened = open_submission(folder) if self._exercise.package else open_answers(folder)
+        return grade(self._exercise, opened, Options(in_cell=bubblewrap.usable())).report
+
+
+def _judged(
+    exercise: Exercise, grading: Future[Report], problems: Callable[[Exercise, Report], Iterator[str]]
+) -> Iterator[str]:
+    try:
+        report = grading.result()
+    except UsageError as error:  # (there is no such folder, or no package in it)
+        yield str(error)
+    else:
+        yield from problems(exercise, report)
+
+
+def _solution(exercise: Exercise, report: Report) -> Iterator[str]:
+    for outcome in report.outcomes:
+        if outcome.status is not Status.PASSED and not outcome.advice:
+            yield f"solutions/{exercise.id} does not pass: {_told(outcome)}"
+
+
+def _starting_point(exercise: Exercise, report: Report) -> Iterator[str]:
+    failed = {outcome.id: outcome for outcome in report.with_status(Status.FAILED)}
+    for outcome in report.with_status(Status.ERROR):
+        yield f"exercises/{exercise.id} could not be judged: {_told(outcome)}"
+    if not exercise.unsolved:
+        yield (
+            f"course/{exercise.id}/exercise.toml does not say which checks the starting point fails. Now these do: "
+            f"starting_point_fails = {list(failed)}"
+        )
+        return
+    for name, outcome in failed.items():
+        if name not in exercise.unsolved:
+            yield f"exercises/{exercise.id} fails for a reason that was not intended: {_told(outcome)}"
+    for name in exercise.unsolved:
+        if name not in failed:
+            yield f"exercises/{exercise.id} was to fail the check {name!r}, and does not."
+
+
+def _lesson(file: Path) -> Iterator[str]:
+    if not file.is_file():
+        yield f"{file} is missing: every step has a lesson."
+        return
+    text = file.read_text(encoding="utf-8")
+    words = len(_CODE.sub("", text).split())
+    low, high = LESSON_WORDS
+    if not low <= words <= high:
+        yield f"{file} has {words} words (code left out); a lesson has {low} to {high}."
+    for target in _LINK.findall(_CODE.sub("", text)):
+        if (
+            not target.startswith(("http://", "https://", "#"))
+            and not (file.parent / target.partition("#")[0]).exists()
+        ):
+            yield f"{file} links to {target}, which is not there."
+
+
+def _told(outcome: Outcome) -> str:
+    finding = outcome.finding
+    return f"{outcome.title}: {outcome.status.value}. {finding.seen} {finding.cause}".strip()

@@ -1,0 +1,180 @@
+"""Workspace: build a submission with colcon, in a cell, and read what came out without running any of it.
+
+The source goes into the cell as a tar stream and the install tree comes out as one: nothing of the build touches
+this machine's disk, and the same stream goes on into the cell of the trial.
+"""
+
+from __future__ import annotations
+
+import configparser
+import io
+import shutil
+import tarfile
+import tempfile
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+from grader.ros import installation
+from grader.sandbox import bubblewrap, process
+from grader.build.build import Build
+from grader.sandbox.control_group import control_group
+from grader.errors import MachineError
+from grader.interpreter import interpreter
+from grader.sandbox.system_calls import call_filter
+from grader.sandbox.tar_stream import Member, read_tar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from grader.submission.package import Submission
+
+MIB = 1024 * 1024
+LIMITS = bubblewrap.Limits(processes=200, cpu_s=60)
+TIMEOUT_S = 60.0
+MOST_LOG = 256 * 1024
+MOST_TREE = 64 * MIB
+MOST_FILES = 20_000
+
+# Standard output is the install tree's alone: colcon and all that it runs write on standard error. --base-paths, since
+# colcon would look for packages everywhere below; sequential, since there is one package and workers cost time.
+_SCRIPT = r"""
+echo cell-is-ready >&2
+cd "$WS" && mkdir -p src && tar -x -f - -C src || exit 90
+"$@" build --base-paths src \
+    --executor sequential --event-handlers console_direct+ console_stderr- >&2 </dev/null
+code=$?
+[ -d install ] && tar -c --format=gnu -f - -C install .
+exit $code
+"""
+_COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
+_READY = b"cell-is-ready\n"
+_LIMITS_HIT = {
+    "disk": (b"No space left on device", b"File too large", b"Disk quota exceeded"),
+    "processes": (b"Resource temporarily unavailable", b"can't start new thread"),
+    "memory": (b"MemoryError", b"Cannot allocate memory"),
+}
+
+
+@dataclass(frozen=True)
+class Built:
+    """A Build, and the install tree that it describes as a tar stream."""
+
+    build: Build
+    tree: bytes
+
+
+def build(
+    submission: Submission, here: installation.Ros, underlay: Path | None, *, in_cell: bool, tell: Callable[[str], None]
+) -> Built:
+    """Build the submission's package; `underlay` is the prefix of the turtlesim interfaces; `tell` hears of it.
+
+    Raises:
+        MachineError: the sandbox or colcon itself does not work here.
+    """
+    tell("Building with colcon")
+    with _workspace(in_cell=in_cell) as (workspace, home):
+        env = installation.environment(here, home=home, underlay=underlay)
+        env["WS"] = str(workspace)
+        colcon = interpreter("-c", _COLCON, python=str(here.python), env=env, searches=True)
+        argv = ["sh", "-c", _SCRIPT, "sh", *colcon.argv]
+        if in_cell:
+            view = bubblewrap.ros_view(here, *([underlay] if underlay else []))
+            with call_filter() as filter_fd, control_group(LIMITS) as group:
+                command = bubblewrap.lone_cell(argv, view, env=env, limits=LIMITS, filter_fd=filter_fd)
+                done = _run(group.joined(command), env, submission, () if filter_fd is None else (filter_fd,))
+                if group.out_of_memory():
+                    done = replace(done, out_of="memory")
+        else:
+            done = _run(bubblewrap.limited(argv, LIMITS), env, submission, ())
+    return _read(done)
+
+
+def _run(
+    command: list[str], env: dict[str, str], submission: Submission, pass_fds: tuple[int, ...]
+) -> process.Finished:
+    return process.run(
+        command,
+        stdin=_pack(submission),
+        env=env,
+        timeout_s=TIMEOUT_S,
+        most_stdout=MOST_TREE,
+        most_stderr=MOST_LOG,
+        pass_fds=pass_fds,
+        watch=LIMITS,
+    )
+
+
+@contextmanager
+def _workspace(*, in_cell: bool) -> Iterator[tuple[Path, Path]]:
+    if in_cell:
+        yield bubblewrap.WORKSPACE, bubblewrap.HOME
+        return
+    folder = Path(tempfile.mkdtemp(prefix="grader-"))
+    try:
+        (folder / "home").mkdir()
+        yield folder, folder / "home"
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _pack(submission: Submission) -> bytes:
+    """The submission as a tar stream, below a folder of its own name, the same bytes for the same files."""
+    stream = io.BytesIO()
+    with tarfile.open(fileobj=stream, mode="w|", format=tarfile.PAX_FORMAT) as tar:
+        for path, content in submission.files.items():
+            member = tarfile.TarInfo(f"{submission.package_dir.name}/{path}")
+            member.size = len(content)
+            member.mode = 0o755 if path in submission.executable else 0o644
+            tar.addfile(member, io.BytesIO(content))
+    return stream.getvalue()
+
+
+def _read(done: process.Finished) -> Built:
+    if not done.stderr.startswith(_READY):
+        said = done.stderr.decode("utf-8", "replace").strip()
+        message = f"The build could not be started: {said or 'no message'}. `grader doctor` tells what is missing."
+        raise MachineError(message)
+    lines = done.stderr[len(_READY) :].decode("utf-8", "replace").splitlines(keepends=True)
+    # The wheels' prefix is no colcon install tree; that says nothing about the submission.
+    log = "".join(line for line in lines if "colcon_ros.prefix_path.ament" not in line)
+    if "No module named 'colcon_core'" in log:
+        raise MachineError("colcon is not installed in this Python: `make demo` in the course's folder installs it.")  # noqa: EM101
+    out_of = next((name for name, signs in _LIMITS_HIT.items() if any(sign in done.stderr for sign in signs)), None)
+    cut = done.timed_out or done.too_much or done.out_of is not None
+    files = {} if cut else read_tar(done.stdout, MOST_FILES)
+    if len(files) == MOST_FILES:
+        cut, files, out_of = True, {}, "files"
+    package = next((path.parts[0] for path in files if len(path.parts) > 1), None)
+    inside = {path.relative_to(package): member for path, member in files.items() if path.parts[0] == package}
+    return Built(
+        Build(
+            exit_code=done.exit_code,
+            log=log,
+            package=package,
+            timed_out=done.timed_out,
+            out_of=done.out_of or ("disk" if done.too_much else out_of),
+            installed=tuple(sorted(map(str, inside))),
+            executables=tuple(sorted(p.name for p in inside if p.parts[:-1] == ("lib", package))),
+            entry_points=_entry_points(inside, done.stdout),
+            seconds=done.seconds,
+        ),
+        b"" if cut else done.stdout,
+    )
+
+
+def _entry_points(files: dict[PurePosixPath, Member], tree: bytes) -> dict[str, str]:
+    """The console_scripts as they were installed."""
+    for path, member in files.items():
+        if path.name != "entry_points.txt" or not path.parent.name.endswith(("egg-info", "dist-info")):
+            continue
+        text = tree[member.start : member.start + member.size].decode("utf-8", "replace")
+        parser = configparser.ConfigParser(delimiters=("=",), interpolation=None, strict=False)
+        parser.optionxform = str  # type: ignore[assignment,method-assign]  # names of executables keep their case
+        try:
+            parser.read_string(text)
+        except configparser.Error:
+            return {}
+        return dict(parser["console_scripts"]) if parser.has_section("console_scripts") else {}
+    return {}

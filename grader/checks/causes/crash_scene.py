@@ -1,0 +1,113 @@
+"""Scene: the student's source around the line in which an exception happened."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from grader.checks.outcome import Where
+from grader.submission.constants import dotted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.checks.causes.crash import Crash
+    from grader.evidence.evidence import Evidence
+    from grader.submission.code import Module
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+@dataclass(frozen=True)
+class Scene:
+    """The exception, and what the module around it says; without a place in the source everything is empty."""
+
+    evidence: Evidence
+    crash: Crash
+
+    @cached_property
+    def module(self) -> Module | None:
+        """The module of the line."""
+        where = self.crash.where
+        return next((each for each in self.evidence.code.modules if where and each.file == where.file), None)
+
+    @property
+    def line(self) -> int:
+        """The line, 0 where it is not known."""
+        where = self.crash.where
+        return (where.line if where is not None else None) or 0
+
+    @cached_property
+    def nodes(self) -> tuple[ast.AST, ...]:
+        """Every node of the module's tree."""
+        return self.module.nodes if self.module is not None else ()
+
+    @cached_property
+    def on_line(self) -> tuple[ast.AST, ...]:
+        """What stands on the line."""
+        return tuple(
+            node for node in self.nodes if getattr(node, "lineno", 0) <= self.line <= _end(node) and _small(node)
+        )
+
+    def calls_on_line(self, name: str) -> list[ast.Call]:
+        """The calls on the line of a function or method with this last name."""
+        calls = [node for node in self.on_line if isinstance(node, ast.Call)]
+        return [call for call in calls if _last(call.func) == name]
+
+    @cached_property
+    def classes(self) -> tuple[ast.ClassDef, ...]:
+        """Every class of the module."""
+        return tuple(node for node in self.nodes if isinstance(node, ast.ClassDef))
+
+    def class_named(self, name: str) -> ast.ClassDef | None:
+        """The module's class of this name."""
+        return next((each for each in self.classes if each.name == name), None)
+
+    @cached_property
+    def own_class(self) -> ast.ClassDef | None:
+        """The class that the line is in."""
+        inside = [each for each in self.classes if each.lineno <= self.line <= _end(each)]
+        return inside[-1] if inside else None
+
+    def top_functions(self) -> list[Function]:
+        """The functions of the module's top level."""
+        return [node for node in (self.module.body if self.module is not None else []) if isinstance(node, Function)]
+
+    def functions(self, name: str) -> list[Function]:
+        """Every function or method of this name."""
+        return [node for node in self.nodes if isinstance(node, Function) and node.name == name]
+
+    def at(self, node: ast.AST | int | None) -> Where | None:
+        """A place in this module; that of the exception for None."""
+        if node is None or self.module is None:
+            return self.crash.where
+        return Where(self.module.file, node if isinstance(node, int) else getattr(node, "lineno", None))
+
+
+def methods(of: ast.ClassDef) -> list[Function]:
+    """The methods of a class."""
+    return [node for node in of.body if isinstance(node, Function)]
+
+
+def attributes_set(of: ast.ClassDef) -> Iterator[tuple[str, int]]:
+    """Every attribute that is set in self, with the line."""
+    for node in ast.walk(of):
+        if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store) and dotted(node) == f"self.{node.attr}":
+            yield node.attr, node.lineno
+
+
+def _end(node: ast.AST) -> int:
+    return getattr(node, "end_lineno", None) or 0
+
+
+def _small(node: ast.AST) -> bool:
+    """Whether the node is part of one statement: whole functions and blocks are around a line, not on it."""
+    return not isinstance(
+        node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef | ast.If | ast.For | ast.While | ast.Try | ast.With
+    )
+
+
+def _last(function: ast.expr) -> str:
+    return (dotted(function) or "").rpartition(".")[2] or getattr(function, "attr", "")

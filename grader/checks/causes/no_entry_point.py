@@ -1,0 +1,116 @@
+"""Why there is no executable of the exercise's name: what setup.py has instead."""
+
+from __future__ import annotations
+
+import io
+import tokenize
+from typing import TYPE_CHECKING
+
+from grader.checks.causes.cause import Cause
+from grader.checks.outcome import Finding, Where, failed
+from grader.checks.subjects.building import bad_entry_point
+from grader.common.words import nearest, shorten
+from grader.submission.code import module_file, read_code
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.submission.setup_py import EntryPoint, SetupPy
+
+FORM = "An entry point reads NAME = PACKAGE.MODULE:FUNCTION, in the list console_scripts of setup.py"
+
+
+def line(evidence: Evidence) -> Where:
+    """The line of setup.py with the exercise's entry point, else with the call of setup()."""
+    setup = evidence.setup_py
+    point = setup.entry_point(evidence.exercise.executable) if setup is not None else None
+    return Where("setup.py", point.line if point is not None else setup.setup_line if setup is not None else None)
+
+
+def no_entry_point(evidence: Evidence) -> Finding:
+    """A failed finding about an executable that was not installed as an entry point."""
+    executable, setup = evidence.exercise.executable, evidence.setup_py
+    expected = f"{FORM}; NAME is {executable}."
+    points = (setup.entry_points if setup is not None else None) or ()
+    joined = next((point for point in points if point.text.count("=") > 1), None)
+    if joined is not None:
+        return bad_entry_point(joined)
+    seen = f"The package has no executable {executable}."
+    cause = _unread(evidence, setup) or _script(evidence)
+    if cause is None:
+        others = sorted(set(evidence.built.entry_points) | set(evidence.built.executables))
+        guess = nearest(executable, [other for other in others if other != executable])
+        if guess is not None:
+            where = next((Where("setup.py", point.line) for point in points if point.name == guess), line(evidence))
+            text = "Compare the two letter by letter: the name is what stands before the = sign."
+            seen = f"There is no executable {executable}; there is {shorten(guess)}."
+            return failed("entry-point-name", seen, expected, text, where=where)
+        cause = _missing(evidence, points)
+    return failed(cause.diagnosis, seen, expected, cause.text, where=cause.where or line(evidence))
+
+
+def _script(evidence: Evidence) -> Cause | None:
+    """The executable is there as a script of its own, which is no entry point."""
+    executable = evidence.exercise.executable
+    if executable not in evidence.built.executables:
+        return None
+    files = evidence.submission.files
+    names = (executable, f"{executable}.py")
+    found = [path for name in names for path in sorted(files) if path.rpartition("/")[2] == name]
+    script = next(iter(found), None)
+    if script is None:
+        return None
+    first = files[script].partition(b"\n")[0].decode("utf-8", "replace")
+    if not (first.startswith("#!") and "python" in first and not first.endswith("\r")):
+        text = (
+            f'{script} is installed as a script, and its first line, "{shorten(first, 40)}", does not lead to Python.'
+        )
+        return Cause("script-shebang", text, Where(script, 1))
+    text = f"{script} is installed as a script; an entry point leads to a function in a module."
+    return Cause("script-for-entry-point", text, Where(script, 1))
+
+
+def _unread(evidence: Evidence, setup: SetupPy | None) -> Cause | None:
+    """A line for the executable is there, where setuptools does not look: in a comment, another group, another list."""
+    executable = evidence.exercise.executable
+    if setup is None:
+        return None
+    comment = _comment(evidence.submission.files.get("setup.py", b""), executable)
+    if comment is not None:
+        text = "The line for it is a comment: what comes after # is not read."
+        return Cause("entry-point-commented", text, Where("setup.py", comment))
+    stray = next((point for point in setup.stray if point.name == executable), None)
+    if setup.groups and "console_scripts" not in setup.groups:
+        text = f'entry_points has the group "{shorten(setup.groups[0])}"; executables come from console_scripts.'
+        return Cause("entry-point-group", text, None if stray is None else Where("setup.py", stray.line))
+    if stray is not None:
+        text = "The text for it stands in another list: console_scripts ends before it."
+        return Cause("entry-point-elsewhere", text, Where("setup.py", stray.line))
+    return None
+
+
+def _comment(source: bytes, executable: str) -> int | None:
+    """The line of a comment that names the executable before an = sign."""
+    try:
+        for token in tokenize.tokenize(io.BytesIO(source).readline):
+            words = token.string.lstrip("# \"'").partition("=")
+            if token.type == tokenize.COMMENT and words[1] and words[0].strip() == executable:
+                return token.start[0]
+    except (tokenize.TokenError, SyntaxError):
+        pass
+    return None
+
+
+def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
+    file = evidence.node_file or _looks_like_a_node(evidence, [point.target for point in points])
+    if file is not None:
+        text = f"{shorten(file)} is there, but setup.py does not name it: a file alone is no executable."
+        return Cause("entry-point-missing", text)
+    return Cause("entry-point-missing", "setup.py names no such executable, and no file looks like it.")
+
+
+def _looks_like_a_node(evidence: Evidence, targets: list[str | None]) -> str | None:
+    """A file that makes a publisher, and that no entry point leads to."""
+    taken = [module_file((target or "").partition(":")[0], evidence.submission.files) for target in targets]
+    everything = read_code(evidence.submission.files, first=None)
+    files = [call.module.file for call in everything.calls("create_publisher")]
+    return next((file for file in files if file not in taken), None)

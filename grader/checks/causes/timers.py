@@ -1,0 +1,39 @@
+"""What is wrong with a timer that never calls its method, as far as the source tells."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.submission.constants import number
+
+if TYPE_CHECKING:
+    from grader.checks.outcome import Where
+    from grader.evidence.evidence import Evidence
+
+
+@dataclass(frozen=True)
+class TimerFault:
+    """Why a timer never calls: the diagnosis, in words, and where."""
+
+    diagnosis: str
+    cause: str
+    where: Where
+
+
+def timer_fault(evidence: Evidence) -> TimerFault | None:
+    """The first timer that waits too long or was given no method."""
+    for timer in evidence.code.calls("create_timer"):
+        period = number(timer.argument(0, "timer_period_sec"), timer.module.names)
+        if period is not None and period >= evidence.trial.duration_s:
+            cause = f"The timer waits {period:g} s for its first call: the period is in seconds, not milliseconds."
+            return TimerFault("timer-milliseconds", cause, timer.where)
+        if _is_call(timer.argument(1, "callback")):
+            cause = "create_timer wants the method itself; with () behind its name it gets only the method's result."
+            return TimerFault("callback-called", cause, timer.where)
+    return None
+
+
+def _is_call(argument: ast.expr | None) -> bool:
+    return isinstance(argument, ast.Call) and not ast.unparse(argument.func).endswith(("partial", "callback"))

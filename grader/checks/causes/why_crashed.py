@@ -1,0 +1,56 @@
+"""Why a student's node crashed: the exception, the source around it, and what that usually means."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.checks.causes.cause import Cause
+from grader.checks.causes.crash_scene import Scene
+from grader.checks.causes.why_calls import why_refused, why_type
+from grader.checks.causes.why_fields import why_field
+from grader.checks.causes.why_imports import why_no_import
+from grader.checks.causes.why_names import why_no_attribute, why_no_name, why_unbound
+from grader.checks.outcome import Finding, failed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from grader.checks.causes.crash import Crash
+    from grader.evidence.evidence import Evidence
+
+
+def _always(diagnosis: str) -> Callable[[Scene], Cause]:
+    return lambda scene: Cause(diagnosis, scene.crash.meaning)
+
+
+EXPLANATIONS: dict[str, Callable[[Scene], Cause | None]] = {
+    "AssertionError": why_field,
+    "AttributeError": why_no_attribute,
+    "EOFError": _always("needs-stdin"),
+    "ImportError": why_no_import,
+    "InvalidNodeNameException": _always("node-name-invalid"),
+    "InvalidTopicNameException": _always("topic-name-invalid"),
+    "ModuleNotFoundError": why_no_import,
+    "NameError": why_no_name,
+    "NotInitializedException": _always("no-init"),
+    "ParameterNotDeclaredException": _always("parameter-undeclared"),
+    "RCLError": why_refused,
+    "RuntimeError": why_refused,
+    "TypeError": why_type,
+    "UnboundLocalError": why_unbound,
+}
+"""Exception -> what may be told of it from the source; None where that says nothing."""
+
+
+def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
+    """The cause of a crash; no more than the exception's own meaning where the source does not tell it."""
+    explain = EXPLANATIONS.get(crash.error)
+    cause = explain(Scene(evidence, crash)) if explain is not None else None
+    return cause or Cause("crash", crash.meaning)
+
+
+def crash_finding(evidence: Evidence, crash: Crash, seen: str, expected: str) -> Finding:
+    """A failed finding for a check that a crash kept from passing."""
+    cause = why_crashed(evidence, crash)
+    where = cause.where or crash.where or evidence.place("init")
+    return failed(cause.diagnosis, seen, expected, cause.text, where=where)

@@ -1,0 +1,66 @@
+"""Why a program ended by itself, or ran without a node: what the source does, and does not do."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from grader.checks.causes.cause import Cause
+from grader.checks.outcome import Where
+from grader.evidence.observed import ended_at_start
+from grader.submission.constants import dotted
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+SPINS = ("spin", "spin_once", "spin_until_future_complete")
+
+
+def why_ended(evidence: Evidence) -> Cause:
+    """The cause of an end without an exception before Ctrl-C."""
+    code = evidence.code
+    bare = named_only(evidence, "rclpy.init", "rclpy.spin", "main")
+    if bare is not None:
+        return bare
+    if not any(code.calls(name) for name in SPINS):
+        return Cause("no-spin", "rclpy.spin keeps a node running; it is called nowhere.", evidence.place("init"))
+    if not code.calls("spin") and code.calls("spin_once") and not _loops(evidence):
+        text = "rclpy.spin_once waits for one thing and returns; rclpy.spin goes on until Ctrl-C."
+        return Cause("spin-once", text, evidence.place("spin_once"))
+    ended = "ends-at-once" if ended_at_start(evidence.trial) else "ended-early"
+    return Cause(ended, "", evidence.place("spin", "init"))
+
+
+def why_no_node(evidence: Evidence) -> Cause:
+    """The cause of a program that runs, and is no node."""
+    code = evidence.code
+    bare = named_only(evidence, "rclpy.init", "main")
+    if bare is not None:
+        return bare
+    if not code.calls("init"):
+        return Cause("no-init", "rclpy.init is called nowhere.", code.start)
+    for module in code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.ClassDef) and not code.calls(node.name) and _is_node(node):
+                text = f"The class {node.name} is there, and is never called: that is what makes a node."
+                return Cause("node-not-made", text, Where(module.file, node.lineno))
+    text = "Something before it waits or loops for ever, or the class of the node is never called."
+    return Cause("no-node", text, evidence.place("init"))
+
+
+def named_only(evidence: Evidence, *names: str) -> Cause | None:
+    """A line that names one of these functions and does not call it."""
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.Expr) and dotted(node.value) in names:
+                text = f"The line names {dotted(node.value)} and does not call it: the parentheses are missing."
+                return Cause("not-called", text, Where(module.file, node.lineno))
+    return None
+
+
+def _is_node(of: ast.ClassDef) -> bool:
+    return any((dotted(base) or "").rpartition(".")[2] == "Node" for base in of.bases)
+
+
+def _loops(evidence: Evidence) -> bool:
+    return any(isinstance(node, ast.While | ast.For) for module in evidence.code.modules for node in module.nodes)

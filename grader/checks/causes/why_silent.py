@@ -1,0 +1,131 @@
+"""Why a node that runs sends nothing: what keeps its timers, its methods or its messages from going anywhere."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from grader.checks.causes import ros_names
+from grader.checks.causes.cause import Cause
+from grader.checks.causes.timers import timer_fault
+from grader.checks.causes.why_ended import SPINS, named_only
+from grader.checks.outcome import Where
+from grader.common.words import nearest, shorten
+from grader.submission.constants import dotted, evaluate
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from grader.evidence.evidence import Evidence
+    from grader.submission.code import Module
+
+INCOMPATIBLE = "incompatible QoS"
+"""What rclpy logs of two ends of a topic that cannot talk to each other."""
+WAKES = ("create_timer", "create_subscription", "create_service", "create_client", "ActionServer", "ActionClient")
+"""What gives a node something to do in spin_once."""
+ALWAYS = ("True", "1", "rclpy.ok()")
+
+
+def why_qos(evidence: Evidence) -> Cause | None:
+    """Publisher and subscription are on one topic, and their promises do not go together."""
+    recording = evidence.trial
+    said = [recording.stderr.text, *(line.text for line in recording.log)]
+    if not any(INCOMPATIBLE in text for text in said):
+        return None
+    text = "The quality of service does not match turtlesim's: a plain queue size asks for what it has."
+    return Cause("qos-mismatch", text, evidence.place("QoSProfile", "create_publisher", "create_subscription"))
+
+
+def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
+    """The cause of a silent node; `sends` are the functions that would send or log. None: it looks right."""
+    fault = timer_fault(evidence)
+    if fault is not None:
+        return Cause(fault.diagnosis, fault.cause, fault.where)
+    return (
+        named_only(evidence, "rclpy.spin")
+        or _stuck(evidence)
+        or _never_called(evidence, sends)
+        or _no_spin(evidence)
+        or _nothing_to_spin(evidence)
+    )
+
+
+def _no_spin(evidence: Evidence) -> Cause | None:
+    if any(evidence.code.calls(name) for name in SPINS):
+        return None
+    return Cause("no-spin", "Without rclpy.spin no timer is ever called.", evidence.code.start)
+
+
+def _nothing_to_spin(evidence: Evidence) -> Cause | None:
+    """spin_once without a limit, in a node that nothing ever wakes."""
+    if any(evidence.code.calls(name) for name in WAKES):
+        return None
+    for call in evidence.code.calls("spin_once"):
+        # rclpy's takes the node and its executor first; an executor's own method takes the limit alone.
+        of_rclpy = dotted(call.node.func) in ("rclpy.spin_once", "spin_once")
+        limit = call.argument(2 if of_rclpy else 0, "timeout_sec")
+        if limit is None or (isinstance(limit, ast.Constant) and limit.value is None):
+            text = "spin_once waits for something to do, and this node has no timer; timeout_sec would limit the wait."
+            return Cause("spin-once-waits", text, call.where)
+    return None
+
+
+def _stuck(evidence: Evidence) -> Cause | None:
+    """Something that never returns: a loop or a wait in __init__, an answer waited for inside of a callback."""
+    for module, method in _methods(evidence):
+        for node in ast.walk(method):
+            where = Where(module.file, getattr(node, "lineno", None))
+            waiting = _waits(node, module)
+            if waiting is not None:
+                return Cause(waiting.diagnosis, waiting.text, where)
+            if method.name == "__init__" and isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS:
+                text = "__init__ loops for ever, so rclpy.spin is never reached. A timer repeats without a loop."
+                return Cause("blocks-in-init", text, where)
+            if method.name != "__init__" and _waits_inside(node):
+                text = "A callback that waits for an answer keeps rclpy.spin from ever taking that answer in."
+                return Cause("waits-in-callback", text, where)
+    return None
+
+
+def _waits(node: ast.AST, module: Module) -> Cause | None:
+    """A wait without end for a service that turtlesim does not have."""
+    if not isinstance(node, ast.Call) or getattr(node.func, "attr", "") != "create_client" or len(node.args) < 2:
+        return None
+    name = evaluate(node.args[1], module.names)
+    waits = any(isinstance(each, ast.Attribute) and each.attr == "wait_for_service" for each in module.nodes)
+    if not isinstance(name, str) or not waits or f"/{name.strip('/')}" in ros_names.SERVICES:
+        return None
+    guess = nearest(f"/{name.strip('/')}", ros_names.SERVICES)
+    more = f" There is {guess}." if guess else ""
+    return Cause("service-not-there", f"It waits for the service {shorten(name)}, which nobody offers.{more}")
+
+
+def _waits_inside(node: ast.AST) -> bool:
+    if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+        return False
+    owner = dotted(node.func.value) or ""
+    return node.func.attr == "spin_until_future_complete" or (node.func.attr == "call" and owner.startswith("self."))
+
+
+def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
+    """The method that would send is there, and nobody calls it nor hands it to a timer or a subscription."""
+    for module, method in _methods(evidence):
+        called = [
+            node for node in ast.walk(method) if isinstance(node, ast.Call) and getattr(node.func, "attr", "") in sends
+        ]
+        named = any(
+            isinstance(node, ast.Attribute) and node.attr == method.name
+            for each in evidence.code.modules
+            for node in each.nodes
+        )
+        if called and not named and method.name != "__init__":
+            text = f"Nothing calls {shorten(method.name)}: no timer and no subscription was handed it."
+            return Cause("method-never-called", text, Where(module.file, method.lineno))
+    return None
+
+
+def _methods(evidence: Evidence) -> Iterator[tuple[Module, ast.FunctionDef]]:
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.ClassDef):
+                yield from ((module, each) for each in node.body if isinstance(each, ast.FunctionDef))

@@ -1,0 +1,1 @@
+"""One module per subject that is judged; each defines its kinds of checks."""

@@ -1,0 +1,234 @@
+"""Checks of answers.toml: what a student found out, against the truth asked from the ROS graph as it was recorded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from grader.checks.kind import Kind, NoParams, choice, number, text, texts
+from grader.checks.outcome import Finding, Where, failed, passed
+from grader.checks.tolerance import Band
+from grader.common.words import a_list, shorten
+from grader.evidence import observed as seen_in
+from grader.submission.answers import FILE, Answer
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from grader.evidence.evidence import Evidence
+    from grader.trial.recording import Endpoint, Recording
+
+KEY = "the answer's name in answers.toml"
+KEEP_LOOKING = "Ask ROS 2 again, and compare letter by letter."
+
+
+def answers(evidence: Evidence, _: NoParams) -> Finding:
+    """answers.toml is there, can be read, and has answers to what is asked and to nothing else."""
+    found = evidence.answers
+    expected = f"{FILE} is TOML with a table [answers], a line for each question."
+    if found is None:
+        return failed("no-answers", f"There is no {FILE}.", expected)
+    if found.problem is not None:
+        cause = 'A text stands in "quotation marks", a list in [brackets], a number stands alone.'
+        return failed(
+            "answers-unreadable", f"{FILE} cannot be read: {found.problem}.", expected, cause, where=Where(FILE)
+        )
+    asked = {str(check.params["answer"]) for check in evidence.exercise.checks if "answer" in check.params}
+    other = sorted(set(found.given) - asked)
+    if other:
+        seen = f"{FILE} answers {a_list([shorten(name) for name in other])}, which nobody asked."
+        cause = f"The names are {a_list(sorted(asked - set(found.given)) or sorted(asked))}."
+        where = Where(FILE, found.lines.get(other[0]))
+        return failed("unknown-answer", seen, expected, cause, where=where)
+    if not found.given:
+        return failed("answers-empty", f"{FILE} has no answer yet.", expected, where=Where(FILE))
+    return passed(f"{FILE} can be read.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class OneOf:
+    """The texts that are right, whatever their capitals and blanks."""
+
+    answer: str = text(KEY)
+    accepts: tuple[str, ...] = texts()
+    cause: str = text("a reason", default=" ")
+
+
+def answer_text(evidence: Evidence, params: OneOf) -> Finding:
+    """The answer is one of the texts."""
+    given = _given(evidence, params.answer, "a text", str)
+    if isinstance(given, Finding):
+        return given
+    if _plain(str(given)) in {_plain(each) for each in params.accepts}:
+        return passed(f'"{shorten(str(given))}" is right.')
+    return _wrong(evidence, params.answer, given, "wrong-answer", params.cause.strip())
+
+
+@dataclass(frozen=True, kw_only=True)
+class AllOf:
+    """The texts that must all be in the list, in any order, and no others."""
+
+    answer: str = text(KEY)
+    items: tuple[str, ...] = texts()
+    cause: str = text("a reason", default=" ")
+
+
+def answer_list(evidence: Evidence, params: AllOf) -> Finding:
+    """The answer is a list of exactly these texts."""
+    given = _given(evidence, params.answer, "a list of texts", tuple)
+    return given if isinstance(given, Finding) else _compare(evidence, params.answer, given, params.items, params.cause)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Asked:
+    """What is asked of the graph: of all publishers (subscriptions), those of the node whose type begins and ends so.
+
+    `heard_by`: only topics on which this node has the other end. `many`: the answer is a list.
+    """
+
+    answer: str = text(KEY)
+    find: str = choice("topic", "type", "node")
+    among: str = choice("publisher", "subscription", "all")
+    node: str = text("a node's full name", start="/", default="")
+    type_starts: str = text("the beginning of a type's name", default="")
+    type_ends: str = text("the end of a type's name", default="")
+    heard_by: str = text("a node's full name", start="/", default="")
+    form: str = choice("text", "list")
+
+
+def answer_graph(evidence: Evidence, params: Asked) -> Finding:
+    """The answer is what the ROS graph said while the trial ran."""
+    truth = _ask(evidence.trial, params)
+    if params.form == "list":
+        given = _given(evidence, params.answer, "a list of texts", tuple)
+        return given if isinstance(given, Finding) else _compare(evidence, params.answer, given, truth, KEEP_LOOKING)
+    given = _given(evidence, params.answer, "a text", str)
+    if isinstance(given, Finding):
+        return given
+    answer = str(given)
+    if answer in truth:
+        return passed(f"{shorten(answer)} is right.")
+    return _wrong(evidence, params.answer, answer, *_why(answer, params.find, truth, _all(evidence.trial, params.find)))
+
+
+def _ask(recording: Recording, params: Asked) -> tuple[str, ...]:
+    endpoints = [end for graph in recording.graphs for end in graph.endpoints if _counts(end, params)]
+    if params.heard_by:
+        both = [end for graph in recording.graphs for end in graph.endpoints if end.node == params.heard_by]
+        other = {(end.topic, end.type) for end in both if end.kind != params.among}
+        endpoints = [end for end in endpoints if (end.topic, end.type) in other]
+    return tuple(sorted({getattr(end, params.find) for end in endpoints}))
+
+
+def _all(recording: Recording, find: str) -> set[str]:
+    """All that the graph has of what is asked for."""
+    return {getattr(end, find) for graph in recording.graphs for end in graph.endpoints}
+
+
+def _counts(end: Endpoint, params: Asked) -> bool:
+    return (
+        (params.find == "node" or end.topic not in seen_in.ROS_TOPICS)
+        and params.among in (end.kind, "all")
+        and params.node in (end.node, "")
+        and end.type.startswith(params.type_starts)
+        and end.type.endswith(params.type_ends)
+    )
+
+
+def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]) -> tuple[str, str]:
+    if find in ("topic", "node") and f"/{answer}" in truth:
+        return "no-slash", f"The full name of a {find} begins with a slash."
+    if find == "type" and any(each.replace("/msg/", "/") == answer for each in truth):
+        return "type-without-msg", "In ROS 2 a type has three parts: the package, msg, and the name."
+    if find == "type" and any(each.endswith(f"/{answer}") for each in truth):
+        return "type-without-package", "A type's full name begins with its package, as in std_msgs/msg/String."
+    if any(each.lower() == answer.lower() for each in truth):
+        return "capitals", "Capital and small letters differ."
+    if answer in others:
+        return "answer-another", f"There is such a {find}, but it is not the one that is asked for."
+    return "wrong-answer", KEEP_LOOKING
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnswerRate:
+    """The mean rate of the messages whose type ends so, in Hz."""
+
+    answer: str = text(KEY)
+    type_ends: str = text("the end of a type's name")
+    tolerance_percent: float = number(5.0, above=0, at_most=100)
+
+
+def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
+    """The answer is the rate (Hz) that was measured in the trial."""
+    arrivals = [each.t_s for each in evidence.trial.messages if each.type.endswith(params.type_ends)]
+    steps = [later - earlier for earlier, later in pairwise(arrivals)]
+    if not any(steps):
+        message = "no message of that type was recorded, so there is no rate to compare with"
+        raise ValueError(message)
+    truth = len(steps) / sum(steps)
+    given = _given(evidence, params.answer, "a number, without quotation marks", float)
+    if isinstance(given, Finding):
+        return given
+    assert isinstance(given, float)
+    if Band.around(truth, truth * params.tolerance_percent / 100.0).holds(given):
+        return passed(f"{given:g} Hz is right.")
+    diagnosis, cause = "wrong-answer", "`ros2 topic hz` counts messages a second."
+    # No answer is 0: that is how the handout writes one that is not given yet (answers_file.py).
+    if Band.around(truth, truth * params.tolerance_percent / 100.0).holds(1.0 / given):
+        diagnosis, cause = (
+            "period-for-rate",
+            "This is the time between two messages in seconds; the rate is 1 divided by it.",
+        )
+    return _wrong(evidence, params.answer, given, diagnosis, cause)
+
+
+def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Finding:
+    """The answer, or the finding that there is none of this form."""
+    found = evidence.answers
+    where = Where(FILE, found.lines.get(name) if found is not None else None)
+    answer = found.given.get(name) if found is not None else None
+    if answer is None:
+        return failed("no-answer", f"{name} is not answered yet.", f"{name} = {form}.", where=where)
+    if not isinstance(answer, kind):
+        seen = f"{name} is {_shown(answer)}."
+        return failed(
+            "answer-form", seen, f"{name} = {form}.", "The lesson shows how an answer is written.", where=where
+        )
+    return answer
+
+
+def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str], cause: str) -> Finding:
+    assert isinstance(given, tuple)
+    said, right = {_plain(each) for each in given}, {_plain(each) for each in truth}
+    if said == right:
+        return passed(f"{a_list(sorted(given))}: right.")
+    extra, missing = len(said - right), len(right - said)
+    parts = [f"{extra} too many" if extra else "", f"{missing} missing" if missing else ""]
+    told = " and ".join(part for part in parts if part)
+    where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
+    seen = f"{name} is {_shown(given)}: {told}."
+    diagnosis = "wrong-list" if extra and missing else "list-too-long" if extra else "list-incomplete"
+    return failed(diagnosis, seen, "All that belong there, and no others.", cause.strip(), where=where)
+
+
+def _wrong(evidence: Evidence, name: str, given: Answer, diagnosis: str, cause: str) -> Finding:
+    where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
+    return failed(diagnosis, f"{name} is {_shown(given)}.", "What ROS 2 says.", cause, where=where)
+
+
+def _plain(answer: str) -> str:
+    return " ".join(answer.lower().split())
+
+
+def _shown(answer: Answer) -> str:
+    if isinstance(answer, tuple):
+        return f"[{', '.join(shorten(each, 30) for each in answer[:8])}]"
+    return f'"{shorten(answer)}"' if isinstance(answer, str) else f"{answer:g}"
+
+
+ANSWERS = Kind("answers", "source", "answers.toml can be read", NoParams, answers)
+TEXT = Kind("answer_text", "source", "The answer is right", OneOf, answer_text)
+LIST = Kind("answer_list", "source", "The answers are right", AllOf, answer_list)
+GRAPH = Kind("answer_graph", "trial", "The answer is what ROS 2 says", Asked, answer_graph)
+RATE = Kind("answer_rate", "trial", "The rate is what was measured", AnswerRate, answer_rate)

@@ -1,0 +1,178 @@
+"""Check of the entry point: `ros2 run PACKAGE EXECUTABLE` finds a function to call."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from grader.checks.causes.no_entry_point import FORM, line, no_entry_point
+from grader.checks.causes.syntax import unreadable_finding
+from grader.checks.kind import Kind, NoParams
+from grader.checks.outcome import Finding, Where, failed, passed
+from grader.checks.subjects.building import INSTALLED_MODULE, is_linked
+from grader.common.words import nearest, shorten
+from grader.submission.code import import_path, module_file, read_module
+from grader.submission.constants import dotted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.evidence.evidence import Evidence
+    from grader.submission.code import Module
+
+DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
+"""Expressions whose value nobody can call."""
+
+
+def entry_point(evidence: Evidence, _: NoParams) -> Finding:
+    """The executable is installed where `ros2 run` looks, and leads to a callable of a module that Python can read."""
+    executable, build = evidence.exercise.executable, evidence.built
+    target = build.entry_points.get(executable)
+    if target is None:
+        return no_entry_point(evidence)
+    if executable not in build.executables:
+        folder = f"lib/{build.package or evidence.exercise.package}"
+        seen = f"{executable} was not installed into the package's own folder, {folder}."
+        expected = "setup.cfg says where executables go, so that `ros2 run` finds them."
+        cause = "Compare it with the lesson's, letter by letter."
+        if "setup.cfg" not in evidence.submission.files:
+            cause = "setup.cfg is missing."
+        elif build.package not in (None, evidence.exercise.package):
+            cause = "It must name the folder after the package, as package.xml names that."
+        where = Where("setup.cfg" if "setup.cfg" in evidence.submission.files else "setup.py")
+        return failed("setup-cfg", seen, expected, cause, where=where)
+    module, _colon, attribute = target.partition(":")
+    return _resolve(evidence, module.strip(), attribute.split("[")[0].strip())
+
+
+def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
+    files = evidence.submission.files
+    file = module_file(module_name, files)
+    if file is None:
+        return _no_module(evidence, module_name)
+    if not _is_installed(evidence, file):
+        seen = f"{file} is not installed, so {module_name} cannot be imported."
+        cause = "The argument packages of setup() leaves its folder out, or the folder has no __init__.py."
+        return failed(
+            "module-not-installed",
+            seen,
+            f"The entry point {evidence.exercise.executable} needs it.",
+            cause,
+            where=line(evidence),
+        )
+    module = read_module(file, files[file])
+    if module.tree is None and module.unreadable is None:
+        return passed(f"The entry point {evidence.exercise.executable} leads to {file}.")
+    if module.unreadable is not None:
+        return unreadable_finding(file, module.unreadable, files[file])
+    return _attribute(evidence, module, attribute)
+
+
+def _no_module(evidence: Evidence, module_name: str) -> Finding:
+    files = evidence.submission.files
+    executable = evidence.exercise.executable
+    seen = f"The entry point {executable} leads to the module {shorten(module_name)}, which is not there."
+    modules = [
+        import_path(path)[: -len(".py")].replace("/", ".") for path in files if path.endswith(".py") and "/" in path
+    ]
+    expected = "A module is named by its folder and file, as in FOLDER.FILE."
+    if module_name.endswith(".py"):
+        cause = "A module is named without the ending .py."
+        return failed("entry-point-py", seen, expected, cause, where=line(evidence))
+    if module_name in evidence.exercise.package or "." not in module_name:
+        cause = "The folder comes first, then a point, then the file without its .py."
+    else:
+        guess = nearest(module_name, modules)
+        cause = f"There is a module {shorten(guess)}." if guess else "Compare it with the names of your files."
+    return failed("entry-point-module", seen, expected, cause, where=line(evidence))
+
+
+def _is_installed(evidence: Evidence, file: str) -> bool:
+    if is_linked(evidence):
+        return True
+    matches = (INSTALLED_MODULE.fullmatch(path) for path in evidence.built.installed)
+    return any(match["path"] == import_path(file) for match in matches if match is not None)
+
+
+def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
+    executable = evidence.exercise.executable
+    name = attribute.partition(".")[0]
+    if not name:
+        seen = f"The entry point {executable} leads to {module.file}, and names no function in it."
+        cause = "After the module come a colon and the function's name."
+        return failed("entry-point-no-function", seen, f"{FORM}.", cause, where=line(evidence))
+    bound = list(_bindings(module, name))
+    if not bound:
+        return _no_function(evidence, module, name)
+    last = bound[-1]
+    if isinstance(last, ast.Assign | ast.AnnAssign) and isinstance(last.value, DATA):
+        seen = f"The entry point {executable} leads to {shorten(name)}, which is no function."
+        return failed(
+            "entry-point-not-callable", seen, "A function, made with def.", where=Where(module.file, last.lineno)
+        )
+    return passed(f"The entry point {executable} leads to {shorten(name)} in {module.file}.")
+
+
+def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
+    executable = evidence.exercise.executable
+    if not module.nodes[1:]:
+        expected = f"It has the function {shorten(name)}, which the entry point leads to."
+        where = Where(module.file)
+        return failed("empty-file", f"{module.file} has no code in it.", expected, "Is it saved?", where=where)
+    seen = f"The entry point {executable} leads to the function {shorten(name)}, which {module.file} does not have."
+    expected = "A function at the top level of the file."
+    functions = [node for node in module.nodes if isinstance(node, ast.FunctionDef)]
+    at_top = next((node for node in module.nodes if isinstance(node, ast.Call) and _is_top_level(module, node)), None)
+    if at_top is not None and not any(node.name == name for node in functions):
+        cause = "The program stands at the top level of the file: it belongs into a function of that name."
+        return failed("top-level-code", seen, expected, cause, where=Where(module.file, at_top.lineno))
+    inside = next((node for node in functions if node.name == name and node.col_offset), None)
+    if inside is not None:
+        cause = f"{name} is indented, and so belongs to the class above it: move it to the left edge."
+        return failed("main-in-class", seen, expected, cause, where=Where(module.file, inside.lineno))
+    guess = nearest(name, [node.name for node in functions if node.col_offset == 0])
+    cause = f"It has {shorten(guess)}." if guess else "Nothing at the left edge of the file has that name."
+    return failed("entry-point-function", seen, expected, cause, where=line(evidence))
+
+
+def _is_top_level(module: Module, call: ast.Call) -> bool:
+    """Whether the call is rclpy.init or rclpy.spin, outside of every function."""
+    top = [node for node in module.body if isinstance(node, ast.Expr | ast.Assign)]
+    return dotted(call.func) in ("rclpy.init", "rclpy.spin") and any(call in ast.walk(node) for node in top)
+
+
+def early(evidence: Evidence, _: NoParams) -> Finding | None:
+    """A module that Python cannot read: no build makes it run."""
+    setup, files = evidence.setup_py, evidence.submission.files
+    point = setup.entry_point(evidence.exercise.executable) if setup is not None else None
+    file = module_file(point.target.partition(":")[0], files) if point is not None and point.target else None
+    unreadable = read_module(file, files[file]).unreadable if file is not None else None
+    return None if file is None or unreadable is None else unreadable_finding(file, unreadable, files[file])
+
+
+def _bindings(module: Module, name: str) -> Iterator[ast.stmt]:
+    """The statements of the module's top level (blocks of if, try and with opened) that give the name a value."""
+    waiting = list(module.body)
+    while waiting:
+        node = waiting.pop(0)
+        if _binds(node, name):
+            yield node
+        if isinstance(node, ast.If | ast.Try | ast.With | ast.For | ast.While):
+            inner = [child for child in ast.iter_child_nodes(node) if isinstance(child, ast.stmt)]
+            handlers = [child for child in ast.iter_child_nodes(node) if isinstance(child, ast.ExceptHandler)]
+            waiting = inner + [stmt for handler in handlers for stmt in handler.body] + waiting
+
+
+def _binds(node: ast.stmt, name: str) -> bool:
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        return node.name == name
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        return any((alias.asname or alias.name.partition(".")[0]) in (name, "*") for alias in node.names)
+    if isinstance(node, ast.Assign):
+        return any(
+            isinstance(part, ast.Name) and part.id == name for target in node.targets for part in ast.walk(target)
+        )
+    return isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and node.target.id == name
+
+
+ENTRY_POINT = Kind("entry_point", "build", "The entry point leads to a function", NoParams, entry_point, early=early)

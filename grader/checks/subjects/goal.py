@@ -1,0 +1,69 @@
+"""Check of a drive to a goal: the turtle arrives, and stays there."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.kind import Kind, number
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.path import MOVED_M, not_driven
+from grader.checks.tolerance import Band
+from grader.common.lazy import np
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+REST_S = 0.5
+"""At the end the turtle must have stood still for this long."""
+REST_M = 0.02
+
+
+@dataclass(frozen=True, kw_only=True)
+class Goal:
+    """Where the turtle is to be at the end (m), and how near."""
+
+    x_m: float = number()
+    y_m: float = number()
+    tolerance_m: float = number(0.1, above=0)
+
+
+def goal(evidence: Evidence, params: Goal) -> Finding:
+    """The turtle drives to the goal and stops there."""
+    expected = f"The turtle stops within {params.tolerance_m:g} m of x={params.x_m:g} y={params.y_m:g}."
+    where = evidence.place("publish")
+    still = not_driven(evidence, expected, where)
+    if still is not None:
+        return still
+    track = evidence.track
+    away = np.hypot(track.x - params.x_m, track.y - params.y_m)
+    end, nearest = float(away[-1]), float(away.min())
+    close = Band.at_most(params.tolerance_m)
+    near = close.near(end)
+    if not close.holds(end):
+        seen = f"The turtle ends at x={track.x[-1]:.2f} y={track.y[-1]:.2f}, {end:.2f} m from the goal."
+        if close.holds(nearest):
+            seen += f" It came as near as {nearest:.2f} m on the way."
+            cause = "It does not stop at the goal: close to it, the command is all zeros."
+            return failed("goes-on", seen, expected, cause, where=where, near_edge=near)
+        if end >= away[0] - MOVED_M:
+            cause = "The direction to the goal is atan2(goal_y - y, goal_x - x); the turtle's own is theta."
+            return failed("away-from-goal", seen, expected, cause, where=where, near_edge=near)
+        cause = (
+            "The nearer, the slower is right, but not so slow that it never arrives; or it turns the wrong way round."
+        )
+        if track.wall.any():
+            cause = "It ran into a wall. An angle beyond pi must be brought back: atan2(sin(a), cos(a))."
+        return failed("not-there", seen, expected, cause, where=where, near_edge=near)
+    late = track.t_s >= track.t_s[-1] - REST_S
+    drift = float(track.steps[late].sum())
+    if not drift <= REST_M:
+        seen = f"The turtle still drives at the end: {drift:.2f} m in the last {REST_S:g} s."
+        cause = "Close to the goal the command is all zeros."
+        return failed("still-moving", seen, expected, cause, where=where)
+    start = math.dist((float(track.x[0]), float(track.y[0])), (params.x_m, params.y_m))
+    return passed(f"The turtle drove to its goal, {start:.1f} m away, and stopped.", near_edge=near)
+
+
+GOAL = Kind("goal", "trial", "The turtle drives to its goal", Goal, goal)

@@ -1,0 +1,68 @@
+"""Checks of the node: it starts, and is named as the exercise says."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.checks.causes.crash import crash_of
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_ended import why_ended, why_no_node
+from grader.checks.kind import Kind, NoParams
+from grader.checks.outcome import Finding, failed, passed
+from grader.common.words import a_list, nearest, shorten
+from grader.evidence import observed as seen_in
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+
+def starts(evidence: Evidence, _: NoParams) -> Finding:
+    """A node of the submission was in the ROS graph, and lived until the scenario began."""
+    recording = evidence.trial
+    executable = evidence.exercise.executable
+    expected = "The node starts, and runs until Ctrl-C."
+    if seen_in.ended_at_start(recording):
+        crash = crash_of(evidence)
+        if crash is not None:
+            return crash_finding(evidence, crash, f"{executable} crashed at its start: {crash.seen}.", expected)
+        why = why_ended(evidence)
+        seen = f"{executable} ended by itself at its start."
+        return failed(why.diagnosis, seen, expected, why.text, where=why.where)
+    if not seen_in.nodes(recording):
+        return _no_node(evidence)
+    return passed("The node starts.")
+
+
+def _no_node(evidence: Evidence) -> Finding:
+    crash = crash_of(evidence)
+    seen = f"{evidence.exercise.executable} ran, but no node appeared in the ROS graph."
+    expected = "The program makes a node, and spins it."
+    if crash is not None:
+        seen = f"{evidence.exercise.executable} crashed before it had made a node: {crash.seen}."
+        return crash_finding(evidence, crash, seen, expected)
+    why = why_no_node(evidence)
+    return failed(why.diagnosis, seen, expected, why.text, where=why.where)
+
+
+def name(evidence: Evidence, _: NoParams) -> Finding:
+    """A node of the submission has the exercise's name."""
+    wanted = f"/{evidence.exercise.node}"
+    names = seen_in.nodes(evidence.trial)
+    if wanted in names:
+        return passed(f"The node is named {evidence.exercise.node}.")
+    if not names:
+        return failed("no-node", "No node appeared in the ROS graph.", f"A node named {evidence.exercise.node}.")
+    guess = nearest(wanted, names) or names[0]
+    seen = f"The node is named {shorten(guess)}."
+    if len(names) > 1:
+        seen = f"The nodes are named {a_list([shorten(each) for each in names])}."
+    expected = f"It is named {evidence.exercise.node}."
+    where = evidence.place("create_node", "__init__")
+    if guess.endswith(wanted):
+        return failed("node-namespace", seen, expected, "The node is in a namespace.", where=where)
+    cause = "The name is the text that the node's class hands to its parent, Node, when it is made."
+    return failed("node-name", seen, expected, cause, where=where)
+
+
+STARTS = Kind("node_starts", "trial", "The node starts", NoParams, starts)
+NAME = Kind("node_name", "trial", "The node has the right name", NoParams, name)

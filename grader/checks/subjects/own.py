@@ -1,0 +1,115 @@
+"""Checks of the circle with a student's own numbers, which stand in my_numbers.toml of the package."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.kind import Kind, NoParams, number
+from grader.checks.outcome import Finding, Where, failed, passed
+from grader.checks.subjects.path import CircleParams, circle
+from grader.checks.subjects.rate import Rate, rate
+from grader.common.words import shorten
+from grader.exercise.own_numbers import FILE, OwnNumbers, draw_numbers, from_toml
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+EARLY, LATE = 0.8, 1.3
+"""An interval may be so much shorter or longer than the period."""
+
+
+def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
+    """The numbers are there, are those of the student whom they name, and it is that student who handed them in."""
+    found = _read(evidence)
+    if isinstance(found, Finding):
+        return found
+    by = evidence.submission.student
+    if by is not None and found.student.strip().casefold() != by.strip().casefold():
+        seen = (
+            f'The numbers in {FILE} were drawn for "{shorten(found.student)}"; this was handed in by "{shorten(by)}".'
+        )
+        expected = "Everybody drives a circle of their own."
+        cause = f"`grader start 07 --student {shorten(by)} --fresh` draws yours; your work is kept aside."
+        return failed("numbers-of-another", seen, expected, cause, where=Where(FILE))
+    wanted = draw_numbers(found.student)
+    if found != wanted:
+        seen = f"The numbers in {FILE} are not those that were drawn for its student."
+        expected = f"{wanted.radius_m} m, {wanted.sense}, {wanted.rate_hz} Hz."
+        cause = "Leave the file as it is; the numbers go into your node."
+        return failed("numbers-changed", seen, expected, cause, where=Where(FILE))
+    return passed(f"A circle of {found.radius_m} m, {found.sense}, {found.rate_hz} commands a second.")
+
+
+def _read(evidence: Evidence) -> OwnNumbers | Finding:
+    data = evidence.submission.files.get(FILE)
+    expected = f"{FILE} stands beside package.xml, as `grader start` wrote it."
+    if data is None:
+        return failed("no-numbers", f"There is no {FILE}.", expected)
+    try:
+        return from_toml(data)
+    except ValueError as error:
+        return failed("numbers-unreadable", f"{FILE}: {error}.", expected, where=Where(FILE))
+
+
+def _drawn(evidence: Evidence) -> OwnNumbers | Finding:
+    found = _read(evidence)
+    return found if isinstance(found, Finding) else draw_numbers(found.student)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OwnCircle:
+    """As for the kind `circle`; radius and sense are the student's own."""
+
+    radius_tolerance_m: float = number(0.05, above=0)
+    centre_tolerance_m: float = number(0.05, above=0)
+    residual_m: float = number(0.02, above=0)
+    turns: float = number(1.0, above=0)
+
+
+def own_circle(evidence: Evidence, params: OwnCircle) -> Finding:
+    """The turtle drives the student's own circle."""
+    asked = own_circle_params(evidence, params)
+    return asked if isinstance(asked, Finding) else circle(evidence, asked)
+
+
+def own_circle_params(evidence: Evidence, params: OwnCircle) -> CircleParams | Finding:
+    """The circle that this student is asked for; the finding where the numbers cannot be read."""
+    own = _drawn(evidence)
+    if isinstance(own, Finding):
+        return own
+    return CircleParams(
+        radius_m=own.radius_m,
+        radius_tolerance_m=params.radius_tolerance_m,
+        centre_tolerance_m=params.centre_tolerance_m,
+        residual_m=params.residual_m,
+        turns=params.turns,
+        sense=own.sense,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class OwnRate:
+    """As for the kind `rate`; the rate is the student's own."""
+
+    tolerance_percent: float = number(5.0, above=0, at_most=100)
+
+
+def own_rate(evidence: Evidence, params: OwnRate) -> Finding:
+    """Commands arrive at the student's own rate."""
+    own = _drawn(evidence)
+    if isinstance(own, Finding):
+        return own
+    asked = Rate(
+        rate_hz=own.rate_hz,
+        tolerance_percent=params.tolerance_percent,
+        min_interval_s=EARLY / own.rate_hz,
+        max_interval_s=LATE / own.rate_hz,
+        first_within_s=3.0,
+    )
+    return rate(evidence, asked)
+
+
+NUMBERS = Kind("own_numbers", "source", "The numbers are your own", NoParams, own_numbers)
+CIRCLE = Kind("own_circle", "trial", "The turtle drives your own circle", OwnCircle, own_circle)
+RATE = Kind("own_rate", "trial", "Commands arrive at your own rate", OwnRate, own_rate)

@@ -1,0 +1,210 @@
+"""Check of the rate at which commands arrive, by their arrival at the turtle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.causes.crash import crash_of, end_seen, ended_early
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_ended import why_ended
+from grader.checks.causes.why_rate import why_often, why_timers_grow
+from grader.checks.kind import Kind, number
+from grader.checks.outcome import Finding, Status, Where, failed, passed
+from grader.checks.tolerance import Band
+from grader.common.words import count
+from grader.evidence import observed as seen_in
+from grader.evidence.arrivals import Measured, measure_arrivals
+from grader.submission.constants import number as constant
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+FEWEST = 3
+"""Commands: with fewer there is at most one interval, and no rate to speak of."""
+TRUSTED = 0.5
+"""A wall-clock trial in which the machine stalled judges the other intervals, if they are at least this share."""
+SAME = 0.1
+"""A number of the source explains a measured interval when they differ by less than this share."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rate:
+    """The mean rate, first to last arrival, and its tolerance; the limits of each single interval.
+
+    The first command may come `first_within_s` after the start, the last one `max_interval_s` before the end.
+    """
+
+    rate_hz: float = number(above=0, at_most=1000)
+    tolerance_percent: float = number(5.0, above=0, at_most=100)
+    min_interval_s: float = number(at_least=0)
+    max_interval_s: float = number(above=0)
+    first_within_s: float = number(3.0, above=0)
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What comes again and again: its name, and the method of the student's that sends it."""
+
+    noun: str
+    call: str
+
+    @property
+    def plural(self) -> str:
+        """Several of them, at the beginning of a sentence."""
+        return f"{self.noun.capitalize()}s"
+
+
+COMMAND = Subject("command", "publish")
+
+
+def measure(evidence: Evidence) -> Measured:
+    """The arrivals of the commands before SIGINT."""
+    return measure_arrivals(evidence.trial, (command.t_s for command in evidence.commands))
+
+
+def rate(evidence: Evidence, params: Rate) -> Finding:
+    """Commands arrive at the rate: on average, each one, from soon after the start until the end."""
+    return rate_of(evidence, params, COMMAND, measure(evidence))
+
+
+def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured) -> Finding:
+    """They arrive at the rate: on average, each one, from soon after the start until the end."""
+    period = 1.0 / params.rate_hz
+    expected = f"Every {period:.2f} s ({params.rate_hz:.1f} Hz)."
+    if len(measured.arrivals) < FEWEST:
+        return _few(
+            evidence, what, measured, f"A {what.noun} every {period:.2f} s ({params.rate_hz:.1f} Hz) until Ctrl-C."
+        )
+    if measured.trusted < TRUSTED:
+        return Finding(
+            Status.ERROR, "The machine was too busy to measure a rate in wall time. Try again when it is not."
+        )
+    share = params.tolerance_percent / 100.0
+    mean_hz = 1.0 / measured.mean_s if measured.mean_s > 0.0 else float("inf")
+    mean = Band.around(params.rate_hz, params.rate_hz * share)
+    each = Band.around(period, period - params.min_interval_s, params.max_interval_s - period)
+    first = Band.at_most(params.first_within_s)
+    near = mean.near(mean_hz) or each.near(*_extremes(measured), measured.rest_s) or first.near(measured.first_s)
+    if not mean.holds(mean_hz):
+        return _wrong_mean(evidence, what, measured, params, expected, near_edge=near)
+    worst = max(measured.intervals, key=lambda interval: abs(interval - period))
+    if not all(each.holds(interval) for interval in measured.intervals):
+        at = measured.begins[measured.intervals.index(worst)]
+        seen = f"{what.plural} came unevenly: {worst:.2f} s passed between two of them, {at:.1f} s after the start."
+        wanted = (
+            f"Every {period:.2f} s, each interval from {params.min_interval_s:.2f} to {params.max_interval_s:.2f} s."
+        )
+        cause = _uneven_cause(evidence, what)
+        grow = why_timers_grow(evidence)
+        if grow is not None:
+            return failed(grow.diagnosis, seen, wanted, grow.text, where=grow.where, near_edge=near)
+        return failed("uneven-rate", seen, wanted, cause, where=evidence.place(what.call), near_edge=near)
+    if not first.holds(measured.first_s):
+        seen = f"The first {what.noun} came {measured.first_s:.1f} s after the start."
+        wanted = f"It comes within {params.first_within_s:.1f} s."
+        return failed(
+            "late-start", seen, wanted, _late_cause(evidence), where=evidence.place("sleep", what.call), near_edge=near
+        )
+    if not measured.rest_s <= params.max_interval_s:
+        return _stopped(evidence, what, measured, expected, near_edge=near)
+    return passed(f"{what.plural} arrive every {period:.2f} s ({params.rate_hz:.1f} Hz).", near_edge=near)
+
+
+def _extremes(measured: Measured) -> tuple[float, float]:
+    return min(measured.intervals), max(measured.intervals)
+
+
+def _few(evidence: Evidence, what: Subject, measured: Measured, expected: str) -> Finding:
+    amount = len(measured.arrivals)
+    crash = crash_of(evidence)
+    seen = f"{count(amount, what.noun)} arrived in {seen_in.end_s(evidence.trial):.0f} s."
+    if crash is not None:
+        return crash_finding(evidence, crash, f"{seen} {end_seen(evidence)}", expected)
+    where = evidence.place(what.call)
+    if evidence.trial.end.by == "itself":
+        why = why_ended(evidence)
+        return failed(why.diagnosis, f"{seen} {end_seen(evidence)}", expected, why.text, where=why.where)
+    if amount == 1:
+        cause = f"{what.call} is called once; a timer calls a method again and again."
+        return failed("published-once" if what is COMMAND else "logged-once", seen, expected, cause, where=where)
+    return failed(
+        "too-few-commands" if what is COMMAND else "too-few-log-lines",
+        seen,
+        expected,
+        ended_early(evidence),
+        where=where,
+    )
+
+
+def _wrong_mean(
+    evidence: Evidence, what: Subject, measured: Measured, params: Rate, expected: str, *, near_edge: bool
+) -> Finding:
+    mean = measured.mean_s
+    often = why_often(evidence, what.call, mean, 1.0 / params.rate_hz) or why_timers_grow(evidence)
+    if mean < 0.01:
+        seen = f"{count(len(measured.arrivals), what.noun)} arrived, one every {1000.0 * mean:.2f} ms."
+    else:
+        seen = f"{what.plural} arrived every {mean:.2f} s ({1.0 / mean:.1f} Hz)."
+    if often is not None:
+        return failed(often.diagnosis, seen, expected, often.text, where=often.where, near_edge=near_edge)
+    diagnosis, cause, where = _why_mean(evidence, what, mean)
+    if diagnosis == "timer-period" and abs(mean - params.rate_hz) <= SAME * params.rate_hz:
+        diagnosis, cause = (
+            "rate-for-period",
+            "create_timer wants the period in seconds, not the rate: one is 1 divided by the other.",
+        )
+    return failed(diagnosis, seen, expected, cause, where=where, near_edge=near_edge)
+
+
+def _why_mean(evidence: Evidence, what: Subject, mean: float) -> tuple[str, str, Where | None]:
+    """The diagnosis, in words, and where: a timer with that period, a sleep of that length, or none of them."""
+    code = evidence.code
+    timers = [
+        (call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in code.calls("create_timer")
+    ]
+    for timer, period in timers:
+        if period is not None and abs(period - mean) <= SAME * mean:
+            return "timer-period", "The timer's period is the first argument of create_timer, in seconds.", timer.where
+    for sleep in code.calls("sleep"):
+        length = constant(sleep.argument(0, "secs"), sleep.module.names)
+        if timers and length is not None:
+            cause = "While a method sleeps nothing else of the node runs, its timer neither."
+            return "sleep-in-callback", cause, sleep.where
+        if length is not None and abs(length - mean) <= SAME * mean:
+            return "sleep-period", f"Between two {what.noun}s the node sleeps {length:g} s.", sleep.where
+    if len(timers) > 1:
+        return (
+            "several-timers",
+            f"There are {len(timers)} timers: each one calls its method on its own.",
+            timers[1][0].where,
+        )
+    where = timers[0][0].where if timers else evidence.place(what.call)
+    return "wrong-rate", f"The time between two calls of {what.call} is what counts.", where
+
+
+def _uneven_cause(evidence: Evidence, what: Subject) -> str:
+    code = evidence.code
+    if len(code.calls(what.call)) > 1 or len(code.calls("create_timer")) > 1:
+        return f"More than one line calls {what.call}, or more than one timer runs."
+    return f"The method that calls {what.call} sometimes takes longer than the period." if code.calls("sleep") else ""
+
+
+def _late_cause(evidence: Evidence) -> str:
+    if evidence.code.calls("sleep"):
+        return "The node sleeps before it begins."
+    return "Something before it waits, such as wait_for_service." if evidence.code.calls("wait_for_service") else ""
+
+
+def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: str, *, near_edge: bool) -> Finding:
+    seen = f"The last {what.noun} came at {measured.arrivals[-1]:.1f} s, {measured.rest_s:.1f} s before the end."
+    wanted = f"{expected[:-1]}, until Ctrl-C."
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, f"{seen} {end_seen(evidence)}", wanted)
+    return failed(
+        "stopped-early", seen, wanted, ended_early(evidence), where=evidence.place(what.call), near_edge=near_edge
+    )
+
+
+RATE = Kind("rate", "trial", "Commands arrive at the right rate", Rate, rate)

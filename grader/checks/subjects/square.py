@@ -1,0 +1,131 @@
+"""Check of a square: four straight sides, with turns on the spot between them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from grader.checks.causes.too_soon import too_soon
+from grader.checks.kind import Kind, choice, number
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.path import not_driven
+from grader.checks.tolerance import Band, unless_starved
+from grader.common.lazy import np
+from grader.common.words import count
+from grader.evidence.track import RESTS_M
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.evidence.track import Track
+
+SIDES = 4
+ORDINALS = ("first", "second", "third", "fourth")
+STRAIGHT_RAD_M = 0.2
+"""A way that bends by no more than this many radians a metre (a radius of 5 m) is a side, not a curve."""
+CURVED_SHARE = 0.1
+"""More of the way than this in curves is no square."""
+SHORT_M = 0.05
+"""A straight piece shorter than this is no side."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Square:
+    """Sides of this length, corners of 90 degrees, the turtle back at its start after the fourth side."""
+
+    side_m: float = number(above=0, at_most=5)
+    side_tolerance_m: float = number(0.15, above=0)
+    corner_tolerance_deg: float = number(7.0, above=0)
+    closing_m: float = number(0.4, above=0)
+    sense: str = choice("counter-clockwise", "clockwise", "either")
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Straight pieces: how long each is (m), by how much it is turned between them (rad), where each ends (m)."""
+
+    lengths: tuple[float, ...]
+    corners: tuple[float, ...]
+    ends: tuple[tuple[float, float], ...]
+    curved_share: float
+
+
+def sides_of(track: Track) -> Sides:
+    """Take the way apart at its corners."""
+    moves = track.steps > RESTS_M
+    straight = moves & (np.abs(track.turn) <= STRAIGHT_RAD_M * track.steps)
+    curved = moves & ~straight
+    frames = np.flatnonzero(straight)
+    turned = np.cumsum(track.turn)
+    # A side ends where the heading has changed by more than noise before the next straight frame.
+    breaks = np.flatnonzero(np.abs(np.diff(turned[frames])) > math.radians(10.0)) + 1
+    pieces = [piece for piece in np.split(frames, breaks) if track.steps[piece].sum() > SHORT_M]
+    return Sides(
+        lengths=tuple(float(track.steps[piece].sum()) for piece in pieces),
+        corners=tuple(float(turned[after[0]] - turned[before[-1]]) for before, after in pairwise(pieces)),
+        ends=tuple((float(track.x[piece[-1] + 1]), float(track.y[piece[-1] + 1])) for piece in pieces),
+        curved_share=float(track.steps[curved].sum()) / track.length_m if track.length_m else 0.0,
+    )
+
+
+def square(evidence: Evidence, params: Square) -> Finding:
+    """The turtle drives a square."""
+    expected = f"Four straight sides of {params.side_m:.1f} m, with a turn of 90 degrees on the spot after each."
+    where = evidence.place("publish")
+    track = evidence.track
+    still = not_driven(evidence, expected, where)
+    if still is not None:
+        return still
+    if track.wall.any():
+        return failed("wall", "The turtle ran into a wall.", expected, "Some side is too long.", where=where)
+    sides = sides_of(track)
+    if sides.curved_share > CURVED_SHARE:
+        seen = f"{100.0 * sides.curved_share:.0f} % of the way are curves."
+        cause = "Drive with angular.z 0, then turn with linear.x 0: never both at once."
+        return failed("curves", seen, expected, cause, where=where)
+    if len(sides.lengths) < SIDES:
+        seen = f"The way has {count(len(sides.lengths), 'side')}."
+        cause = (
+            "Four sides and the turns between them must fit into the time; and the state must change back each time."
+        )
+        return failed("too-few-sides", seen, expected, cause, where=where)
+    return _measured(evidence, params, sides, expected)
+
+
+def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -> Finding:
+    where, recording = evidence.place("publish"), evidence.trial
+    speed = recording.frames.linear
+    long, right = Band.around(params.side_m, params.side_tolerance_m), Band.around(90.0, params.corner_tolerance_deg)
+    corners = [math.degrees(corner) for corner in sides.corners[: SIDES - 1]]
+    sign = -1.0 if params.sense == "clockwise" or (params.sense == "either" and corners[0] < 0.0) else 1.0
+    near = long.near(*sides.lengths[:SIDES]) or right.near(*(sign * corner for corner in corners))
+    if all(sign * corner < 0.0 for corner in corners):
+        seen = "The turtle turns to the wrong side at its corners."
+        return failed("wrong-sense", seen, f"The square is driven {params.sense}.", where=where)
+    for name, length in zip(ORDINALS, sides.lengths, strict=False):
+        if not long.holds(length):
+            more = length - params.side_m
+            seen = f"The {name} side is {length:.2f} m long: {abs(more):.2f} m too {'long' if more > 0 else 'short'}."
+            cause = "A side is speed times time, and the time is a number of calls of the timer."
+            finding = failed("side-length", seen, expected, cause, where=where, near_edge=near)
+            if name == ORDINALS[0] and more < 0.0 and all(map(long.holds, sides.lengths[1:SIDES])):
+                finding = too_soon(finding, evidence)
+            return unless_starved(finding, recording, abs(more) - params.side_tolerance_m, float(speed.max()))
+    for name, corner in zip(ORDINALS, corners, strict=False):
+        if not right.holds(sign * corner):
+            seen = f"The {name} corner turns by {sign * corner:.0f} degrees."
+            cause = "A quarter turn is pi / 2 rad: turning speed times time."
+            finding = failed("corner-angle", seen, expected, cause, where=where, near_edge=near)
+            off = abs(sign * corner - 90.0) - params.corner_tolerance_deg
+            return unless_starved(finding, recording, off, math.degrees(float(np.abs(recording.frames.angular).max())))
+    gap = math.dist(sides.ends[SIDES - 1], (evidence.trial.start.x, evidence.trial.start.y))
+    closed = Band.at_most(params.closing_m)
+    if not closed.holds(gap):
+        seen = f"The fourth side ends {gap:.2f} m beside the start."
+        finding = failed("square-gap", seen, expected, where=where, near_edge=True)
+        return unless_starved(finding, recording, gap - params.closing_m, SIDES * float(speed.max()))
+    return passed(f"The turtle drove a square of {params.side_m:.1f} m.", near_edge=near or closed.near(gap))
+
+
+SQUARE = Kind("square", "trial", "The turtle drives a square", Square, square)

@@ -1,0 +1,54 @@
+"""Check of the end: the node stops on Ctrl-C, and not before."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.causes.crash import crash_of, end_seen
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_ended import why_ended
+from grader.checks.kind import Kind, number
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.tolerance import Band
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stop:
+    """How long after SIGINT the node may take to end (s of wall time)."""
+
+    within_s: float = number(3.0, above=0, at_most=60)
+
+
+def stop(evidence: Evidence, params: Stop) -> Finding:
+    """The node ran until SIGINT and was gone soon after. With which exit code or traceback does not matter."""
+    end = evidence.trial.end
+    expected = f"The node runs until Ctrl-C, and stops within {params.within_s:.0f} s of it."
+    if end.by == "itself":
+        return _too_early(evidence, expected)
+    limit = Band.at_most(params.within_s)
+    took = end.stop_s if end.stop_s is not None else float("inf")
+    if end.by == "SIGINT" and limit.holds(took):
+        return passed("The node stops on Ctrl-C.", near_edge=limit.near(took))
+    if end.by == "SIGINT":
+        seen = f"The node stopped {took:.1f} s after Ctrl-C."
+        cause = "Something may still be waited for after Ctrl-C: a sleep, a thread, an answer."
+        return failed("slow-stop", seen, expected, cause, where=evidence.place("spin"), near_edge=True)
+    force = "it had to be killed" if end.by == "SIGKILL" else "only SIGTERM ended it"
+    cause = "A loop that never ends, or an except that catches everything, keeps it from seeing Ctrl-C."
+    where = evidence.place("spin", "init")
+    return failed("ignores-ctrl-c", f"The node ignored Ctrl-C: {force}.", expected, cause, where=where, near_edge=True)
+
+
+def _too_early(evidence: Evidence, expected: str) -> Finding:
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_seen(evidence), expected)
+    why = why_ended(evidence)
+    return failed(why.diagnosis, end_seen(evidence), expected, why.text, where=why.where)
+
+
+STOP = Kind("stops", "trial", "The node stops on Ctrl-C", Stop, stop)

@@ -1,0 +1,189 @@
+"""Checks of the topic: messages of the right type arrive on it, and no others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.causes.crash import crash_of, end_seen
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_ended import why_ended
+from grader.checks.causes.why_silent import why_nothing, why_qos
+from grader.checks.kind import Kind, text
+from grader.checks.outcome import Finding, Where, failed, passed
+from grader.common.words import a_list, nearest, shorten
+from grader.evidence import observed as seen_in
+from grader.submission.constants import evaluate
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.trial.recording import Endpoint
+
+
+@dataclass(frozen=True, kw_only=True)
+class Topic:
+    """The topic's full name, and its type as in "geometry_msgs/msg/Twist"."""
+
+    topic: str = text("a topic's full name", start="/")
+    type: str = text("a message type, as in geometry_msgs/msg/Twist")
+
+
+COMMANDS = Topic(topic="/turtle1/cmd_vel", type="geometry_msgs/msg/Twist")
+"""What the simulator itself saw: Recording.commands."""
+
+
+def publishes(evidence: Evidence, params: Topic) -> Finding:
+    """Messages of the type arrived on the topic before SIGINT."""
+    recording = evidence.trial
+    if _arrived(evidence, params):
+        return passed(f"{params.type} arrives on {params.topic}.")
+    publishers = seen_in.endpoints(recording, "publisher")
+    on_topic = [publisher for publisher in publishers if publisher.topic == params.topic]
+    if any(publisher.type == params.type for publisher in on_topic):
+        return _silent(evidence, params)
+    if on_topic:
+        return _wrong_type(evidence, params, on_topic)
+    if publishers:
+        return _wrong_topic(evidence, params, publishers)
+    return _no_publisher(evidence, params)
+
+
+def _arrived(evidence: Evidence, params: Topic) -> bool:
+    recording = evidence.trial
+    until = seen_in.end_s(recording)
+    if params.topic == COMMANDS.topic and params.type == COMMANDS.type:
+        return bool(evidence.commands)
+    return any(
+        each.topic == params.topic and each.type == params.type and each.t_s < until for each in recording.messages
+    )
+
+
+def _expected(params: Topic) -> str:
+    return f"{params.type} arrives on {params.topic}."
+
+
+def _wrong_type(evidence: Evidence, params: Topic, publishers: list[Endpoint]) -> Finding:
+    types = a_list(sorted({shorten(publisher.type) for publisher in publishers}))
+    seen = f"{params.topic} gets messages of the type {types}, which the turtle does not understand."
+    cause = "The type is the first argument of create_publisher."
+    return failed("wrong-type", seen, _expected(params), cause, where=_publisher_line(evidence, params.topic))
+
+
+def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, ...]) -> Finding:
+    same_type = [publisher for publisher in publishers if publisher.type == params.type]
+    topics = sorted({publisher.topic for publisher in same_type or publishers})
+    guess = nearest(params.topic, topics)
+    shown = [guess] if guess is not None else topics
+    seen = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, where no turtle listens."
+    diagnosis, cause = _why_topic(params.topic, shown[0])
+    return failed(diagnosis, seen, _expected(params), cause, where=_publisher_line(evidence, shown[0]))
+
+
+def _why_topic(wanted: str, topic: str) -> tuple[str, str]:
+    """What is wrong with a topic's name, as far as the two names tell."""
+    last = wanted.rpartition("/")[2]
+    if topic == f"/{last}":
+        return "topic-without-turtle", "Each turtle has a topic of its own: the turtle's name is part of the topic's."
+    if topic.lower() == wanted.lower():
+        return "topic-capitals", "Capital and small letters differ."
+    if topic.endswith(wanted):
+        return "topic-namespace", "The name has a namespace before it: one that begins with a slash is taken as it is."
+    if topic.endswith(f"/{last}") and topic.count("/") == 2 and nearest(topic, [wanted]):
+        return "topic-other-turtle", "There is no turtle of that name here."
+    return "wrong-topic", "The topic's name is the second argument of create_publisher; compare it letter by letter."
+
+
+def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
+    subscribed = [each for each in seen_in.endpoints(evidence.trial, "subscription") if each.topic == params.topic]
+    if subscribed:
+        cause = "A subscription only listens; create_publisher makes what sends."
+        where = evidence.place("create_subscription")
+        return failed(
+            "subscription-instead", f"The node subscribes to {params.topic}.", _expected(params), cause, where=where
+        )
+    seen = end_seen(evidence) or "The node has no publisher."
+    why = why_nothing(evidence, ("publish",)) if evidence.code.calls("create_publisher") else None
+    if why is not None:
+        return failed(why.diagnosis, seen, _expected(params), why.text, where=why.where)
+    cause = "" if evidence.code.calls("create_publisher") else "create_publisher is called nowhere."
+    return failed("no-publisher", seen, _expected(params), cause, where=evidence.place("create_publisher"))
+
+
+def _silent(evidence: Evidence, params: Topic) -> Finding:
+    """There is a publisher of the right type on the right topic, and nothing came."""
+    seen = f"The publisher on {params.topic} is there, but after the start no message came."
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
+    if evidence.trial.end.by == "itself":
+        why = why_ended(evidence)
+        return failed(why.diagnosis, f"{seen} {end_seen(evidence)}", _expected(params), why.text, where=why.where)
+    cause, diagnosis, where = _why_silent(evidence)
+    return failed(diagnosis, f"{seen} {end_seen(evidence)}".rstrip(), _expected(params), cause, where=where)
+
+
+def _why_silent(evidence: Evidence) -> tuple[str, str, Where | None]:
+    code = evidence.code
+    if not code.calls("publish"):
+        return "The method publish is called nowhere.", "no-publish", code.start
+    why = why_qos(evidence) or why_nothing(evidence, ("publish",))
+    if why is not None:
+        return why.text, why.diagnosis, why.where or code.start
+    cause = "The line that publishes is never reached, or only at the start, when nobody has found the publisher yet."
+    return cause, "never-publishes", evidence.place("publish")
+
+
+def _publisher_line(evidence: Evidence, topic: str) -> Where | None:
+    """The line that makes the publisher of this topic, as far as that can be told."""
+    calls = evidence.code.calls("create_publisher")
+    for call in calls:
+        value = evaluate(call.argument(1, "topic"), call.module.names)
+        if isinstance(value, str) and topic.endswith(f"/{value.strip('/')}"):
+            return call.where
+    return calls[0].where if calls else evidence.code.start
+
+
+def only_type(evidence: Evidence, params: Topic) -> Finding:
+    """The submission publishes no other type on the topic."""
+    found = seen_in.endpoints(evidence.trial, "publisher")
+    types = {publisher.type for publisher in found if publisher.topic == params.topic}
+    types |= {message.type for message in evidence.trial.messages if message.topic == params.topic}
+    others = sorted(types - {params.type})
+    if others:
+        seen = f"{params.topic} also gets messages of the type {a_list([shorten(other) for other in others])}."
+        cause = "A topic has one type: two publishers on one name, with different types, do not go together."
+        return failed(
+            "second-type", seen, f"Only {params.type} there.", cause, where=_publisher_line(evidence, params.topic)
+        )
+    return passed(f"Only {params.type} is published on {params.topic}.")
+
+
+def subscribes(evidence: Evidence, params: Topic) -> Finding:
+    """The submission subscribes to the topic, with the type."""
+    found = seen_in.endpoints(evidence.trial, "subscription")
+    expected = f"The node subscribes to {params.topic}, with the type {params.type}."
+    where = evidence.place("create_subscription")
+    if any((each.topic, each.type) == (params.topic, params.type) for each in found):
+        return passed(expected)
+    on_topic = [each.type for each in found if each.topic == params.topic]
+    if on_topic:
+        seen = f"The node subscribes to {params.topic} with the type {shorten(on_topic[0])}, so nothing reaches it."
+        cause = "The type is the first argument of create_subscription."
+        return failed("wrong-type", seen, expected, cause, where=where)
+    if found:
+        seen = f"The node subscribes to {a_list(sorted({shorten(each.topic) for each in found}))}."
+        cause = "The topic's name is the second argument of create_subscription; compare it letter by letter."
+        return failed("wrong-topic", seen, expected, cause, where=where)
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_seen(evidence), expected)
+    cause = "" if evidence.code.calls("create_subscription") else "create_subscription is called nowhere."
+    return failed("no-subscription", "The node has no subscription.", expected, cause, where=where)
+
+
+PUBLISHES = Kind("publishes", "trial", "Messages arrive on the topic", Topic, publishes)
+ONLY_TYPE = Kind("topic_type", "trial", "The topic carries one type", Topic, only_type)
+SUBSCRIBES = Kind("subscribes", "trial", "The node listens on the topic", Topic, subscribes)

@@ -1,0 +1,152 @@
+"""Check of the values: what stands in every command that arrived."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.kind import Kind, number
+from grader.checks.outcome import Finding, Where, failed, passed
+from grader.checks.tolerance import Band
+from grader.common.words import a_list
+from grader.common.words import number as shown
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from grader.evidence.evidence import Evidence
+    from grader.trial.recording import Command
+
+FIELDS = ("linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z")
+Six = tuple[float, ...]
+"""A command's values in the order of FIELDS: m/s three times, rad/s three times."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Values:
+    """What each command must say; the fields that are left out must be 0."""
+
+    linear_x_m_s: float = number(0.0)
+    linear_y_m_s: float = number(0.0)
+    linear_z_m_s: float = number(0.0)
+    angular_x_rad_s: float = number(0.0)
+    angular_y_rad_s: float = number(0.0)
+    angular_z_rad_s: float = number(0.0)
+    linear_tolerance_m_s: float = number(1e-6, above=0)
+    angular_tolerance_rad_s: float = number(1e-6, above=0)
+
+    @property
+    def wanted(self) -> Six:
+        """The six values."""
+        linear = (self.linear_x_m_s, self.linear_y_m_s, self.linear_z_m_s)
+        return (*linear, self.angular_x_rad_s, self.angular_y_rad_s, self.angular_z_rad_s)
+
+    @property
+    def bands(self) -> tuple[Band, ...]:
+        """The six tolerances."""
+        tolerances = [self.linear_tolerance_m_s] * 3 + [self.angular_tolerance_rad_s] * 3
+        return tuple(Band.around(nominal, width) for nominal, width in zip(self.wanted, tolerances, strict=True))
+
+
+def values(evidence: Evidence, params: Values) -> Finding:
+    """Every command before SIGINT says what it should, in all six fields."""
+    bands = params.bands
+    amounts = Counter(_six(command) for command in evidence.commands)
+    near = any(band.near(value) for six in amounts for band, value in zip(bands, six, strict=True))
+    expected = _expected(params.wanted)
+    wrong = [six for six in amounts if not _all_hold(bands, six)]
+    if not amounts:
+        return failed("no-commands", "No command arrived.", expected)
+    if not wrong:
+        return passed(f"Every command says {expected[:-1]}.", near_edge=near)
+    first = wrong[0]
+    off = [index for index, band in enumerate(bands) if not band.holds(first[index])]
+    said = a_list([_said(index, shown(first[index], params.wanted[index])) for index in off])
+    total, bad = sum(amounts.values()), sum(amounts[six] for six in wrong)
+    amount = (
+        f"All {total} commands were" if bad == total else f"{bad} of {total} commands {'was' if bad == 1 else 'were'}"
+    )
+    alike = len({str(six) for six in wrong}) == 1
+    seen = f"{amount} wrong: {said}{'' if alike else ' in the first of them'}."
+    diagnosis, cause, field = _why(first, params.wanted, off)
+    if diagnosis == "wrong-value" and bad < total:
+        diagnosis, cause = "values-change", "The other commands were right: something changes the values on the way."
+    return failed(diagnosis, seen, expected, cause, where=_line(evidence, field), near_edge=near)
+
+
+def _expected(wanted: Six) -> str:
+    right = a_list([_said(index, shown(value)) for index, value in enumerate(wanted) if value])
+    return f"{right}, all other fields 0." if right else "All fields 0."
+
+
+def _said(index: int, value: str) -> str:
+    """A field with its value and unit."""
+    return f"{FIELDS[index]} {value} {'m/s' if FIELDS[index].startswith('linear') else 'rad/s'}"
+
+
+def _six(command: Command) -> Six:
+    return (*command.linear, *command.angular)
+
+
+def _all_hold(bands: tuple[Band, ...], six: Six) -> bool:
+    return all(band.holds(value) for band, value in zip(bands, six, strict=True))
+
+
+def _line(evidence: Evidence, field: str) -> Where | None:
+    linear_or_angular, axis = field.split(".")
+    return evidence.code.assigned(linear_or_angular, axis) or evidence.place("Twist")
+
+
+def _same(value: float, other: float) -> bool:
+    return math.isclose(value, other, rel_tol=1e-3)
+
+
+def _why(six: Six, wanted: Six, off: list[int]) -> tuple[str, str, str]:
+    """The diagnosis, its cause in words, and the field to look at."""
+    first = FIELDS[off[0]]
+    not_numbers = [FIELDS[index] for index in off if not math.isfinite(six[index])]
+    if not_numbers:
+        return "not-a-number", "Such a value comes from a calculation that has no answer.", not_numbers[0]
+    if not any(six):
+        return "empty-twist", "A new Twist is all zeros: its fields must be set before it is published.", first
+    if any(wanted) and _same(six[0], wanted[5]) and _same(six[5], wanted[0]) and not _same(wanted[0], wanted[5]):
+        return "values-swapped", "The forward speed and the turning speed have changed places.", "linear.x"
+    for index in off:
+        if wanted[index] and not six[index]:
+            other = [each for each in off if _same(six[each], wanted[index]) and not wanted[each]]
+            if other:
+                cause = (
+                    f"{FIELDS[other[0]]} has the number that belongs to {FIELDS[index]}: {_meaning(FIELDS[other[0]])}"
+                )
+                return "wrong-field", cause, FIELDS[other[0]]
+    return _scaled(six, wanted, off) or ("wrong-value", MEANING, first)
+
+
+MEANING = "linear.x is the speed forwards, angular.z how fast it turns to the left."
+
+
+def _meaning(field: str) -> str:
+    if field in ("linear.y", "linear.z"):
+        return "the turtle drives along linear.x only."
+    return "on a plane a robot turns about the axis that points up."
+
+
+SCALES: tuple[tuple[str, str, Callable[[float], float]], ...] = (
+    ("wrong-sign", "The sign is the other way round.", lambda value: -value),
+    ("degrees", "Angles are in radians here; this looks like degrees.", math.degrees),
+    ("degrees", "This looks like degrees turned into radians, where the number was in radians already.", math.radians),
+)
+
+
+def _scaled(six: Six, wanted: Six, off: list[int]) -> tuple[str, str, str] | None:
+    for index in off:
+        for diagnosis, cause, scale in SCALES:
+            fits = wanted[index] != 0.0 and _same(six[index], scale(wanted[index]))
+            if fits and (diagnosis != "degrees" or FIELDS[index].startswith("angular")):
+                return diagnosis, cause, FIELDS[index]
+    return None
+
+
+VALUES = Kind("values", "trial", "The commands say the right values", Values, values)

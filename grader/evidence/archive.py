@@ -1,0 +1,176 @@
+"""Archive: a graded submission as a folder, all that is needed to judge it again without running anything.
+
+    bag/             the messages, a rosbag2 folder (MCAP)
+    trial.json       the rest of the recording
+    build.json       what colcon made
+    submission.json  name, digest and paths
+    source/          the submission's files
+    exercise/        the exercise as it was: exercise.toml
+    trials/ID/       bag/ and trial.json of each further trial of the exercise
+    COLCON_IGNORE    so that colcon never runs the submission's setup.py
+
+bag/ and trial.json are missing where no trial could be run, build.json where nothing could be built.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import shutil
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+from grader.build.build import Build
+from grader.errors import MachineError, UsageError
+from grader.evidence.evidence import Evidence, Fault
+from grader.exercise.model import FILE_NAME, load_exercise
+from grader.submission.package import Submission, open_answers, open_submission, write_copy
+from grader.submission.search import IGNORE_MARKER
+from grader.trial.recording import from_json, to_json
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from grader.exercise.model import Exercise
+    from grader.trial.recording import Recording
+
+_SCHEMA = 1
+
+
+@dataclass(frozen=True)
+class Archived:
+    """What an archive holds beside the evidence: which ROS 2 ran it (for the report)."""
+
+    evidence: Evidence
+    ros: str
+
+
+def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -> None:
+    """Write `evidence` as the folder, which must not exist or be empty. `prefixes` hold the message types' .msg files.
+
+    Raises:
+        UsageError: there is something in the folder already.
+        MachineError: it cannot be written.
+    """
+    check_free(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        # colcon, called in a folder above, would run the submission's setup.py outside of the sandbox.
+        (folder / IGNORE_MARKER).touch()
+        submission = evidence.submission
+        write_copy(submission, folder / "source" / submission.package_dir.name)
+        (folder / "exercise").mkdir()
+        shutil.copyfile(evidence.exercise.folder / FILE_NAME, folder / "exercise" / FILE_NAME)
+        _write(folder / "submission.json", _about(evidence, ros))
+        if evidence.build is not None:
+            _write(folder / "build.json", {"schema": _SCHEMA, **asdict(evidence.build)})
+        _save_trial(folder, evidence.recording, prefixes)
+        for trial, other in evidence.others.items():
+            (folder / "trials" / trial).mkdir(parents=True)
+            _save_trial(folder / "trials" / trial, other.recording, prefixes)
+    except OSError as error:
+        message = f"The recording could not be written to {folder}: {error.strerror}."
+        raise MachineError(message) from error
+
+
+def _save_trial(folder: Path, recording: Recording | None, prefixes: Iterable[Path]) -> None:
+    if recording is not None:
+        from grader.evidence.bag import write_bag  # rosbags takes its time: only where a bag is written
+
+        write_bag(folder / "bag", recording.messages, prefixes)
+        _write(folder / "trial.json", {"schema": _SCHEMA, **to_json(recording, messages=False)})
+
+
+def _load_trial(folder: Path) -> Recording | None:
+    if not (folder / "trial.json").exists():
+        return None
+    from grader.evidence.bag import read_payloads
+
+    return from_json(_read(folder / "trial.json"), read_payloads(folder / "bag"))
+
+
+def check_free(folder: Path) -> None:
+    """See that a recording may be written there, before time is spent on making one.
+
+    Raises:
+        UsageError: it is a file, or there is something in it.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        message = f"{folder} is not an empty folder. A recording needs a folder of its own: name a new one."
+        raise UsageError(message)
+
+
+def load(folder: Path, exercise: Exercise | None = None) -> Archived:
+    """Read an archive; `exercise` judges in place of the one that was kept.
+
+    Raises:
+        UsageError: the folder is no archive of this version of the grader.
+    """
+    try:
+        about = _read(folder / "submission.json")
+        kept = exercise or load_exercise(folder / "exercise" / FILE_NAME)
+        package = folder / "source" / about["package"]
+        opened = open_submission(package) if kept.package else open_answers(package)
+        submission = Submission(
+            name=about["name"],
+            package_dir=opened.package_dir,
+            files=opened.files,
+            rejected=tuple(about["rejected"]),
+            digest=about["digest"],
+            executable=opened.executable,
+            student=about.get("student"),
+        )
+        build = _build(_read(folder / "build.json")) if (folder / "build.json").exists() else None
+        fault = Fault(**about["fault"]) if about["fault"] else None
+        evidence = Evidence(kept, submission, build, _load_trial(folder), fault, about["overwhelmed"])
+        others = {
+            trial.id: dataclasses.replace(
+                evidence.in_trial(trial.id),
+                recording=_load_trial(folder / "trials" / trial.id),
+                overwhelmed=about["others"].get(trial.id),
+            )
+            for trial in kept.trials
+            if trial.id in about["others"]
+        }
+    except (OSError, KeyError, TypeError, ValueError) as error:
+        told = f"{type(error).__name__}: {error}"
+        message = f"{folder} cannot be read as a recording, as `grader check --recording {folder}` writes one ({told})."
+        raise UsageError(message) from error
+    return Archived(dataclasses.replace(evidence, others=others), about["ros"])
+
+
+def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
+    submission = evidence.submission
+    return {
+        "schema": _SCHEMA,
+        "name": submission.name,
+        "package": submission.package_dir.name,
+        "digest": submission.digest,
+        "rejected": list(submission.rejected),
+        "student": submission.student,
+        "files": [os.fsencode(path).decode("utf-8", "backslashreplace") for path in submission.files],
+        "ros": ros,
+        "fault": asdict(evidence.fault) if evidence.fault else None,
+        "overwhelmed": evidence.overwhelmed,
+        "others": {trial: other.overwhelmed for trial, other in evidence.others.items()},
+    }
+
+
+def _build(data: dict[str, Any]) -> Build:
+    lists = {name: tuple(data[name]) for name in ("installed", "executables")}
+    return Build(**{**data, **lists})
+
+
+def _write(file: Path, data: dict[str, Any]) -> None:
+    # Not UTF-8 in a name becomes an escape: JSON can be read by everybody.
+    file.write_text(json.dumps(data, indent=1, ensure_ascii=True) + "\n", encoding="ascii")
+
+
+def _read(file: Path) -> dict[str, Any]:
+    data = json.loads(file.read_text(encoding="utf-8"))
+    if not isinstance(data, dict) or data.pop("schema", None) != _SCHEMA:
+        message = f"{file.name} is not of schema {_SCHEMA}"
+        raise ValueError(message)
+    return data

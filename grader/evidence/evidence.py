@@ -1,0 +1,136 @@
+"""Evidence: all that a check may look at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from grader.evidence import observed
+from grader.evidence.track import Track, track_of
+from grader.submission.answers import Answers, read_answers
+from grader.submission.code import Code, module_file, read_code
+from grader.submission.package_xml import Manifest, read_manifest
+from grader.submission.setup_py import SetupPy, read_setup_py
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from grader.build.build import Build
+    from grader.checks.kind import Stage
+    from grader.checks.outcome import Where
+    from grader.exercise.model import Exercise
+    from grader.submission.package import Submission
+    from grader.trial.recording import Command, Recording
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault of the machine: `stage` and all later ones could not be done. `message` says what to do."""
+
+    stage: Stage
+    message: str
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """A submission and what was seen of it; `build` and `recording` are None as long as they were not made.
+
+    What the source files say is read on first use, from `submission.files` alone.
+    """
+
+    exercise: Exercise
+    submission: Submission
+    build: Build | None = None
+    recording: Recording | None = None
+    fault: Fault | None = None
+    overwhelmed: str | None = None
+    """How the node brought the simulator down, twice; then there is no recording."""
+    others: Mapping[str, Evidence] = field(default_factory=dict)
+    """The same, as seen in the exercise's further trials."""
+
+    def in_trial(self, trial: str) -> Evidence:
+        """The same, as seen in one of the exercise's trials ("" for its own); not yet run, it has no recording."""
+        if trial == self.exercise.trial:
+            return self
+        found = self.others.get(trial)
+        if found is not None:
+            return found
+        return replace(self, exercise=self.exercise.of_trial(trial), recording=None, overwhelmed=None, others={})
+
+    @cached_property
+    def manifest(self) -> Manifest | None:
+        """What package.xml says; None when there is no package.xml."""
+        data = self.submission.files.get("package.xml")
+        return None if data is None else read_manifest(data)
+
+    @cached_property
+    def setup_py(self) -> SetupPy | None:
+        """What setup.py says, read without running it; None when there is no setup.py."""
+        data = self.submission.files.get("setup.py")
+        return None if data is None else read_setup_py(data)
+
+    @cached_property
+    def answers(self) -> Answers | None:
+        """What answers.toml says; None when there is no answers.toml."""
+        data = self.submission.files.get("answers.toml")
+        return None if data is None else read_answers(data)
+
+    @cached_property
+    def node_file(self) -> str | None:
+        """The file of the exercise's node: where the entry point leads, else the file named after the executable."""
+        target = self.entry_point()
+        files = self.submission.files
+        if target is not None:
+            found = module_file(target.partition(":")[0].strip(), files)
+            if found is not None:
+                return found
+        named = sorted(path for path in files if path.rpartition("/")[2] == f"{self.exercise.executable}.py")
+        return named[0] if named else None
+
+    @cached_property
+    def code(self) -> Code:
+        """What the node's file says, and the files that it imports."""
+        return read_code(self.submission.files, first=self.node_file)
+
+    @cached_property
+    def commands(self) -> tuple[Command, ...]:
+        """The commands that arrived before SIGINT."""
+        return observed.commands(self.trial)
+
+    @cached_property
+    def track(self) -> Track:
+        """The turtle's way until SIGINT."""
+        return track_of(self.trial)
+
+    def entry_point(self) -> str | None:
+        """Return "module:attribute" of the exercise's executable: as installed, else as setup.py says."""
+        executable = self.exercise.executable
+        if self.build is not None and executable in self.build.entry_points:
+            return self.build.entry_points[executable]
+        declared = self.setup_py.entry_point(executable) if self.setup_py is not None else None
+        return declared.target if declared is not None else None
+
+    @property
+    def trial(self) -> Recording:
+        """The recording; only for checks of the stage "trial", which are not judged without one."""
+        if self.recording is None:
+            message = "a check of a trial was judged without a recording"
+            raise ValueError(message)
+        return self.recording
+
+    @property
+    def built(self) -> Build:
+        """The build; only for checks of the stages "build" and "trial"."""
+        if self.build is None:
+            message = "a check of a build was judged without a build"
+            raise ValueError(message)
+        return self.build
+
+    def place(self, *calls: str) -> Where | None:
+        """Where in the submission one of these functions is called, the first that is; else the node's file."""
+        for name in calls:
+            found = self.code.calls(name)
+            if found:
+                return found[0].where
+        return self.code.start

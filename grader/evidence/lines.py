@@ -1,0 +1,61 @@
+"""Lines of the log that the student's node wrote, and the format that the lesson asks for."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.evidence import observed
+
+if TYPE_CHECKING:
+    from grader.trial.recording import LogLine, Recording
+
+FIELD = re.compile(r"\{(?P<name>[a-z_]+)(?::\.(?P<digits>\d)f)?\}")
+OUR_LOGGERS = ("turtlesim",)
+
+
+@dataclass(frozen=True)
+class Format:
+    """A line with numbers in it: "Hello {counter}", or "x={x:.2f}" for one with two digits behind the point."""
+
+    text: str
+
+    def pattern(self) -> re.Pattern[str]:
+        """What a whole line must match; the groups are the numbers."""
+        parts, at = [], 0
+        for match in FIELD.finditer(self.text):
+            digits = match["digits"]
+            number = r"-?\d{1,15}" + (rf"\.\d{{{digits}}}" if digits else "")
+            parts += [re.escape(self.text[at : match.start()]), f"(?P<{match['name']}>{number})"]
+            at = match.end()
+        return re.compile("".join([*parts, re.escape(self.text[at:])]), re.ASCII)
+
+    def example(self, number: float = 0.0) -> str:
+        """A line as it might be, with the same number everywhere."""
+        return FIELD.sub(lambda match: f"{number:.{match['digits'] or 0}f}", self.text)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line in the format: when it arrived (s), and its numbers."""
+
+    t_s: float
+    numbers: dict[str, float]
+
+
+def students(recording: Recording) -> tuple[LogLine, ...]:
+    """What the submission logged before SIGINT, by arrival."""
+    until = observed.end_s(recording)
+    return tuple(line for line in recording.log if line.logger not in OUR_LOGGERS and line.t_s < until)
+
+
+def in_format(recording: Recording, text: str) -> tuple[Line, ...]:
+    """The lines that are in the format."""
+    pattern = Format(text).pattern()
+    found = ((line.t_s, pattern.fullmatch(line.text)) for line in students(recording))
+    return tuple(
+        Line(t_s, {name: float(number) for name, number in match.groupdict().items()})
+        for t_s, match in found
+        if match is not None
+    )

@@ -1,0 +1,163 @@
+"""Marked regions: what of a solution is the student's to write, and what stands in its place.
+
+    # BEGIN SOLUTION
+    self.timer = self.create_timer(0.5, self.send)
+    # END SOLUTION
+    # BEGIN STARTER
+    # # TODO: create a timer.
+    # END STARTER
+
+The released file has the STARTER block's text, freed of its comment signs, instead of both blocks. In XML and
+Markdown the blocks are comments of their own, and since a comment cannot hold a comment, `<! text !>` in a STARTER
+block stands for one:
+
+    <!-- BEGIN SOLUTION -->
+    <depend>geometry_msgs</depend>
+    <!-- END SOLUTION -->
+    <!-- BEGIN STARTER
+    <! TODO: what else does the node import? !>
+    END STARTER -->
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from grader.errors import UsageError
+
+
+@dataclass(frozen=True)
+class Syntax:
+    """How a kind of file writes comments: the lines that are markers, and how a STARTER block frees its text."""
+
+    markers: dict[str, re.Pattern[str]]
+    line_sign: str
+    """Begins every line of a STARTER block; empty where the block is one comment."""
+
+
+HASH = Syntax(
+    {
+        name: re.compile(rf"\s*#+ *{name}\s*")
+        for name in ("BEGIN SOLUTION", "END SOLUTION", "BEGIN STARTER", "END STARTER")
+    },
+    "#",
+)
+ANGLE = Syntax(
+    {
+        "BEGIN SOLUTION": re.compile(r"\s*<!-- *BEGIN SOLUTION *-->\s*"),
+        "END SOLUTION": re.compile(r"\s*<!-- *END SOLUTION *-->\s*"),
+        "BEGIN STARTER": re.compile(r"\s*<!-- *BEGIN STARTER\s*"),
+        "END STARTER": re.compile(r"\s*END STARTER *-->\s*"),
+    },
+    "",
+)
+SYNTAX = {
+    **dict.fromkeys((".py", ".toml", ".cfg", ".ini", ".yaml", ".yml", ".sh", ".txt"), HASH),
+    **dict.fromkeys((".xml", ".md", ".html"), ANGLE),
+}
+MEANT = re.compile(r"(?:begin|end)[ _-]*(?:solution|starter)", re.IGNORECASE)
+"""What an author may have meant as a marker: a slip here would hand out the solution."""
+
+
+@dataclass(frozen=True)
+class Region:
+    """One region: the lines of the solution, and those that stand in its place. `line` is that of BEGIN SOLUTION."""
+
+    line: int
+    solution: tuple[str, ...]
+    starter: tuple[str, ...]
+
+
+def syntax_of(path: str) -> Syntax | None:
+    """The comments of a file, by its ending; None where we know no regions in it."""
+    return SYNTAX.get(PurePosixPath(path).suffix)
+
+
+def regions(text: str, syntax: Syntax, name: str) -> list[str | Region]:
+    """The text as lines (with their ends) and regions. Raises UsageError, with `name` and line, for markers amiss."""
+    return _Reader(syntax, name).read(text)
+
+
+def stripped(text: str, syntax: Syntax, name: str) -> str:
+    """The text as it is released."""
+    return "".join("".join(part.starter) if isinstance(part, Region) else part for part in regions(text, syntax, name))
+
+
+def solved(text: str, syntax: Syntax, name: str) -> str:
+    """The whole solution, without any trace of markers."""
+    return "".join("".join(part.solution) if isinstance(part, Region) else part for part in regions(text, syntax, name))
+
+
+class _Reader:
+    """Reads one text, line by line; `self.inside` is the block that is open, with the line where it began."""
+
+    def __init__(self, syntax: Syntax, name: str) -> None:
+        self.syntax = syntax
+        self.name = name
+        self.parts: list[str | Region] = []
+        self.inside: str | None = None
+        self.since = 0
+        self.lines: list[str] = []
+
+    def read(self, text: str) -> list[str | Region]:
+        for number, line in enumerate(text.splitlines(keepends=True), 1):
+            marker = next((name for name, shape in self.syntax.markers.items() if shape.fullmatch(line)), None)
+            if marker is None:
+                self._line(number, line)
+            elif marker.startswith("BEGIN"):
+                self._begin(number, marker.removeprefix("BEGIN "))
+            else:
+                self._end(number, marker.removeprefix("END "))
+        if self.inside is not None:
+            raise self._error(self.since, f"BEGIN {self.inside} has no END {self.inside}")
+        return self.parts
+
+    def _line(self, number: int, line: str) -> None:
+        if MEANT.search(line):
+            raise self._error(
+                number, f"{line.strip()!r} is no marker, but reads like one; see grader/exercise/markers.py"
+            )
+        if self.inside is None:
+            self.parts.append(line)
+        elif self.inside == "SOLUTION":
+            self.lines.append(line)
+        else:
+            self.lines.append(self._freed(number, line))
+
+    def _begin(self, number: int, block: str) -> None:
+        if self.inside is not None:
+            raise self._error(number, f"BEGIN {block} inside the {self.inside} block that begins at line {self.since}")
+        if block == "STARTER":
+            while self.parts and isinstance(self.parts[-1], str) and not self.parts[-1].strip():
+                self.parts.pop()
+            last = self.parts[-1] if self.parts else None
+            if not isinstance(last, Region) or last.starter:
+                raise self._error(number, "BEGIN STARTER belongs right below an END SOLUTION")
+        self.inside, self.since, self.lines = block, number, []
+
+    def _end(self, number: int, block: str) -> None:
+        if self.inside != block:
+            raise self._error(number, f"END {block} without a BEGIN {block}")
+        if block == "SOLUTION":
+            self.parts.append(Region(self.since, tuple(self.lines), ()))
+        else:
+            region = self.parts[-1]
+            assert isinstance(region, Region)
+            self.parts[-1] = Region(region.line, region.solution, tuple(self.lines))
+        self.inside = None
+
+    def _freed(self, number: int, line: str) -> str:
+        if not self.syntax.line_sign:
+            return line.replace("<!", "<!--").replace("!>", "-->")
+        indent, sign, rest = line.partition(self.syntax.line_sign)
+        if not line.strip():
+            return line
+        if not sign or indent.strip():
+            raise self._error(number, f"a line of a STARTER block begins with {self.syntax.line_sign!r}")
+        text = rest.removeprefix(" ")
+        return indent + text if text.strip() else text
+
+    def _error(self, number: int, what: str) -> UsageError:
+        return UsageError(f"{self.name}:{number}: {what}.")

@@ -1,0 +1,166 @@
+"""Exercise: what is to be done in a step, read from course/*/exercise.toml."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.common.words import a_list, nearest
+from grader.errors import MachineError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+FILE_NAME = "exercise.toml"
+
+Param = str | float | int | bool | tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class CheckSpec:
+    """One `[[check]]`: `params` hold its numbers, with units in their names (`rate_hz`, `radius_m`).
+
+    `trial`: the id of the trial that it judges, empty for the exercise's own.
+    """
+
+    id: str
+    kind: str
+    title: str
+    points: float
+    needs: tuple[str, ...]
+    hidden: bool
+    params: Mapping[str, Param]
+    trial: str = ""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """From `from_s` (s) on the simulator itself drives the turtle; each speed is drawn from its two limits."""
+
+    from_s: float
+    linear_x_m_s: tuple[float, float]
+    angular_z_rad_s: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """What a trial does: `duration_s` on the trial's clock, then SIGINT.
+
+    `anywhere`: the turtle starts at a drawn place even without a seed. `rename`: remapping rules of the simulator, as
+    "/turtle1/pose:=/where". `pose_every`: it publishes a pose every so many frames.
+    """
+
+    duration_s: float
+    drives: tuple[Drive, ...] = ()
+    anywhere: bool = False
+    rename: tuple[str, ...] = ()
+    pose_every: int = 1
+
+
+@dataclass(frozen=True)
+class TrialSpec:
+    """One `[[trial]]`: another executable of the same package in a scenario of its own."""
+
+    id: str
+    executable: str
+    node: str
+    scenario: Scenario
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """A step's exercise. `node` is the node's name without a slash, `executable` the entry point that starts it.
+
+    Without a `package` what is handed in is answers.toml alone, and the simulator runs by itself.
+    """
+
+    id: str
+    title: str
+    package: str
+    executable: str
+    node: str
+    scenario: Scenario
+    checks: tuple[CheckSpec, ...]
+    hints: tuple[str, ...]
+    folder: Path
+    digest: str = ""
+    """sha256 of exercise.toml: what the exercise asks for, and how it is judged."""
+    unsolved: tuple[str, ...] = ()
+    """The checks that the starting point must fail (for its author: `grader validate`); what needs them is skipped."""
+    trials: tuple[TrialSpec, ...] = ()
+    """Further trials, after the exercise's own."""
+    trial: str = ""
+    """Seen as which of its trials: `executable`, `node` and `scenario` are that one's."""
+    whole: Exercise | None = None
+    """Where it is seen as a further trial: the exercise itself."""
+
+    def of_trial(self, trial: str) -> Exercise:
+        """The exercise seen as one of its further trials, or as itself (""); KeyError for one that it does not have."""
+        itself = self.whole or self
+        if not trial:
+            return itself
+        spec = {each.id: each for each in self.trials}[trial]
+        return replace(
+            self, executable=spec.executable, node=spec.node, scenario=spec.scenario, trial=trial, whole=itself
+        )
+
+
+def course_folder() -> Path:
+    """The folder course/: beside the package in a checkout, inside it in an installed wheel.
+
+    Raises MachineError when neither is there.
+    """
+    package = Path(__file__).resolve().parents[1]
+    for folder in (package.parent / "course", package / "course"):
+        if any(folder.glob(f"*/{FILE_NAME}")):
+            return folder
+    message = "The lessons (the folder course/) are missing from this installation of the grader: install it again."
+    raise MachineError(message)
+
+
+def catalogue(course: Path | None = None) -> dict[str, Path]:
+    """Every exercise of the course, id -> its exercise.toml, in the order of the lessons; nothing is parsed."""
+    folder = course_folder() if course is None else course
+    return {file.parent.name: file for file in sorted(folder.glob(f"*/{FILE_NAME}"))}
+
+
+def find_exercise(name: str, course: Path | None = None) -> Exercise:
+    """The exercise with this id, or the only one whose id begins with `name` (as in "03"). Raises UsageError."""
+    files = catalogue(course)
+    begin = [each for each in files if name and each.startswith(name)]
+    if name in files:
+        return load_exercise(files[name])
+    if len(begin) == 1:
+        return load_exercise(files[begin[0]])
+    guess = nearest(name, files)
+    hint = f"did you mean {guess}? " if guess else ""
+    several = f"several exercises begin with {name!r}" if begin else f"there is no exercise {name!r}"
+    message = f"{several}: {hint}The exercises are {a_list(begin or list(files))}."
+    raise UsageError(message)
+
+
+def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | None:
+    """The exercise that a folder below exercises/ or solutions/ belongs to; None elsewhere."""
+    parts = path.resolve().parts
+    files = catalogue(course)
+    for parent, name in zip(reversed(parts[:-1]), reversed(parts[1:]), strict=True):
+        if parent in ("exercises", "solutions") and name in files:
+            return load_exercise(files[name])
+    return None
+
+
+def load_exercise(path: Path) -> Exercise:
+    """The exercise in a file, or in the file exercise.toml of a folder.
+
+    Raises UsageError that tells its author every problem: which key, what was seen, what is allowed.
+    """
+    from grader.exercise.exercise_toml import parse_exercise
+
+    file = path / FILE_NAME if path.is_dir() else path
+    try:
+        data = file.read_bytes()
+    except OSError as error:
+        message = f"{file}: cannot be read ({error.strerror})."
+        raise UsageError(message) from error
+    return parse_exercise(data, name=str(file), folder=file.parent)

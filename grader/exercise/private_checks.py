@@ -1,0 +1,127 @@
+"""An instructor's private checks: a folder laid out as course/, whose exercise.toml files lie outside the repository.
+
+What such a file says is laid over the course's own exercise.toml:
+
+    schema = 1
+    [scenario]      keys that replace the course's
+    [[check]]       with an id of the course's: its keys replace those of that check (all of them where the kind is
+                    another); with a new id: one check more. Hidden, unless it says `hidden = false`
+    [[trial]]       the same, by id
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from grader.common.words import a_list, nearest
+from grader.errors import UsageError
+from grader.exercise.exercise_toml import SCHEMA, parse_tables, read_toml
+from grader.exercise.model import FILE_NAME, catalogue
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from grader.exercise.model import Exercise
+
+ALLOWED = ("schema", "scenario", "check", "trial")
+
+
+@dataclass(frozen=True)
+class Sources:
+    """What an exercise is made of: the course's exercise.toml and, perhaps, an instructor's, as bytes."""
+
+    id: str
+    public: bytes
+    private: bytes | None = None
+    private_name: str = ""
+    """What messages call the private file."""
+
+    def exercise(self, folder: Path) -> Exercise:
+        """The exercise; `folder` is that of the lesson. Raises UsageError naming every problem."""
+        name = f"{self.id}/{FILE_NAME}"
+        public = read_toml(self.public, name)
+        digest = hashlib.sha256(self.public).hexdigest()
+        if self.private is None:
+            return parse_tables(public, name, folder, digest)
+        private = read_toml(self.private, self.private_name)
+        merged = merge(public, private, self.private_name)
+        both = f"{digest} {hashlib.sha256(self.private).hexdigest()}"
+        named = f"{self.private_name}, laid over the course's"
+        return parse_tables(merged, named, folder, hashlib.sha256(both.encode()).hexdigest())
+
+
+def sources_of(ids: set[str], checks: Path | None) -> dict[str, Sources]:
+    """What the exercises with these ids are made of; `checks` is the folder of private checks.
+
+    Raises:
+        UsageError: the folder holds none, or none for these exercises, or some for an exercise that there is not.
+    """
+    files = catalogue()
+    private = _private_files(checks, files) if checks else {}
+    if checks and not private.keys() & ids:
+        message = f"{checks} has checks for {a_list(sorted(private))}, and none for {a_list(sorted(ids))}."
+        raise UsageError(message)
+    return {
+        name: Sources(
+            name,
+            files[name].read_bytes(),
+            private[name].read_bytes() if name in private else None,
+            str(private.get(name, "")),
+        )
+        for name in sorted(ids)
+    }
+
+
+def _private_files(checks: Path, known: Mapping[str, Path]) -> dict[str, Path]:
+    found = {file.parent.name: file for file in sorted(checks.glob(f"*/{FILE_NAME}"))}
+    if not found:
+        message = f"There are no checks in {checks}: lay it out as course/, as in 03-circle-publisher/{FILE_NAME}."
+        raise UsageError(message)
+    for name in found:
+        if name not in known:
+            guess = nearest(name, known)
+            hint = f" Did you mean {guess}?" if guess else ""
+            message = f"{found[name]}: there is no exercise {name}.{hint} The exercises are {', '.join(known)}."
+            raise UsageError(message)
+    return found
+
+
+def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The tables of both. Raises UsageError for what a private file may not hold."""
+    unknown = [key for key in private if key not in ALLOWED]
+    if unknown or private.get("schema") != SCHEMA:
+        seen = f'unknown key "{unknown[0]}"' if unknown else f"schema is {private.get('schema')!r}, not {SCHEMA}"
+        message = f"{name}: {seen}. A file of private checks may hold {a_list(ALLOWED)}."
+        raise UsageError(message)
+    merged = dict(public)
+    if isinstance(private.get("scenario"), dict):
+        merged["scenario"] = {**public.get("scenario", {}), **private["scenario"]}
+    hidden = [{"hidden": True, **each} for each in _tables(private, "check", name)]
+    merged["check"] = _laid_over(list(public.get("check", [])), hidden)
+    if "trial" in private:
+        merged["trial"] = _laid_over(list(public.get("trial", [])), _tables(private, "trial", name))
+    return merged
+
+
+def _tables(private: Mapping[str, Any], key: str, name: str) -> list[dict[str, Any]]:
+    value = private.get(key, [])
+    if not isinstance(value, list) or not all(isinstance(each, dict) for each in value):
+        message = f'{name}: "{key}" must be tables [[{key}]].'
+        raise UsageError(message)
+    return value
+
+
+def _laid_over(below: list[dict[str, Any]], above: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    place = {each.get("id"): index for index, each in enumerate(below)}
+    for each in above:
+        at = place.get(each.get("id"))
+        if at is None:
+            below.append(each)
+        elif "kind" in each and each["kind"] != below[at].get("kind"):
+            below[at] = each
+        else:
+            below[at] = {**below[at], **each}
+    return below

@@ -1,0 +1,1 @@
+"""Grading: all parts in order, from a folder to a report."""

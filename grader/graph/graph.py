@@ -1,0 +1,210 @@
+"""The ROS graph as a picture: which nodes and topics it shows, and the same as DOT or as text. Pure data.
+
+Nodes are ellipses, topics are boxes, and an arrow goes the way the messages go. A graph comes from the live system
+(rqt_graph.py) or from a recording (`grader.trial.recording.Graph`); here nobody asks which.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+DEBUG_TOPICS = frozenset({"/rosout", "/rosout_agg", "/parameter_events", "/clock", "/statistics", "/diagnostics"})
+"""Topics that (nearly) every node has, or that serve tools: rqt_graph calls them debug."""
+
+DEBUG_NODES = ("/rqt_gui", "/rqt_graph", "/rviz", "/rosbag2_")
+"""How the names of tools begin."""
+
+
+class Endpoint(Protocol):
+    """A publisher or subscription; `grader.trial.recording.Endpoint` is one."""
+
+    @property
+    def kind(self) -> str:
+        """Either "publisher" or "subscription"."""
+
+    @property
+    def node(self) -> str:
+        """The full name of its node, as in "/draw_circle"."""
+
+    @property
+    def topic(self) -> str:
+        """The full name of its topic, as in "/turtle1/cmd_vel"."""
+
+
+@dataclass(frozen=True)
+class Show:
+    """What of a graph is shown: as the boxes to tick in the real rqt_graph."""
+
+    debug: bool = False
+    """Debug topics (/rosout, /parameter_events, /clock) and the nodes of tools."""
+    hidden: bool = False
+    """Names with a part that begins with "_": the inside of actions, nodes of tools."""
+    dead_ends: bool = True
+    """Topics to which nobody subscribes, or on which nobody publishes."""
+
+
+@dataclass(frozen=True)
+class Node:
+    """A node by its full name; `count` is above 1 where several nodes have the same name, which is a mistake."""
+
+    name: str
+    count: int = 1
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic with the full names of the nodes at its two ends, each sorted and named once."""
+
+    name: str
+    publishers: tuple[str, ...]
+    subscribers: tuple[str, ...]
+
+    @property
+    def dead_end(self) -> bool:
+        """Whether no message can arrive: one of its ends is nobody."""
+        return not (self.publishers and self.subscribers)
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What is to be drawn. Nodes and topics are sorted by name, so that equal graphs give equal pictures."""
+
+    nodes: tuple[Node, ...]
+    topics: tuple[Topic, ...]
+
+    @property
+    def alone(self) -> tuple[Node, ...]:
+        """The nodes that no arrow touches."""
+        touched = {name for topic in self.topics for name in (*topic.publishers, *topic.subscribers)}
+        return tuple(node for node in self.nodes if node.name not in touched)
+
+
+def picture(nodes: Iterable[str], endpoints: Iterable[Endpoint], show: Show | None = None) -> Picture:
+    """Choose what is shown of the nodes (full names, one entry a node) and their publishers and subscriptions."""
+    chosen = show or Show()
+    ends = list(endpoints)
+    counts = Counter(nodes)
+    # An endpoint can be heard of before its node.
+    counts.update({end.node: 1 for end in ends if end.node not in counts})
+    shown = {name: count for name, count in counts.items() if _node_shown(name, chosen)}
+    topics = []
+    for name in sorted({end.topic for end in ends if _topic_shown(end.topic, chosen)}):
+        at = [end for end in ends if end.topic == name and end.node in shown]
+        publishers = sorted({end.node for end in at if end.kind == "publisher"})
+        subscribers = sorted({end.node for end in at if end.kind == "subscription"})
+        topic = Topic(name, tuple(publishers), tuple(subscribers))
+        if at and (chosen.dead_ends or not topic.dead_end):
+            topics.append(topic)
+    return Picture(tuple(Node(name, shown[name]) for name in sorted(shown)), tuple(topics))
+
+
+def _hidden(name: str) -> bool:
+    return any(part.startswith("_") for part in name.split("/"))
+
+
+def _topic_shown(name: str, show: Show) -> bool:
+    return (show.hidden or not _hidden(name)) and (show.debug or name not in DEBUG_TOPICS)
+
+
+def _node_shown(name: str, show: Show) -> bool:
+    return (show.hidden or not _hidden(name)) and (show.debug or not name.startswith(DEBUG_NODES))
+
+
+# --- DOT --------------------------------------------------------------------------------------------------------------
+
+_HEAD = """\
+digraph ros_graph {
+  rankdir=LR;
+  bgcolor="white";
+  pad=0.2;
+  nodesep=0.3;
+  ranksep=0.6;
+  node [label="\\N", fontname="DejaVu Sans", fontsize=12, style=filled, penwidth=1.2];
+  edge [color="#37474f", arrowsize=0.8];
+"""
+_ELLIPSE = 'shape=ellipse, fillcolor="#e3f2fd", color="#1565c0"'
+_BOX = 'shape=box, fillcolor="#fff8e1", color="#ef6c00"'
+
+
+def to_dot(drawn: Picture) -> str:
+    """The picture in Graphviz's language; each node and topic stands in it under its own name."""
+    names = {node.name for node in drawn.nodes}
+    lines = []
+    for node in drawn.nodes:
+        twice = f", label={_quoted(f'{node.name}{chr(10)}({node.count} nodes of this name)')}" if node.count > 1 else ""
+        lines.append(f"{_quoted(node.name)} [{_ELLIPSE}{twice}];")
+    for topic in drawn.topics:
+        # A topic may be called like a node; in DOT they would be one.
+        clash = f", label={_quoted(topic.name)}" if topic.name in names else ""
+        key = _quoted(f"topic {topic.name}" if clash else topic.name)
+        lines.append(f"{key} [{_BOX}{clash}];")
+        lines += [f"{_quoted(publisher)} -> {key};" for publisher in topic.publishers]
+        lines += [f"{key} -> {_quoted(subscriber)};" for subscriber in topic.subscribers]
+    return _HEAD + "".join(f"  {line}\n" for line in lines) + "}\n"
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    return f'"{escaped}"'
+
+
+# --- text -------------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Strokes:
+    """How lines are drawn: into the topic's row from the left, out of it to the right."""
+
+    one: str
+    into: tuple[str, str, str]
+    """The first of several publishers, one between, the last."""
+    out: tuple[str, str, str]
+
+
+_UNICODE = _Strokes("───▶", ("─┬─▶", "─┤  ", "─┘  "), ("─┬─▶", " ├─▶", " └─▶"))
+_ASCII = _Strokes("--->", ("-+->", "-+  ", "-+  "), ("-+->", " +->", " +->"))
+
+
+def to_text(drawn: Picture, *, ascii_only: bool = False) -> str:
+    """The picture for a terminal: a line a topic, its publishers on the left, its subscribers on the right."""
+    strokes = _ASCII if ascii_only else _UNICODE
+    counts = {node.name: node.count for node in drawn.nodes}
+    # What carries messages first.
+    topics = sorted(drawn.topics, key=lambda topic: (topic.dead_end, not topic.publishers, topic.name))
+    left = max((len(_node(name, counts)) for topic in topics for name in topic.publishers), default=0)
+    middle = max((len(topic.name) + 2 for topic in topics), default=0)
+    lines = [line for topic in topics for line in _rows(topic, counts, strokes, left, middle)]
+    if drawn.alone:
+        lines += [""] if lines else []
+        lines += [f"{_node(node.name, counts)}  no topic of those shown" for node in drawn.alone]
+    legend = f"(node) {strokes.one} [topic] {strokes.one} (node): an arrow goes the way the messages go."
+    return "\n".join([*lines, "", legend]) + "\n"
+
+
+def _node(name: str, counts: dict[str, int]) -> str:
+    return f"({name})" + (f" x{counts[name]}" if counts.get(name, 1) > 1 else "")
+
+
+def _rows(topic: Topic, counts: dict[str, int], strokes: _Strokes, left: int, middle: int) -> Iterator[str]:
+    into = list(_branches(len(topic.publishers), strokes.one, strokes.into))
+    out = list(_branches(len(topic.subscribers), strokes.one, strokes.out))
+    blank = " " * len(strokes.one)
+    for row in range(max(len(into), len(out))):
+        publisher = _node(topic.publishers[row], counts) if row < len(into) else ""
+        subscriber = _node(topic.subscribers[row], counts) if row < len(out) else ""
+        box = f"[{topic.name}]" if row == 0 else ""
+        enter = into[row] if row < len(into) else blank
+        leave = out[row] if row < len(out) else blank
+        # The line to the right begins at the box's edge, so that it does not look cut off.
+        gap = strokes.one[0] if row == 0 and out else " "
+        yield f"{publisher:>{left}} {enter} {f'{box} '.ljust(middle + 1, gap)}{leave} {subscriber}".rstrip()
+
+
+def _branches(count: int, one: str, several: tuple[str, str, str]) -> Iterator[str]:
+    for row in range(count):
+        yield one if count == 1 else several[0] if row == 0 else several[2] if row == count - 1 else several[1]

@@ -1,0 +1,80 @@
+"""DOT to a picture: Graphviz places and draws, always with the same font.
+
+Graphviz runs in a process of its own: fontconfig reads its settings from the environment and warns on standard error
+about newer files of the system, and neither is the caller's business.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Literal
+from xml.sax.saxutils import escape
+
+from grader.errors import MachineError
+from grader.interpreter import interpreter
+
+Format = Literal["svg", "png", "json0"]
+_PNG_DPI = 144
+_HANG_S = 60.0
+
+
+def render(dot: str, kind: Format) -> bytes:
+    """Lay out a graph in DOT and draw it: SVG is UTF-8 text, PNG has 144 pixels an inch, json0 says where all lies.
+
+    Raises:
+        MachineError: Graphviz is not here or cannot draw.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        start = interpreter("-m", "grader.graph.layout", kind, env={**os.environ, **_our_font(Path(folder))})
+        try:
+            done = subprocess.run(
+                start.argv, input=dot.encode(), capture_output=True, env=start.env, timeout=_HANG_S, check=False
+            )
+        except subprocess.TimeoutExpired as error:
+            message = f"Graphviz did not draw the graph within {_HANG_S:.0f} s; --output graph.dot writes it undrawn."
+            raise MachineError(message) from error
+    if done.returncode != 0:
+        last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+        message = (
+            f"The graph could not be drawn ({last}). pygraphviz draws it: run `make demo` in the course's folder to "
+            "install it. Without it, --text and --output graph.dot work."
+        )
+        raise MachineError(message)
+    if kind == "svg":
+        # A viewer without this font takes the next: Verdana is as wide, most sans-serif fonts are narrower.
+        return done.stdout.replace(b'font-family="DejaVu Sans"', b'font-family="DejaVu Sans,Verdana,sans-serif"')
+    return done.stdout
+
+
+def _our_font(folder: Path) -> dict[str, str]:
+    """Let fontconfig see matplotlib's DejaVu Sans only: the same widths everywhere, also where there is no font."""
+    spec = find_spec("matplotlib")
+    if spec is None or spec.origin is None:
+        return {}
+    fonts = Path(spec.origin).parent / "mpl-data" / "fonts" / "ttf"
+    file = folder / "fonts.conf"
+    file.write_text(
+        '<?xml version="1.0"?><fontconfig>'
+        f"<dir>{escape(str(fonts))}</dir><cachedir>{escape(str(folder))}</cachedir></fontconfig>"
+    )
+    return {"FONTCONFIG_FILE": str(file)}
+
+
+def _main(kind: str) -> None:
+    """Read DOT from standard input, write the picture to standard output."""
+    import pygraphviz  # type: ignore[import-untyped]
+
+    graph = pygraphviz.AGraph(string=sys.stdin.read())
+    if kind == "png":
+        graph.graph_attr["dpi"] = str(_PNG_DPI)
+    graph.layout("dot")
+    sys.stdout.buffer.write(graph.draw(format=kind))
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1])

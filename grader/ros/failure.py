@@ -1,0 +1,26 @@
+"""How a verb of `ros2` fails: a sentence on standard error and exit code 1, as the real one does."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.common.words import nearest, printable
+from grader.errors import GraderError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+
+class Ros2Error(GraderError):
+    """What was asked for cannot be done; the message is all that is printed. Without one the exit code says it."""
+
+    exit_code = 1
+
+
+def did_you_mean(name: str, candidates: Iterable[str], text: str = "") -> str:
+    """`text`, and below it the candidate most like `name`, if any is."""
+    others = [candidate for candidate in candidates if candidate != name]
+    found = others[0] if len(others) == 1 and others[0].endswith(f"/{name}") else nearest(name, others)
+    if not found and len(name) > 2:
+        found = next((other for other in sorted(others) if other.startswith(name)), None)
+    return "\n".join(part for part in (text, f"Did you mean '{printable(found)}'?" if found else "") if part)

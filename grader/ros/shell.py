@@ -1,0 +1,85 @@
+"""A shell in which ROS 2 is there: what `grader env` prints, and the shell that `grader shell` opens."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import MachineError, UsageError
+from grader.ros import installation, underlay
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+HIGHEST_DOMAIN = 101
+COMMANDS = ("ros2", "rqt_graph")
+"""The commands whose words the shell completes."""
+
+
+def users_environment(
+    domain: int | None, tell: Callable[[str], None], env: Mapping[str, str] = os.environ
+) -> dict[str, str]:
+    """The user's environment with ROS 2 in it; turtlesim's interfaces are built first where they are not yet.
+
+    Raises:
+        UsageError: there is no such domain.
+        MachineError: there is no ROS 2, or turtlesim could not be built.
+    """
+    if domain is not None and not 0 <= domain <= HIGHEST_DOMAIN:
+        message = f"A domain id is a whole number from 0 to {HIGHEST_DOMAIN}, and {domain} is not."
+        raise UsageError(message)
+    here = installation.find_ros(env)
+    return installation.users_environment(here, underlay.ensure(here, tell), env, domain)
+
+
+def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> str:
+    """Shell code, for bash, zsh and sh, that turns `env` into `wanted`, and completes the words of our commands."""
+    lines = [f"# For `source <(grader env)`: ROS 2 Jazzy, in domain {wanted['ROS_DOMAIN_ID']}."]
+    lines += [f"export {name}={shlex.quote(value)}" for name, value in wanted.items() if env.get(name) != value]
+    lines += [
+        # A sourced ROS 2 completes its own `ros2`. zsh has no words to complete before its own set-up ran.
+        'if [ -n "${ZSH_VERSION-}" ]; then',
+        "  whence compdef > /dev/null || { autoload -Uz compinit && compinit -u; }",
+        "fi",
+        'if [ -n "${ZSH_VERSION-}" ] || { [ -n "${BASH_VERSION-}" ] && ! complete -p ros2 > /dev/null 2>&1; }; then',
+        f"  eval {shlex.quote(_completion())}",
+        "fi",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> None:
+    """Become the user's own shell, with ROS 2 as in `wanted` once their own start-up files are done. Never returns."""
+    shell = env.get("SHELL") or "/bin/bash"
+    argv, extra = [shell, "-i"], {}
+    # Only then: a start-up file may set PATH anew, or source a ROS 2.
+    ours = f'eval "$({shlex.quote(str(Path(sys.prefix, "bin/grader")))} env --domain {wanted["ROS_DOMAIN_ID"]})"\n'
+    if Path(shell).name == "bash":
+        argv = [shell, "--rcfile", _start_up(f"[ -f ~/.bashrc ] && . ~/.bashrc\n{ours}", "bashrc"), "-i"]
+    elif Path(shell).name == "zsh":
+        own = env.get("ZDOTDIR", env.get("HOME", "/"))
+        text = f'ZDOTDIR={shlex.quote(own)}\n[ -f "$ZDOTDIR/.zshrc" ] && . "$ZDOTDIR/.zshrc"\n{ours}'
+        extra = {"ZDOTDIR": str(Path(_start_up(text, ".zshrc")).parent)}
+    try:
+        os.execvpe(shell, argv, {**wanted, **extra})
+    except OSError as error:
+        message = f"Your shell could not be started: {shell}: {error.strerror}. The variable SHELL names it."
+        raise MachineError(message) from error
+
+
+def _start_up(text: str, name: str) -> str:
+    """Write a start-up file that takes itself and its folder away when it is read; returns its path."""
+    file = Path(tempfile.mkdtemp(prefix="grader-shell-"), name)
+    file.write_text(f"rm -rf {shlex.quote(str(file.parent))}\n{text}", encoding="utf-8")
+    return str(file)
+
+
+def _completion() -> str:
+    from argcomplete.shell_integration import shellcode
+
+    made: str = shellcode(list(COMMANDS), shell="bash")
+    return made

@@ -1,0 +1,43 @@
+"""How our commands start: behind the real ones where those are installed, and with ROS 2 in their environment."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.interpreter import interpreter
+from grader.ros import index
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+_STARTED_AGAIN = "_GRADER_ROS2_STARTED_AGAIN"
+
+
+def hand_over(command: str, package: str) -> None:
+    """Become the real command where a ROS 2 with this package is sourced, wherever PATH puts it; else return."""
+    ours = Path(sys.argv[0])
+    for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
+        theirs = Path(prefix, "bin", command)
+        installed = Path(prefix, "share/ament_index/resource_index/packages", package).is_file()
+        if installed and os.access(theirs, os.X_OK) and not (ours.exists() and theirs.samefile(ours)):
+            os.execv(theirs, [str(theirs), *sys.argv[1:]])
+
+
+def see_to_environment(needed: Collection[str]) -> None:
+    """Start again with ROS 2 in the environment, as `grader env` gives it, unless these packages are found already.
+
+    Raises:
+        MachineError: there is no ROS 2.
+    """
+    if set(needed) <= index.packages().keys() or _STARTED_AGAIN in os.environ:
+        os.environ.pop(_STARTED_AGAIN, None)
+        return
+    from grader.ros import shell
+
+    wanted = shell.users_environment(None, lambda text: print(f"{text} ...", file=sys.stderr, flush=True))
+    command = str(Path(sys.argv[0]).absolute())
+    again = interpreter(command, *sys.argv[1:], env={**wanted, _STARTED_AGAIN: "1"}, searches=True)
+    os.execve(again.argv[0], again.argv, again.env)

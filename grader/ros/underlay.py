@@ -1,0 +1,219 @@
+"""The underlay: our turtlesim package, built once and kept, for machines whose ROS 2 has no turtlesim."""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.common import xdg
+from grader.errors import MachineError
+from grader.interpreter import interpreter
+from grader.ros import installation
+from grader.setup import machine
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+SOURCES = Path(__file__).parents[1] / "turtlesim/package"
+_TEMPORARY = ".building-"
+_LOG_LINES = 15
+
+
+def _say_nothing(_: str) -> None:
+    """Nobody is there to read it."""
+
+
+def ensure(here: installation.Ros, tell: Callable[[str], None] = _say_nothing) -> Path | None:
+    """Return the prefix of our turtlesim, building it first where that was not done yet; None if `here` has its own.
+
+    A build takes about ten seconds, and `tell` gets a line now and then. Where it is built already, this takes
+    about a millisecond.
+
+    Raises:
+        MachineError: something to build with is missing, the build failed, or the cache cannot be written.
+    """
+    if installation.has_turtlesim(here):
+        return None
+    search = installation.environment(here, home=Path("/"))["PATH"]
+    prefix = xdg.cache() / _name(here, _compiler(search))
+    if prefix.is_dir():
+        return prefix
+    kept = _built_by_another_compiler(here) if _compiler(search) is None else None
+    if kept is not None:
+        return kept
+    _require_tools(search)
+    try:
+        with _one_at_a_time(tell):
+            if not prefix.is_dir():
+                _build(here, prefix, tell)
+    except OSError as error:
+        message = (
+            f"The turtlesim interfaces could not be built in {xdg.cache()}: {error.strerror or error}. The folder must "
+            "be writable and have 20 MB free; XDG_CACHE_HOME says where it lies."
+        )
+        raise MachineError(message) from error
+    return prefix
+
+
+def _name(here: installation.Ros, compiler: Path | None) -> str:
+    """Name the build by all that it was made of; no process is started for that."""
+    return f"turtlesim-{_key_of_sources(here)}-{_key_of_compiler(compiler)}"
+
+
+def _key_of_sources(here: installation.Ros) -> str:
+    key = hashlib.sha256()
+    abi = sysconfig.get_config_var("SOABI")
+    for part in (here.kind, here.version, here.prefix, here.python, sys.version, abi):
+        key.update(f"{part}\n".encode())
+    for path in sorted(path for path in SOURCES.rglob("*") if path.is_file()):
+        key.update(f"{path.relative_to(SOURCES)}\n".encode())
+        key.update(path.read_bytes())
+    return key.hexdigest()[:16]
+
+
+def _key_of_compiler(compiler: Path | None) -> str:
+    # Running it to learn its version would cost more than all the rest: a compiler that was exchanged has another
+    # time or size.
+    if compiler is None:
+        return "none"
+    binary = compiler.resolve()
+    stat = binary.stat()
+    return hashlib.sha256(f"{binary}\n{stat.st_mtime_ns}\n{stat.st_size}".encode()).hexdigest()[:8]
+
+
+def _compiler(search: str) -> Path | None:
+    found = shutil.which("c++", path=search)
+    return Path(found) if found else None
+
+
+def _built_by_another_compiler(here: installation.Ros) -> Path | None:
+    """Find a finished build whose compiler has been removed since: what it made still works."""
+    builds = xdg.cache().glob(f"turtlesim-{_key_of_sources(here)}-*")
+    return max(builds, key=lambda build: build.stat().st_mtime, default=None)
+
+
+def _require_tools(search: str) -> None:
+    python_headers = Path(sysconfig.get_path("include"), "Python.h")
+    dev = f"python{sys.version_info.major}.{sys.version_info.minor}-dev"
+    checks = [
+        (shutil.which("c++", path=search), machine.Need("a C++ compiler", "g++")),
+        (shutil.which("cc", path=search), machine.Need("a C compiler", "gcc")),
+        (shutil.which("cmake", path=search), machine.Need("cmake", "cmake")),
+        (shutil.which("ninja", path=search) or shutil.which("make", path=search), machine.Need("make", "make")),
+        (python_headers.is_file(), machine.Need("Python's headers (Python.h)", dev)),
+    ]
+    missing = [need for found, need in checks if not found]
+    if missing:
+        message = (
+            f"The turtlesim interfaces must be built once, and this machine lacks {_listed(missing)} for that. "
+            f"Install it: {machine.apt_command(missing, root=os.geteuid() == 0)}"
+        )
+        raise MachineError(message)
+
+
+def _listed(needs: list[machine.Need]) -> str:
+    *most, last = [need.what for need in needs]
+    return f"{', '.join(most)} and {last}" if most else last
+
+
+@contextmanager
+def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
+    """Wait for any other process that is building; the lock goes with the process that holds it."""
+    xdg.cache().mkdir(parents=True, exist_ok=True)
+    with (xdg.cache() / "turtlesim.lock").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            tell("Waiting for another process that is building the turtlesim interfaces.")
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def _build(here: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> None:
+    # Left by builds that were killed: whoever holds the lock is the only one who builds.
+    for leftover in prefix.parent.glob(f"{_TEMPORARY}*"):
+        shutil.rmtree(leftover, ignore_errors=True)
+    tell("Building the turtlesim interfaces, once; this takes about ten seconds.")
+    with tempfile.TemporaryDirectory(prefix=_TEMPORARY, dir=prefix.parent) as name:
+        folder = Path(name)
+        env = installation.environment(here, home=folder)
+        staged = Path(f"{folder}/staged{prefix}")
+        configure = [
+            *("cmake", "-S", str(SOURCES), "-B", str(folder / "build")),
+            *("-G", "Ninja" if shutil.which("ninja", path=env["PATH"]) else "Unix Makefiles"),
+            # Not optimized: half the time to build, and a few microseconds a message.
+            *("-DCMAKE_BUILD_TYPE=None", "-DBUILD_TESTING=OFF"),
+            f"-DPython3_EXECUTABLE={here.python}",
+            f"-DCMAKE_INSTALL_PREFIX={prefix}",
+            # No trace of the temporary folder in what is kept.
+            *(f"-DCMAKE_{language}_FLAGS=-ffile-prefix-map={folder}=turtlesim" for language in ("C", "CXX")),
+        ]
+        _run(configure, env, tell)
+        _run(["cmake", "--build", str(folder / "build"), "--parallel", str(os.cpu_count() or 1)], env, tell)
+        # Staged, so that all paths inside name the final place.
+        _run(["cmake", "--install", str(folder / "build")], {**env, "DESTDIR": f"{folder}/staged"}, tell)
+        # Compiled here, since those who use it may not be allowed to write into it.
+        compiling = interpreter(
+            *("-m", "compileall", "-q", "-s", f"{folder}/staged", str(staged / "lib")), python=str(here.python), env=env
+        )
+        _run(compiling.argv, compiling.env, tell)
+        _make_readable(staged)
+        staged.rename(prefix)
+
+
+def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -> None:
+    lines: list[str] = []
+    told = 0
+    with subprocess.Popen(
+        command,
+        # Their Pythons are not started by us: this is the folder where they may look for modules.
+        cwd=env["HOME"],
+        env=env,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        encoding="utf-8",
+        errors="replace",
+    ) as process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            lines.append(line.rstrip())
+            percent = _percent(line)
+            if percent is not None and percent >= told + 20:
+                told = percent
+                tell(f"Building the turtlesim interfaces: {percent} %")
+    if process.returncode != 0:
+        end = "\n".join(line for line in lines[-_LOG_LINES:] if line)
+        message = (
+            f"The turtlesim interfaces could not be built: `{command[0]}` ended with exit code {process.returncode}. "
+            f"Its last lines:\n{end}"
+        )
+        raise MachineError(message)
+
+
+def _percent(line: str) -> int | None:
+    """Read the progress of make (`[ 40%]`) or ninja (`[30/75]`)."""
+    match = re.match(r"\[\s*(\d+)(%|/(\d+))\]", line)
+    if match is None:
+        return None
+    done = int(match[1])
+    return done if match[2] == "%" else 100 * done // max(int(match[3]), 1)
+
+
+def _make_readable(folder: Path) -> None:
+    """Let every user read it (a+rX), whatever the umask: a trial may run as another user."""
+    for path in [folder, *folder.rglob("*")]:
+        if not path.is_symlink():
+            mode = path.stat().st_mode
+            path.chmod(mode | (0o555 if path.is_dir() or mode & 0o111 else 0o444))

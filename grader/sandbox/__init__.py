@@ -1,0 +1,1 @@
+"""The sandbox: the cells in which student code runs, and their limits."""

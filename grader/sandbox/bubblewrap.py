@@ -1,0 +1,279 @@
+"""Run a command without trusting it: the one door through which everything of a student's passes.
+
+Two walls, both made by bubblewrap:
+
+- a **room** holds what belongs together and is ours (the simulator of one trial), as an ordinary user, with
+  processes and a network of its own: loopback only. What a student's node sends is read here, by libraries that may
+  have holes;
+- a **cell** holds a student's process: own user, pid, ipc, uts, cgroup and mount namespaces, no network but the
+  room's, nothing of the disk but what `View` names, a filter of system calls (system_calls.py), limits on memory,
+  processes, files, CPU and disk. What no limit counts in all, watch.py does.
+
+These functions only make command lines; whoever runs them owns the process. Input and output travel on pipes.
+"""
+
+from __future__ import annotations
+
+import os
+import resource
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import MachineError
+from grader.sandbox.system_calls import call_filter
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from grader.ros.installation import Ros
+
+WORKSPACE = Path("/ws")
+"""The workspace inside a cell: a tmpfs of its own."""
+HOME = Path("/tmp/home")
+"""HOME inside room and cell: empty, and gone with it."""
+USER_ID = 65530
+"""Who a root caller becomes: in no range that systemd or Debian's policy gives to users or services."""
+
+MIB = 1024 * 1024
+ROOM_DISK = 256 * MIB
+MOST_OTHERS = 4096
+"""Processes and threads that a user may have beside a grading without a cell."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a cell may use. `memory` is the address space of each process, `disk` of each writable tmpfs (bytes)."""
+
+    memory: int = 4096 * MIB
+    total_memory: int = 2048 * MIB
+    """What all processes and disks of a cell hold together (watch.py)."""
+    processes: int = 600
+    """Processes and threads together; a node that makes 400 timers makes no thread for them."""
+    open_files: int = 1024
+    file_size: int = 256 * MIB
+    disk: int = 256 * MIB
+    files: int = 50_000
+    """Files on the writable disks together (watch.py)."""
+    cpu_s: int = 120
+
+
+NODE_LIMITS = Limits()
+"""What the node of a trial may use."""
+
+
+@dataclass(frozen=True)
+class View:
+    """What a room or cell sees of the disk, each at its own path; `hidden` folders are empty there.
+
+    `writable`: folders through which the cell may hand something out, as the sockets of a kernel.
+    """
+
+    read_only: tuple[Path, ...]
+    hidden: tuple[Path, ...] = ()
+    writable: tuple[Path, ...] = ()
+
+
+def ros_view(ros: Ros, *more: Path) -> View:
+    """The interpreter, ROS 2 and the folders or files `more`; not the grader, though it may be installed beside."""
+    needed = [Path(sys.base_prefix), Path(sys.prefix), *ros.prefixes, *more]
+    site = Path(sys.prefix) / f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
+    hidden = tuple(site / name for name in ("grader", "course", "solutions") if (site / name).is_dir())
+    return View(read_only=tuple(dict.fromkeys(needed)), hidden=hidden)
+
+
+def program() -> str | None:
+    """Where bwrap is, if it is installed."""
+    return shutil.which("bwrap", path="/usr/local/bin:/usr/bin:/bin")
+
+
+def room(argv: Sequence[str], view: View, *, env: Mapping[str, str], cwd: Path | None = None) -> list[str]:
+    """`argv` as an ordinary user in a network of its own, seeing `view`; for our own processes."""
+    command = [_bwrap(), "--unshare-net", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--hostname", "grader"]
+    command += ["--die-with-parent", "--size", str(ROOM_DISK), "--tmpfs", "/tmp", "--perms", "0777", "--dir", str(HOME)]
+    command += [*_disk(view), *(["--dir", "/proc"] if os.geteuid() == 0 else ["--proc", "/proc"])]
+    # LTTng, which rclpy loads, keeps a file here; where it cannot, its threads wait for any child of the process, and
+    # take the exit code of a node that ends just then.
+    command += ["--size", str(ROOM_DISK), "--perms", "1777", "--tmpfs", "/dev/shm"]
+    return [*_ordinary(command), *_environment(env), "--chdir", str(cwd or HOME), "--", *_stay_ordinary(), *argv]
+
+
+def cell(
+    argv: Sequence[str],
+    view: View,
+    *,
+    env: Mapping[str, str],
+    limits: Limits = Limits(),
+    network: bool = False,
+    cwd: Path = WORKSPACE,
+    info_fd: int | None = None,
+    filter_fd: int | None = None,
+) -> list[str]:
+    """`argv` confined. `network`: the caller's own (a room's loopback), else none at all.
+
+    `filter_fd`: the filter of system calls, from system_calls.call_filter(); the process must inherit it.
+
+    A root caller must put the cell in a room, where it is root no longer: root is exempt from the limit on
+    processes, whatever its namespace. `info_fd` gets bubblewrap's JSON with the pid of the cell's first process.
+    """
+    command = [_bwrap(), "--unshare-user", "--disable-userns", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
+    command += ["--unshare-cgroup-try", "--uid", "1000", "--gid", "1000", "--hostname", "robot"]
+    command += ["--die-with-parent", "--new-session", *([] if network else ["--unshare-net"])]
+    # First /tmp, since what `view` names may lie below it.
+    command += ["--size", str(limits.disk), "--tmpfs", "/tmp", "--dir", str(HOME)]
+    command += ["--size", str(limits.disk), "--tmpfs", str(WORKSPACE), *_disk(view), "--proc", "/proc"]
+    # --dev leaves /dev and /dev/shm writable and large.
+    command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev", "--remount-ro", "/"]
+    command += [] if info_fd is None else ["--info-fd", str(info_fd)]
+    command += [] if filter_fd is None else ["--seccomp", str(filter_fd)]
+    # Set inside: the limit on processes then counts only this cell's.
+    return [*command, *_environment(env), "--chdir", str(cwd), "--", *limited(argv, limits, in_cell=True)]
+
+
+def lone_cell(
+    argv: Sequence[str], view: View, *, env: Mapping[str, str], limits: Limits, filter_fd: int | None = None
+) -> list[str]:
+    """`argv` in a cell that shares its network with nobody, whoever the caller is."""
+    inner = cell(argv, view, env=env, limits=limits, filter_fd=filter_fd)
+    return room(inner, view, env=env) if os.geteuid() == 0 else inner
+
+
+def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> list[str]:
+    """`argv` under resource limits: all that can be had without bubblewrap, and part of what a cell has."""
+    # Outside of a cell the kernel counts all processes of the user; watch.py counts those of `argv`.
+    processes = limits.processes if in_cell else limits.processes + MOST_OTHERS
+    return [
+        "prlimit",
+        f"--nproc={_allowed(resource.RLIMIT_NPROC, processes)}",
+        f"--as={_allowed(resource.RLIMIT_AS, limits.memory)}",
+        f"--nofile={_allowed(resource.RLIMIT_NOFILE, limits.open_files)}",
+        f"--fsize={_allowed(resource.RLIMIT_FSIZE, limits.file_size)}",
+        f"--cpu={_allowed(resource.RLIMIT_CPU, limits.cpu_s)}",
+        "--core=0",
+        "--",
+        # When the machine runs out of memory, this is what should go first.
+        *("choom", "-n", "1000", "--"),
+        *argv,
+    ]
+
+
+def _allowed(which: int, wanted: int) -> int:
+    """The limit that is wanted, or the user's own if that is lower: nobody but root can raise it."""
+    hard = resource.getrlimit(which)[1]
+    return wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
+
+
+def usable() -> bool:
+    """Whether cells can be made here: a try of a few milliseconds."""
+    return why_unavailable() is None
+
+
+def require(*, trusted: bool = False) -> bool:
+    """Whether student code is to be confined, for whoever grades strangers for marks.
+
+    `trusted`: they are trusted where there is no sandbox; without a word of that, nothing of theirs runs.
+
+    Raises:
+        MachineError: there is no sandbox here, and they are not trusted.
+    """
+    why = why_unavailable()
+    if why is None or trusted:
+        return why is None
+    message = (
+        f"Code of others runs in a sandbox only, and there is none here: {why}. On "
+        "a machine that you can lose, --trust-submissions runs it all the same, with limits on time, memory and output."
+    )
+    raise MachineError(message)
+
+
+def why_unavailable() -> str | None:
+    """Try a cell; None when it works, else what is wrong and what to do."""
+    if program() is None:
+        return "bubblewrap is not installed: `sudo apt-get install bubblewrap`"
+    view = View(read_only=())
+    env = {"PATH": "/usr/bin:/bin"}
+    with call_filter() as filter_fd:
+        tried = lone_cell(["true"], view, env=env, limits=Limits(), filter_fd=filter_fd)
+        inherited = () if filter_fd is None else (filter_fd,)
+        done = subprocess.run(
+            tried,
+            capture_output=True,
+            text=True,
+            timeout=20,
+            check=False,
+            stdin=subprocess.DEVNULL,
+            pass_fds=inherited,
+        )
+    if done.returncode == 0:
+        return None
+    said = done.stderr.strip().splitlines()[-1:] or ["no message"]
+    return (
+        f"bubblewrap cannot make its namespaces ({said[0]}). On Ubuntu 24.04 an ordinary user is refused them by "
+        "AppArmor: `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows them until the next start, and "
+        'README.md, "The sandbox", has the rule that allows bubblewrap alone and for good; '
+        "in a container, start it with `--security-opt seccomp=unconfined --security-opt apparmor=unconfined`"
+    )
+
+
+def _bwrap() -> str:
+    path = program()
+    if path is None:
+        raise MachineError("bubblewrap is not installed: `sudo apt-get install bubblewrap`.")  # noqa: EM101
+    return path
+
+
+def _ordinary(command: list[str]) -> list[str]:
+    # Root makes mounts and network without a user namespace, and then steps down (_stay_ordinary).
+    return command if os.geteuid() == 0 else [command[0], "--unshare-user", *command[1:]]
+
+
+def _stay_ordinary() -> list[str]:
+    if os.geteuid() != 0:
+        return []
+    # A mount by bubblewrap would cover parts of /proc, and then no cell inside could have a /proc of its own.
+    proc = ["sh", "-c", 'mount -t proc -o nosuid,nodev,noexec proc /proc && exec "$@"', "sh"]
+    # Changing the user clears the signal that --die-with-parent asked for: ask again.
+    user = [f"--reuid={USER_ID}", f"--regid={USER_ID}", "--clear-groups", "--inh-caps=-all", "--bounding-set=-all"]
+    return [*proc, "setpriv", *user, "--no-new-privs", "--pdeathsig=KILL", "--"]
+
+
+def _disk(view: View) -> list[str]:
+    command = []
+    for name in ("bin", "sbin", "lib", "lib32", "lib64"):
+        folder = Path("/") / name
+        if folder.is_symlink():
+            command += ["--symlink", str(folder.readlink()), str(folder)]
+        elif folder.is_dir():
+            command += ["--ro-bind", str(folder), str(folder)]
+    etc = [Path("/etc") / name for name in ("alternatives", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime")]
+    shown = [Path("/usr"), *(path for path in etc if path.exists())]
+    shown += [path for path in view.read_only if not path.is_relative_to("/usr")]
+    # Parents that bwrap makes by itself are closed to all but their owner; named ones are not.
+    named = [*shown, *view.writable]
+    parents = dict.fromkeys(parent for path in named for parent in reversed(path.parents[:-1]))
+    command += [word for parent in parents for word in ("--dir", str(parent))]
+    # What is to be seen of a hidden folder goes in once it is empty.
+    within = {path: folder for path in shown for folder in view.hidden if path.is_relative_to(folder)}
+    command += [word for path in shown if path not in within for word in _seen(path)]
+    command += [word for folder in view.writable for word in ("--bind", str(folder), str(folder))]
+    command += [word for folder in view.hidden for word in ("--tmpfs", str(folder))]
+    for path, folder in within.items():
+        inner = [parent for parent in reversed(path.parents) if parent.is_relative_to(folder) and parent != folder]
+        command += [word for parent in inner for word in ("--dir", str(parent))]
+        command += _seen(path)
+    command += [word for folder in view.hidden for word in ("--remount-ro", str(folder))]
+    return [*command, "--dev", "/dev"]
+
+
+def _seen(path: Path) -> tuple[str, str, str]:
+    return "--ro-bind", str(path), str(path)
+
+
+def _environment(env: Mapping[str, str]) -> list[str]:
+    command = ["--clearenv"]
+    for key, value in env.items():
+        command += ["--setenv", key, value]
+    return command

@@ -1,0 +1,161 @@
+"""Run a child process to its end, with input, capped output and a deadline."""
+
+from __future__ import annotations
+
+import os
+import selectors
+import signal
+import subprocess
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.sandbox.usage import EVERY_S, Guard
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from grader.sandbox.bubblewrap import Limits
+
+_CHUNK = 1024 * 1024
+
+
+@dataclass(frozen=True)
+class Finished:
+    """How a child ended.
+
+    It was ended because of `too_much` on standard output, or because it was `out_of` something that `watch` limits.
+    """
+
+    exit_code: int
+    stdout: bytes
+    stderr: bytes
+    seconds: float
+    timed_out: bool = False
+    too_much: bool = False
+    out_of: str | None = None
+
+
+class _Tail:
+    """The first and the last half of what may be kept: a log's beginning and its end say most."""
+
+    def __init__(self, most: int) -> None:
+        self._half = most // 2
+        self._head = bytearray()
+        self._tail = bytearray()
+        self._dropped = 0
+
+    def add(self, data: bytes) -> None:
+        room = self._half - len(self._head)
+        self._head += data[:room]
+        self._tail += data[room:]
+        if len(self._tail) > 2 * self._half:
+            self._drop()
+
+    def text(self) -> bytes:
+        self._drop()
+        gap = b"\n... %d bytes left out ...\n" % self._dropped if self._dropped else b""
+        return bytes(self._head) + gap + bytes(self._tail)
+
+    def _drop(self) -> None:
+        over = len(self._tail) - self._half
+        if over > 0:
+            self._dropped += over
+            del self._tail[:over]
+
+
+class _Pump:
+    """The child's three pipes, all served at once, so that none can block another."""
+
+    def __init__(self, child: subprocess.Popen[bytes], stdin: bytes, most_stdout: int, most_stderr: int) -> None:
+        assert child.stdin is not None
+        assert child.stdout is not None
+        assert child.stderr is not None
+        self.stdout = bytearray()
+        self.stderr = _Tail(most_stderr)
+        self._most = most_stdout
+        self._rest = memoryview(stdin)
+        self._selector = selectors.DefaultSelector()
+        os.set_blocking(child.stdin.fileno(), False)
+        self._selector.register(child.stdin, selectors.EVENT_WRITE, self._feed)
+        self._selector.register(child.stdout, selectors.EVENT_READ, self._take(self.stdout.extend))
+        self._selector.register(child.stderr, selectors.EVENT_READ, self._take(self.stderr.add))
+
+    @property
+    def too_much(self) -> bool:
+        return len(self.stdout) > self._most
+
+    def serve(self, deadline: float, stopped: Callable[[], bool]) -> bool:
+        """Serve until the child has closed its pipes or written too much; false at the deadline (monotonic, s).
+
+        `stopped` is asked several times a second, and true ends it too.
+        """
+        with self._selector:
+            while self._selector.get_map() and not self.too_much:
+                left_s = deadline - time.monotonic()
+                if left_s <= 0 or stopped():
+                    return False
+                for key, _ in self._selector.select(min(left_s, EVERY_S)):
+                    if not key.data(key.fd):
+                        self._selector.unregister(key.fileobj)
+                        key.fileobj.close()  # type: ignore[union-attr]
+        return True
+
+    def _feed(self, fd: int) -> bool:
+        try:
+            self._rest = self._rest[os.write(fd, self._rest[:_CHUNK]) :]
+        except BrokenPipeError:
+            return False
+        return len(self._rest) > 0
+
+    @staticmethod
+    def _take(keep: Callable[[bytes], None]) -> Callable[[int], bool]:
+        def take(fd: int) -> bool:
+            data = os.read(fd, _CHUNK)
+            keep(data)
+            return bool(data)
+
+        return take
+
+
+def run(
+    argv: Sequence[str],
+    *,
+    stdin: bytes = b"",
+    env: Mapping[str, str] | None = None,
+    timeout_s: float,
+    most_stdout: int,
+    most_stderr: int,
+    pass_fds: Sequence[int] = (),
+    watch: Limits | None = None,
+) -> Finished:
+    """Run `argv` in a session of its own; of standard error, beginning and end are kept (bytes).
+
+    `watch`: end it when it holds more in all than these limits say.
+    """
+    begun = time.monotonic()
+    pipe = subprocess.PIPE
+    over: list[str] = []
+    with subprocess.Popen(
+        argv, stdin=pipe, stdout=pipe, stderr=pipe, env=env, start_new_session=True, pass_fds=pass_fds
+    ) as child:
+        pump = _Pump(child, stdin, most_stdout, most_stderr)
+        guard = Guard(child.pid, watch, over.append) if watch is not None else None
+        in_time = False
+        try:
+            in_time = pump.serve(begun + timeout_s, lambda: bool(over))
+            if in_time and not pump.too_much:
+                child.wait(max(0.0, begun + timeout_s - time.monotonic()))
+        except subprocess.TimeoutExpired:
+            in_time = False
+        finally:
+            if not in_time or pump.too_much:
+                with suppress(ProcessLookupError):
+                    os.killpg(child.pid, signal.SIGKILL)
+            if guard is not None:
+                guard.close()
+    seconds = time.monotonic() - begun
+    out_of = over[0] if over else None
+    timed_out = not in_time and not over
+    return Finished(child.returncode, bytes(pump.stdout), pump.stderr.text(), seconds, timed_out, pump.too_much, out_of)

@@ -1,0 +1,137 @@
+"""Watch how much a cell holds in all: memory and number of its processes, its disks, the files on them.
+
+Resource limits count each process for itself, and a tmpfs as bubblewrap mounts it limits bytes but not files. Control
+groups could count, where one may make them; looking ten times a second works everywhere.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+from threading import Event, Thread
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from grader.sandbox.bubblewrap import Limits
+
+EVERY_S = 0.1
+LAUNCHERS = 16
+"""Processes beyond the limit that are not the student's: bubblewrap's and whatever else starts a cell.
+
+In a cell the kernel counts too, and refuses before this is reached.
+"""
+_DISKS = ("ws", "tmp", "dev/shm")
+_PAGE = os.sysconf("SC_PAGE_SIZE")
+_TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
+
+
+def exceeded(pid: int, limits: Limits) -> str | None:
+    """Which limit ("memory", "processes", "files") the cell at or below the process `pid` is over; None if none."""
+    memory = 0
+    processes = 0
+    disks: dict[int, tuple[int, int]] = {}
+    for process in _family(pid):
+        memory += _own_bytes(process)
+        processes += _threads(process)
+        if not disks:
+            disks = _disks(process)
+    memory += sum(used for used, _ in disks.values())
+    if memory > limits.total_memory:
+        return "memory"
+    if processes > limits.processes + LAUNCHERS:
+        return "processes"
+    return "files" if sum(files for _, files in disks.values()) > limits.files else None
+
+
+class Guard:
+    """A thread that looks at a cell until it is closed, and calls `over` once when a limit is passed."""
+
+    def __init__(self, pid: int, limits: Limits, over: Callable[[str], None]) -> None:
+        self._pid, self._limits, self._over = pid, limits, over
+        self._worked: list[tuple[float, float]] = [(time.monotonic(), 0.0)]
+        self._closed = Event()
+        self._thread = Thread(target=self._run, name="guard", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Look no longer."""
+        self._closed.set()
+        self._thread.join()
+
+    def worked_s(self, begin: float, end: float) -> float:
+        """How long the cell's processes worked between two times of CLOCK_MONOTONIC, at least (s of CPU time)."""
+        before = max((cpu for at, cpu in self._worked if at <= begin), default=0.0)
+        return max((cpu for at, cpu in self._worked if at <= end + EVERY_S), default=0.0) - before
+
+    def _run(self) -> None:
+        while not self._closed.wait(EVERY_S):
+            self._worked.append((time.monotonic(), sum(map(_cpu_s, _family(self._pid)))))
+            what = exceeded(self._pid, self._limits)
+            if what is not None:
+                self._over(what)
+                return
+
+
+def _family(pid: int) -> Iterator[int]:
+    """The process and all below it; orphans hang on the cell's first process."""
+    waiting = [pid]
+    while waiting:
+        process = waiting.pop()
+        yield process
+        try:
+            for task in os.listdir(f"/proc/{process}/task"):  # noqa: PTH208 - many, often
+                waiting += map(int, _read(f"/proc/{process}/task/{task}/children").split())
+        except OSError:
+            continue
+
+
+def _own_bytes(pid: int) -> int:
+    """Memory of the process that is no file's."""
+    try:
+        _, resident, shared, *_ = _read(f"/proc/{pid}/statm").split()
+    except (OSError, ValueError):
+        return 0
+    return (int(resident) - int(shared)) * _PAGE
+
+
+def _threads(pid: int) -> int:
+    """Threads of the process."""
+    try:
+        return len(os.listdir(f"/proc/{pid}/task"))  # noqa: PTH208 - many, often
+    except OSError:
+        return 0
+
+
+def _cpu_s(pid: int) -> float:
+    """How long the process has worked, and those of its children that have ended (s)."""
+    try:
+        fields = _read(f"/proc/{pid}/stat").rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    # utime, stime, cutime, cstime of proc(5), counted from the state, which is field 3.
+    return sum(map(int, fields[11:15])) * _TICK_S
+
+
+def _disks(pid: int) -> dict[int, tuple[int, int]]:
+    """Bytes and files on each writable disk of the cell, by device; nothing for a process outside of it."""
+    root = Path(f"/proc/{pid}/root")
+    found = {}
+    try:
+        here, there = Path("/").stat(), root.stat()
+        if (here.st_dev, here.st_ino) == (there.st_dev, there.st_ino) or not (root / _DISKS[0]).is_dir():
+            return {}
+        for name in _DISKS:
+            disk = os.statvfs(root / name)
+            used = (disk.f_blocks - disk.f_bfree) * disk.f_frsize
+            found[(root / name).stat().st_dev] = used, disk.f_files - disk.f_ffree
+    except OSError:
+        return {}
+    return found
+
+
+def _read(path: str) -> str:
+    with open(path, encoding="utf-8", errors="replace") as file:  # noqa: PTH123 - quicker
+        return file.read()

@@ -1,0 +1,1 @@
+"""The set-up behind make: the machine, .venv, the lock file, the demonstration."""

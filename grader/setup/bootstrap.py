@@ -1,0 +1,237 @@
+"""The set-up's first half: look at the machine, make .venv; then grader.setup.install fills it. Quick when all is done.
+
+    python3 -m grader.setup.bootstrap (learner | cluster | notebooks | tests) [--python PYTHON]
+
+Like machine.py, this runs under any Python 3 before anything is installed: syntax of Python 3.6.
+"""
+
+import argparse
+import fcntl
+import hashlib
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from grader import interpreter
+from grader.setup import machine
+
+ROOT = Path(__file__).resolve().parents[2]
+VENV = ROOT / ".venv"
+PYTHON = VENV / "bin/python3"
+STAMP = VENV / "course-setup.json"
+MACHINE_BROKEN = 3
+PARTS = {
+    "learner": ["setup", "grader", "ros"],
+    "cluster": ["setup", "grader", "ros", "cluster"],
+    "notebooks": ["setup", "grader", "ros", "notebooks"],
+    "tests": ["setup", "grader", "ros", "cluster", "notebooks", "tests"],
+}
+
+
+class Stamp(NamedTuple):
+    """What .venv was made of; written into it at the very end, so that an interrupted set-up has none."""
+
+    root: str
+    ros: str
+    """The prefix of the sourced ROS 2, or "wheels"."""
+    python: str
+    version: list[int]
+    digest: str
+    """Of the lock file and pyproject.toml."""
+    parts: list[str]
+    seconds: dict[str, float]
+
+
+def read_stamp(path: Path = STAMP) -> Stamp | None:
+    """The stamp of a finished set-up, if there is one that this version wrote."""
+    try:
+        return Stamp(**json.loads(path.read_text()))
+    except (OSError, ValueError, TypeError):
+        return None
+
+
+def write_stamp(stamp: Stamp, path: Path = STAMP) -> None:
+    """Write the stamp whole or not at all."""
+    unfinished = path.with_suffix(".new")
+    unfinished.write_text(json.dumps(stamp._asdict(), indent=1))
+    unfinished.replace(path)
+
+
+def digest() -> str:
+    """One value for all that decides which packages are installed."""
+    whole = hashlib.sha256()
+    for name in ("requirements.lock", "pyproject.toml"):
+        whole.update((ROOT / name).read_bytes())
+    return whole.hexdigest()
+
+
+def stands(stamp: Stamp, ros: str, wanted: machine.Python | None) -> bool:
+    """Whether .venv is where it was made, for this ROS 2, and its Python still the one it was made with."""
+    now = machine.probe(str(PYTHON))
+    same = now is not None and (now.path, list(now.version)) == (stamp.python, stamp.version)
+    return same and (stamp.root, stamp.ros) == (str(ROOT), ros) and (wanted is None or wanted.path == stamp.python)
+
+
+def say(text: str) -> None:
+    """A heading of the set-up; bold on a terminal."""
+    bold = sys.stdout.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
+    print(f"\033[1m{text}\033[0m" if bold else text, flush=True)
+
+
+def clean_environment(env: Mapping[str, str]) -> dict[str, str]:
+    """The caller's environment without what would lead an installer elsewhere: a sourced ROS 2, an active venv."""
+    foreign = {
+        "PYTHONPATH",
+        "PYTHONHOME",
+        "VIRTUAL_ENV",
+        "PIP_TARGET",
+        "PIP_PREFIX",
+        "PIP_USER",
+        "PIP_REQUIRE_VIRTUALENV",
+    }
+    # The ROS 2 wheels would else start every interpreter twice.
+    return {**{name: env[name] for name in env if name not in foreign}, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
+
+
+def apt_install(needs: Sequence[machine.Need]) -> None:
+    """Install what is missing, as root. What cannot be had is still missing afterwards, and said then."""
+    say("Installing what the system lacks: " + machine.apt_command(needs, root=True))
+    packages = dict.fromkeys(need.package for need in needs)
+    for arguments in (["update", "-q"], ["install", "-y", "-q", "--no-install-recommends", *packages]):
+        env = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
+        subprocess.call(["apt-get", *arguments], env=env, stdin=subprocess.DEVNULL)
+
+
+def see_tools_of_tests(*, install: bool, root: bool) -> None:
+    """Install what only some tests need if that may be done, else say how."""
+    path = os.environ.get("PATH", "")
+    if install:
+        for need in machine.missing_of_tests(path):
+            apt_install([need])  # each by itself, since not every system has every package
+    needs = machine.missing_of_tests(path)
+    if needs:
+        whats = "; ".join(need.what for need in needs)
+        print(f"Some tests cannot run without these: {whats}. They come with: {machine.apt_command(needs, root=root)}")
+
+
+def look(
+    ros: machine.SourcedRos | None, wanted: machine.Python | None, *, made: bool
+) -> tuple[machine.Python | None, list[machine.Need]]:
+    """The Python to make .venv with (None if it is `made`), and what the system lacks."""
+    path = os.environ.get("PATH", "")
+    tools = machine.missing_tools(path, ros)
+    if made:
+        return None, tools
+    version = ros.python if ros else None
+    pythons = [wanted] if wanted else machine.find_pythons(path)
+    python = machine.choose_python(pythons, root=os.getuid() == 0, wanted=version)
+    return python, machine.missing_of_python(python, version) + tools
+
+
+def make_venv(python: machine.Python, ros: machine.SourcedRos | None) -> bool:
+    """Make .venv, in place of any that is there; False if Python could not."""
+    say("Making .venv with Python {}.{}.{} ({})".format(*python.version, python.path))
+    options = ["--clear"]
+    if ros:
+        say(f"ROS 2 Jazzy is sourced from {ros.prefix}: it is used, and none is installed")
+        options.append("--system-site-packages")
+    making = interpreter.interpreter(
+        "-m", "venv", *options, str(VENV), python=python.path, env=clean_environment(os.environ)
+    )
+    try:
+        # Kept back, since all it ever says is why it failed, or that it was interrupted.
+        subprocess.check_output(making.argv, stderr=subprocess.STDOUT, env=making.env, cwd=str(ROOT))
+    except subprocess.CalledProcessError as error:
+        print(error.output.decode(errors="replace"), end="", file=sys.stderr)
+        return False
+    return True
+
+
+def read_arguments(arguments: Sequence[str]) -> argparse.Namespace:
+    """`parts`, by a name of PARTS, and `python`, None unless one was asked for. Exits where they make no sense."""
+    parser = argparse.ArgumentParser(prog="python3 -m grader.setup.bootstrap", description=__doc__.splitlines()[0])
+    parser.add_argument("parts", choices=list(PARTS), help="what .venv is for; what else is in it stays")
+    parser.add_argument("--python", type=asked_python, help="what to make .venv with: a program's name or path")
+    return parser.parse_args(arguments)
+
+
+def asked_python(name: str) -> machine.Python:
+    """The interpreter of this name. Raises ArgumentTypeError where none answers."""
+    python = machine.probe(shutil.which(name) or name)
+    if python is None:
+        message = f"{name} is no Python that runs here"
+        raise argparse.ArgumentTypeError(message)
+    return python
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Bring .venv up to date; returns the exit code."""
+    asked = read_arguments(arguments)
+    ros = machine.sourced_ros(os.environ, VENV)
+    problem = machine.platform_problem(platform.system(), platform.machine(), platform.libc_ver(), ros)
+    if problem:
+        print(problem, file=sys.stderr)
+        return MACHINE_BROKEN
+    with (ROOT / "requirements.lock").open() as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # A second `make` waits for the first.
+        return set_up(PARTS[asked.parts], ros, asked.python)
+
+
+def set_up(parts: list[str], ros: machine.SourcedRos | None, wanted: machine.Python | None) -> int:
+    """Look at the machine, make .venv and fill it, each only if it is to be done; returns the exit code."""
+    kind = ros.prefix if ros else "wheels"
+    stamp = read_stamp()
+    made = stamp is not None and stands(stamp, kind, wanted)
+    root = os.getuid() == 0
+    apt = shutil.which("apt-get") is not None
+    python, needs = look(ros, wanted, made=made)
+    if needs and apt and root and os.environ.get("CI") == "true":
+        apt_install(needs)
+        python, needs = look(ros, wanted, made=made)
+    if any(not need.lost or "tests" in parts for need in needs):
+        print(machine.lack_message(needs, root=root, apt=apt), file=sys.stderr)
+        return MACHINE_BROKEN
+    for need in needs:
+        how = f" It comes with: {machine.apt_command([need], root=root)}" if apt else ""
+        say(f"Without {need.package}: {need.lost}.{how}")
+
+    if "tests" in parts:
+        see_tools_of_tests(install=apt and root and os.environ.get("CI") == "true", root=root)
+
+    if stamp and made and stamp.digest == digest() and set(parts) <= set(stamp.parts):
+        return 0
+    if STAMP.exists():
+        STAMP.unlink()  # From here to the end .venv is unfinished.
+    if stamp and made:
+        # What was set up for something else stays: a machine may both grade for another one and have notebooks.
+        parts = [part for part in PARTS["tests"] if part in parts or part in stamp.parts]
+        stamp = stamp._replace(digest=digest(), parts=parts, seconds={})
+    elif python:
+        begin = time.monotonic()
+        if not make_venv(python, ros):
+            print(f"Python could not make {VENV}; what it said stands above.", file=sys.stderr)
+            return MACHINE_BROKEN
+        seconds = {"environment": time.monotonic() - begin}
+        stamp = Stamp(str(ROOT), kind, python.path, list(python.version), digest(), parts, seconds)
+    install = interpreter.interpreter(
+        *("-m", "grader.setup.install", json.dumps(stamp._asdict() if stamp else {})),
+        python=str(PYTHON),
+        env=clean_environment(os.environ),
+        root=ROOT,
+    )
+    return subprocess.call(install.argv, env=install.env, cwd=str(ROOT))
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except KeyboardInterrupt:
+        print("\nStopped. The same command goes on from here: what was downloaded is kept.", file=sys.stderr)
+        sys.exit(130)

@@ -1,0 +1,83 @@
+"""The end of `make demo`: grade the solution of a step as a learner would, tell where the time went, say what is next.
+
+`python -m grader.setup.demo --since SECONDS`: when the command began, in seconds since 1970, so that a set-up which it
+made is told and one of another day is not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from grader.interpreter import interpreter
+from grader.setup.bootstrap import ROOT, STAMP, read_stamp, say
+
+STEP = "03-circle-publisher"
+FOLDER = Path("build/demo")
+MACHINE_BROKEN = 3
+STAGES = {
+    "interfaces": "turtlesim's messages, built once",
+    "build": "colcon build",
+    "trial": "simulator and node",
+    "checks": "checks",
+}
+"""The report's names of its stages, in words."""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Grade `solutions/03-circle-publisher`; returns 0, or what `grader check` ended with if that was not expected."""
+    parser = argparse.ArgumentParser(description="Grade the solution of a step and say what to type next.")
+    parser.add_argument("--since", type=float, default=time.time(), help="when the command began, seconds since 1970")
+    since = parser.parse_args(arguments).since
+
+    image, report = FOLDER / f"{STEP}.png", FOLDER / f"{STEP}.json"
+    (ROOT / FOLDER).mkdir(parents=True, exist_ok=True)
+    (ROOT / report).unlink(missing_ok=True)
+    # Students get the course without solutions: what they start from shows the way just as well.
+    side = "solutions" if (ROOT / "solutions" / STEP).is_dir() else "exercises"
+    command = ["grader", "check", f"{side}/{STEP}", "--image", str(image), "--json", str(report)]
+    say("$ " + " ".join(command))
+    checking = interpreter("-m", "grader.cli", *command[1:])
+    done = subprocess.run(checking.argv, env=checking.env, cwd=ROOT, check=False)
+    if done.returncode != (0 if side == "solutions" else 1):
+        print(closing_words(done.returncode))
+        return done.returncode
+    print()
+    say("Where the time went")
+    for name, seconds in [*set_up_seconds(since), *grading_seconds(ROOT / report)]:
+        print(f"  {name:<40} {seconds:6.1f} s")
+    print(f"  {'in all':<40} {time.time() - since:6.1f} s")
+    print(f"\nThe picture of the turtle's path: {image}")
+    print("\nNext, in this folder: make the environment yours, and begin with the first step.\n")
+    print("    source .venv/bin/activate")
+    print("    grader start 01")
+    return 0
+
+
+def closing_words(exit_code: int) -> str:
+    """What to do when the course's own solution did not pass."""
+    if exit_code == MACHINE_BROKEN:
+        return "\nThe solution could not be graded on this machine. See what it lacks: .venv/bin/grader doctor"
+    return "\nThe course's own solution did not pass: the course's fault, not yours. Please report what stands above."
+
+
+def set_up_seconds(since: float) -> list[tuple[str, float]]:
+    """The stages of a set-up that this command made, in seconds; none if it was there before."""
+    stamp = read_stamp()
+    if stamp is None or STAMP.stat().st_mtime < since:
+        return []
+    return [(f"set-up, once: {name}", seconds) for name, seconds in stamp.seconds.items()]
+
+
+def grading_seconds(report: Path) -> list[tuple[str, float]]:
+    """The stages of the grading, in seconds."""
+    seconds = json.loads(report.read_text(encoding="utf-8"))["seconds"]
+    return [(words, float(seconds[name])) for name, words in STAGES.items() if name in seconds]
+
+
+if __name__ == "__main__":
+    sys.exit(main())

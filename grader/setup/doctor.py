@@ -1,0 +1,294 @@
+"""`grader doctor`: is everything here that grading needs? Each line is ok, or says what to do.
+
+What can be tried is tried: the turtlesim interfaces are built if they are not yet, and a node talks from a cell.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import shlex
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from grader.common import xdg
+from grader.errors import MachineError
+from grader.interpreter import interpreter
+from grader.ros import underlay
+from grader.ros.installation import DISTRO, FASTDDS_PROFILE, Ros, environment, find_ros, has_turtlesim
+from grader.sandbox import bubblewrap
+from grader.sandbox.control_group import control_group
+from grader.setup import bootstrap, machine
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from rich.console import Console
+
+BROKEN_EXIT_CODE = 3
+GIB = 1024**3
+LEAST_DISK = GIB // 4
+LITTLE_DISK = 2 * GIB
+LITTLE_MEMORY = 1 * GIB
+
+_TALKER = """
+import rclpy, turtlesim.msg, turtlesim.srv
+from std_msgs.msg import String
+rclpy.init()
+node = rclpy.create_node("talker")
+publisher = node.create_publisher(String, "doctor", 10)
+node.create_timer(0.05, lambda: publisher.publish(String(data="well")))
+rclpy.spin(node)
+"""
+_LISTENER = """
+import sys, time, rclpy
+from std_msgs.msg import String
+rclpy.init()
+node = rclpy.create_node("listener")
+heard = []
+node.create_subscription(String, "doctor", heard.append, 10)
+deadline = time.monotonic() + 20.0
+while not heard and time.monotonic() < deadline:
+    rclpy.spin_once(node, timeout_sec=0.5)
+sys.exit(None if heard else "nothing was heard of it within 20 s")
+"""
+DOMAIN = 101
+"""ROS domain of the nodes without a cell: the last that a trial would take."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """What one look found. `advice` is worth reading and stops nothing; `broken` must be mended before grading."""
+
+    subject: str
+    seen: str
+    state: Literal["ok", "advice", "broken"] = "ok"
+    todo: str = ""
+
+
+def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] = lambda _: None) -> list[Line]:
+    """All lines, in the order in which things need each other; `tell` gets a line where something takes long."""
+    lines = [look_at_system(), look_at_python(), *look_at_set_up(env), *look_at_tools(env), look_at_colcon()]
+    lines += [look_at_disk(xdg.cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
+    sandbox_line = look_at_sandbox()
+    confined = sandbox_line.state == "ok"
+    lines.append(sandbox_line)
+    if confined:
+        lines.append(look_at_limits())
+    try:
+        ros = find_ros(env)
+    except MachineError as error:
+        return [*lines, Line("ROS 2", "not found", "broken", str(error))]
+    lines.append(look_at_ros(ros, env))
+    try:
+        ours = underlay.ensure(ros, tell)
+    except MachineError as error:
+        return [*lines, Line("turtlesim", "its interfaces are not built", "broken", str(error))]
+    where = "ROS 2 brings it" if has_turtlesim(ros) else f"the course's own interfaces, built in {ours}"
+    lines.append(Line("turtlesim", where))
+    return [*lines, look_at_node(ros, ours, confined=confined)]
+
+
+def exit_code(lines: Iterable[Line]) -> int:
+    """3 if something must be mended, else 0."""
+    return BROKEN_EXIT_CODE if any(line.state == "broken" for line in lines) else 0
+
+
+def render(lines: Iterable[Line], console: Console) -> None:
+    """Print the lines; plain text where the console is no terminal."""
+    styles = {"ok": "green", "advice": "yellow", "broken": "bold red"}
+    for line in lines:
+        console.print(f"{line.state:<8}", style=styles[line.state], end="", highlight=False)
+        console.print(f"{line.subject:<12}{line.seen}", markup=False, highlight=False, soft_wrap=True)
+        if line.todo:
+            console.print(f"{'':<20}-> {line.todo}", markup=False, highlight=False, soft_wrap=True)
+
+
+# --- what lies there --------------------------------------------------------------------------------------
+
+
+def look_at_system() -> Line:
+    """Kernel, machine and distribution."""
+    seen = f"{_distribution()}, {platform.system()} on {platform.machine()}, {os.cpu_count()} cores"
+    return Line("system", seen)
+
+
+def look_at_python() -> Line:
+    """The interpreter that runs this, and whether it is one that the course knows."""
+    seen = f"CPython {platform.python_version()}, {Path(sys.executable).parent}"
+    if machine.OLDEST <= sys.version_info[:2] <= machine.NEWEST:
+        return Line("Python", seen)
+    versions = f"3.{machine.OLDEST[1]} to 3.{machine.NEWEST[1]}"
+    return Line("Python", seen, "broken", f"ROS 2 Jazzy is here for Python {versions}: make demo PYTHON=python3.12")
+
+
+def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None) -> Iterator[Line]:
+    """Whether .venv is what the lock file says now, and fits the ROS 2 that is sourced now."""
+    stamp = stamp or bootstrap.read_stamp()
+    if stamp is None or Path(sys.prefix) != bootstrap.VENV:
+        yield Line("set-up", "not made by `make`; the lock file's versions are not certain")
+        return
+    ros = machine.sourced_ros(env, bootstrap.VENV)
+    now = ros.prefix if ros else "wheels"
+    if stamp.digest != bootstrap.digest():
+        yield Line("set-up", "older than requirements.lock or pyproject.toml", "advice", "make demo")
+    elif stamp.ros != now:
+        names = {"wheels": "the course's own ROS 2"}
+        seen = f"made for {names.get(stamp.ros, stamp.ros)}, and now it is {names.get(now, now)}"
+        yield Line("set-up", seen, "broken", "make demo, with the ROS 2 sourced (or not) that you want to use")
+    else:
+        yield Line("set-up", "as the lock file says")
+
+
+def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
+    """The system's programs and Python's headers, with one command for all that is missing."""
+    ros = machine.sourced_ros(env, bootstrap.VENV)
+    needs = machine.missing_tools(env.get("PATH", ""), ros)
+    headers = Path(sysconfig.get_path("include"), "Python.h").is_file()
+    builds = not (ros and ros.turtlesim)
+    if builds and not headers:
+        needs.append(machine.Need("Python's headers (Python.h)", f"python3.{sys.version_info.minor}-dev"))
+    for name in ("g++", "cmake", "make") if builds else ():
+        version = _version_of(name)
+        if version:
+            yield Line(name, version)
+    if builds and headers:
+        yield Line("headers", "Python.h is there")
+    # What can be done without has a line of its own, which says what is lost.
+    needs = [need for need in needs if not need.lost]
+    if needs:
+        seen = "missing: " + "; ".join(need.what for need in needs)
+        yield Line("programs", seen, "broken", machine.apt_command(needs, root=os.getuid() == 0))
+
+
+def look_at_colcon() -> Line:
+    """The colcon that builds submissions: this Python's, not the system's."""
+    try:
+        version = metadata.version("colcon-core")
+    except metadata.PackageNotFoundError:
+        return Line("colcon", "not installed in this Python", "broken", "make demo")
+    return Line("colcon", f"colcon-core {version}, colcon-ros {metadata.version('colcon-ros')}")
+
+
+def look_at_disk(folder: Path) -> Line:
+    """Free space where the interfaces are kept (bytes)."""
+    there = next(path for path in [folder, *folder.parents] if path.is_dir())
+    free = shutil.disk_usage(there).free
+    seen = f"{free / GIB:.1f} GiB free for {folder}"
+    if free >= LITTLE_DISK:
+        return Line("disk", seen)
+    return Line(
+        "disk", seen, "broken" if free < LEAST_DISK else "advice", "make room; XDG_CACHE_HOME chooses another folder"
+    )
+
+
+def look_at_memory(meminfo: str) -> Line:
+    """Memory that programs can get; `meminfo` is the text of /proc/meminfo."""
+    kib = next((int(line.split()[1]) for line in meminfo.splitlines() if line.startswith("MemAvailable:")), None)
+    if kib is None:
+        return Line("memory", "the system does not say")
+    seen = f"{kib * 1024 / GIB:.1f} GiB available"
+    if kib * 1024 >= LITTLE_MEMORY:
+        return Line("memory", seen)
+    return Line("memory", seen, "advice", "close other programs, or grade one submission at a time")
+
+
+def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
+    """Which ROS 2 grades, and whether it fits this Python."""
+    sourced = machine.sourced_ros(env, bootstrap.VENV)
+    if ros.kind == "sourced" and sourced and sourced.python != sys.version_info[:2]:
+        wanted = ".".join(map(str, sourced.python))
+        return Line("ROS 2", f"{ros.name}, for Python {wanted}", "broken", "make demo, with this ROS 2 sourced")
+    other = env.get("ROS_DISTRO", DISTRO)
+    if other != DISTRO:
+        return Line(
+            "ROS 2", f"{ros.name}; {other} is sourced and not used", "advice", "nothing, if that is what you want"
+        )
+    return Line("ROS 2", f"{ros.name}" + (f", {ros.prefix}" if ros.kind == "sourced" else ""))
+
+
+# --- what can only be tried -------------------------------------------------------------------------------
+
+
+def look_at_sandbox() -> Line:
+    """Make a cell, as every student's process gets one; those who only check their own code can do without."""
+    why = bubblewrap.why_unavailable()
+    if why is None:
+        return Line("sandbox", "bubblewrap makes cells")
+    return Line("sandbox", f"none: {machine.NO_SANDBOX}", "advice", why)
+
+
+def look_at_limits() -> Line:
+    """Who counts what a cell holds in all."""
+    with control_group(bubblewrap.NODE_LIMITS) as group:
+        if group:
+            return Line("limits", "memory and processes of a cell are counted by the kernel")
+    return Line(
+        "limits", "memory of a cell is counted ten times a second: the kernel lets nobody else make control groups"
+    )
+
+
+def look_at_node(ros: Ros, ours: Path | None, *, confined: bool = True) -> Line:
+    """Let a node talk to another, as in a trial: interpreter, ROS 2, network and interfaces at once.
+
+    `confined`: it is in a cell, and the other outside of it.
+    """
+    with tempfile.TemporaryDirectory(prefix="grader-") as home:
+        if confined:
+            command, env = _talk_from_a_cell(ros, ours), dict(os.environ)
+        else:
+            env = environment(ros, home=Path(home), underlay=ours, domain=DOMAIN)
+            talker, listener = _talker_and_listener(ros, env)
+            command = ["sh", "-c", f"setpriv --pdeathsig=KILL {shlex.join(talker)} & exec {shlex.join(listener)}"]
+        try:
+            done = subprocess.run(
+                command, capture_output=True, text=True, timeout=60, check=False, stdin=subprocess.DEVNULL, env=env
+            )
+            said = done.stderr.strip().splitlines()[-1:] or [f"exit code {done.returncode}"]
+            if done.returncode == 0:
+                return Line("a node", "starts in a cell and is heard outside" if confined else "starts and is heard")
+        except subprocess.TimeoutExpired:
+            said = ["no answer within 60 s"]
+    closed = machine.closed_folder(os.path.realpath(sys.executable))
+    todo = "please report this, with all these lines"
+    if closed and os.getuid() == 0:
+        todo += f"; it may help that other users can enter {closed}, where this Python lies"
+    return Line("a node", f"is not heard{' from a cell' if confined else ''}: {said[0]}", "broken", todo)
+
+
+def _talk_from_a_cell(ros: Ros, ours: Path | None) -> list[str]:
+    env = environment(ros, home=bubblewrap.HOME, underlay=ours, domain=None)
+    view = bubblewrap.ros_view(ros, FASTDDS_PROFILE, *([ours] if ours else []))
+    talker, listener = _talker_and_listener(ros, env)
+    confined = bubblewrap.cell(talker, view, env=env, network=True)
+    # The talker goes when the listener does: cells die with their parent.
+    script = f"{shlex.join(confined)} & exec {shlex.join(listener)}"
+    return bubblewrap.room(["sh", "-c", script], view, env=env)
+
+
+def _talker_and_listener(ros: Ros, env: Mapping[str, str]) -> tuple[list[str], list[str]]:
+    python = str(ros.python)
+    talker = interpreter("-c", _TALKER, python=python, env=env, searches=True)
+    return talker.argv, interpreter("-c", _LISTENER, python=python, env=env, searches=True).argv
+
+
+def _distribution() -> str:
+    try:
+        return platform.freedesktop_os_release()["PRETTY_NAME"]
+    except (OSError, KeyError):
+        return "an unnamed system"
+
+
+def _version_of(program: str) -> str | None:
+    path = shutil.which(program, path=os.pathsep.join([os.environ.get("PATH", ""), *machine.SYSTEM_PATH]))
+    if path is None:
+        return None
+    done = subprocess.run([path, "--version"], capture_output=True, text=True, check=False, cwd=tempfile.gettempdir())
+    return next(iter(done.stdout.splitlines()), path)

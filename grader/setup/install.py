@@ -1,0 +1,136 @@
+"""The set-up's second half: fill .venv from the lock file. Runs in .venv, before anything is installed there.
+
+`python -m grader.setup.install STAMP`: STAMP is what bootstrap.py found out, as JSON; with the seconds that each stage
+took it is written into .venv at the very end, so that an interrupted set-up is seen as unfinished.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import ssl
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from grader.errors import MachineError
+from grader.interpreter import clean, interpreter
+from grader.setup import lock
+from grader.setup.bootstrap import MACHINE_BROKEN, ROOT, STAMP, Stamp, say, write_stamp
+
+BIN = Path(sys.prefix, "bin")
+_OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
+_PROGRESS = ("Downloading ", "Using cached ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
+_MOST_LINES = 40
+_FIRST = frozenset({"uv", "setuptools"})
+"""What pip, which is slower, installs; setuptools because uv builds empy with it."""
+_NO_NETWORK = (
+    "The packages could not be installed; what the installer said stands above. Is this machine online? A proxy is "
+    "read from HTTPS_PROXY, a mirror from pip's own configuration. The same command goes on from here: what was "
+    "downloaded is kept."
+)
+
+
+def main(stamp: Stamp) -> int:
+    """Install the stamp's parts and the project itself, then write the stamp; returns the exit code."""
+    try:
+        seconds = {**stamp.seconds, **install(stamp.parts, sourced=stamp.ros != "wheels")}
+    except MachineError as error:
+        print(f"\n{error}", file=sys.stderr)
+        return MACHINE_BROKEN
+    write_stamp(stamp._replace(seconds=seconds))
+    say("Set up: " + ", ".join(f"{name} {value:.0f} s" for name, value in seconds.items()))
+    return 0
+
+
+def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
+    """Install from the lock file; returns the seconds of download and of installation.
+
+    Raises:
+        MachineError: no installer could do it.
+    """
+    text = lock.LOCK_FILE.read_text(encoding="utf-8")
+    if sourced:
+        parts = [part for part in parts if part != "ros"]
+    without = lock.SOURCED_BRINGS if sourced else frozenset()
+
+    begin = time.monotonic()
+    say("Installing the installer (uv)")
+    first = _write("setup", lock.select(text, ["setup"], only=_FIRST))
+    if _pip(first) != 0:
+        raise MachineError(_NO_NETWORK)
+
+    say("Installing " + ("what the grader needs" if sourced else "ROS 2 Jazzy and what the grader needs"))
+    rest = _write("rest", lock.select(text, parts, without=without))
+    downloading = _uv("-r", str(rest), *_OPTIONS, "--compile-bytecode")
+    if downloading is None:
+        # pip knows settings that uv does not read: mirrors, certificates and proxies in pip.conf.
+        say("That did not work with uv; once more with pip, which is slower")
+        if _pip(rest) != 0:
+            raise MachineError(_NO_NETWORK)
+    project = ("--no-deps", "--no-build-isolation", "--editable", str(ROOT))
+    if _uv(*project) is None:
+        message = f"The course's own package could not be installed from {ROOT}; what the installer said stands above."
+        raise MachineError(message)
+    total = time.monotonic() - begin
+    return {"download": downloading or 0.0, "install": total - (downloading or 0.0)}
+
+
+def _pip(requirements: Path) -> int:
+    """`pip install` from the lock; returns the exit code."""
+    options = ("--disable-pip-version-check", "--no-input", "--retries", "2", "--progress-bar", "off", *_OPTIONS)
+    return _run(*interpreter("-m", "pip", "install", *options, "-r", str(requirements)))[0]
+
+
+def _uv(*arguments: str) -> float | None:
+    """`uv pip install`; returns the seconds of download, or None if it failed."""
+    command = [str(BIN / "uv"), "pip", "install", "--python", sys.executable, *arguments]
+    stores = ssl.get_default_verify_paths()
+    if stores.cafile or (stores.capath and any(Path(stores.capath).iterdir())):
+        command.append("--system-certs")  # As other programs here do; a minimal system has none, and uv brings some.
+    code, shown = _run(command, clean(os.environ))
+    prepared = next((line for line in shown if line.startswith("Prepared ")), "")
+    return None if code else seconds_of(prepared)
+
+
+def _run(command: list[str], env: dict[str, str]) -> tuple[int, list[str]]:
+    """Run an installer and show its progress as lines, all the rest only if it fails; returns exit code and progress.
+
+    Piped, both installers print a line where a download begins: a slow one is seen, and logs stay readable.
+    """
+    shown: list[str] = []
+    rest: list[str] = []
+    with subprocess.Popen(
+        command, env=env, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
+    ) as process:
+        for line in process.stdout or ():
+            if line.strip().startswith(_PROGRESS):
+                shown.append(line.strip().partition(" (from ")[0])
+                print(f"  {shown[-1]}", flush=True)
+            else:
+                rest.append(line)
+    if process.returncode != 0:
+        print("".join(rest[-_MOST_LINES:]), end="", flush=True)
+    return process.returncode, shown
+
+
+def seconds_of(line: str) -> float:
+    """The duration at the end of a line of uv's: `Prepared 9 packages in 1m 05s`, `... in 302ms` (in seconds)."""
+    units = {"ms": 1e-3, "s": 1.0, "m": 60.0, "h": 3600.0}
+    found: list[tuple[str, str]] = re.findall(r"(\d+(?:\.\d+)?)(ms|s|m|h)\b", line.rpartition(" in ")[2])
+    return sum(float(number) * units[unit] for number, unit in found)
+
+
+def _write(name: str, requirements: str) -> Path:
+    path = STAMP.with_name(f"course-{name}.txt")
+    path.write_text(requirements, encoding="utf-8")
+    return path
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(Stamp(**json.loads(sys.argv[1]))))
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -1,0 +1,189 @@
+"""The lock file: every version that the set-up installs, for all Pythons, with hashes, in parts.
+
+One file in pip's format, in sections: `# part: NAME` opens what one part needs, `# part: NAME NAME` what several need.
+So each set-up installs all that it needs and nothing else. `python -m grader.setup.lock` (`make lock`) writes it.
+Standard library only: the set-up reads the file before anything is installed.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import MachineError, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+ROOT = Path(__file__).parents[2]
+PROJECT = ROOT / "pyproject.toml"
+LOCK_FILE = ROOT / "requirements.lock"
+PARTS = {
+    "setup": "what installs the rest",
+    "grader": "what the grader runs on",
+    "ros": "ROS 2 Jazzy as wheels; left out where a ROS 2 is sourced",
+    "cluster": "grading on many machines",
+    "notebooks": "JupyterLab and nbgrader",
+    "tests": "tests",
+}
+"""Name of each part and what it is for, in the file's order."""
+
+ALWAYS = ("setup", "grader")
+"""Parts of every set-up: what one of them needs stands there alone. Any other part may be left out, `ros` too, so each
+of those has all that it needs beside these two."""
+
+SOURCED_BRINGS = frozenset({"numpy", "empy"})
+"""Left to a sourced ROS 2: its extensions are built for its own numpy, its generators for its own empy."""
+
+_MARK = "# part: "
+_NAME = re.compile(r"([A-Za-z0-9][A-Za-z0-9._-]*)==(\S+)")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One version of one package. `text` is its lines in the file, hashes included, with the last line break."""
+
+    name: str
+    version: str
+    text: str
+
+
+def parse(text: str) -> dict[str, list[Entry]]:
+    """The entries of each part, in the file's order; what several parts need is in each of them.
+
+    Raises:
+        UsageError: a line belongs to no part or to no entry.
+    """
+    sections: list[tuple[list[str], list[Entry]]] = []
+    for line in text.splitlines(keepends=True):
+        if line.startswith(_MARK):
+            sections.append((line[len(_MARK) :].partition(":")[0].split(), []))
+        elif line.startswith("#") or not line.strip():
+            continue
+        elif not sections:
+            message = f"requirements.lock: this line stands before the first '{_MARK}NAME': {line.strip()}"
+            raise UsageError(message)
+        elif match := _NAME.match(line):
+            sections[-1][1].append(Entry(match.group(1), match.group(2), line))
+        elif sections[-1][1] and line.startswith(" "):
+            last = sections[-1][1].pop()
+            sections[-1][1].append(Entry(last.name, last.version, last.text + line))
+        else:
+            message = f"requirements.lock: expected 'name==version' or an indented hash, seen: {line.strip()}"
+            raise UsageError(message)
+    parts: dict[str, list[Entry]] = {}
+    for names, entries in sections:
+        for name in names:
+            parts.setdefault(name, []).extend(entries)
+    return parts
+
+
+def select(
+    text: str, parts: Collection[str], *, without: Collection[str] = (), only: Collection[str] | None = None
+) -> str:
+    """The requirements of `parts`, as pip reads them: all packages but `without`, or `only` those named."""
+    entries = dict.fromkeys(entry for part, entries in parse(text).items() if part in parts for entry in entries)
+    chosen = (entry for entry in entries if entry.name not in without and (only is None or entry.name in only))
+    return "".join(entry.text for entry in chosen)
+
+
+def split(entries: Iterable[Entry], needs: Mapping[str, Collection[tuple[str, str]]]) -> str:
+    """The lock file's text: each entry below the names of the parts that need it; `needs` are names and versions.
+
+    Raises:
+        MachineError: the parts do not need just these entries.
+    """
+    sections: dict[tuple[str, ...], list[str]] = {(part,): [] for part in PARTS}
+    rest = set().union(*needs.values())
+    for entry in entries:
+        package = (entry.name, entry.version)
+        parts = tuple(part for part in PARTS if package in needs.get(part, ()))
+        always = [part for part in ALWAYS if part in parts]
+        if not parts:
+            message = f"No part of the lock file needs {entry.name} {entry.version}, but the whole does."
+            raise MachineError(message)
+        sections.setdefault((always[0],) if always else parts, []).append(entry.text)
+        rest.discard(package)
+    if rest:
+        message = f"By itself a part of the lock file needs other versions than the whole: {sorted(rest)}."
+        raise MachineError(message)
+    text = "# Made by `make lock` from pyproject.toml, not to be edited: every version, with hashes, for all Pythons.\n"
+    order = list(PARTS)
+    for parts in sorted(sections, key=lambda parts: [order.index(part) for part in reversed(parts)]):
+        text += f"\n{_MARK}{' '.join(parts)}: {'; '.join(PARTS[part] for part in parts)}\n{''.join(sections[parts])}"
+    return text
+
+
+def make(uv: str, *, upgrade: bool = False) -> str:
+    """The text of a new lock file for pyproject.toml, resolved by uv (needs the network).
+
+    Versions in the present lock file are kept where they still fit, unless `upgrade`.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        whole = Path(folder, "whole.txt")
+        if LOCK_FILE.exists():
+            shutil.copyfile(LOCK_FILE, whole)
+        _compile(uv, whole, ["--all-extras", *(["--upgrade"] if upgrade else [])])
+        entries = parse(f"{_MARK}all\n" + whole.read_text(encoding="utf-8"))["all"]
+        needs = {}
+        for part, requirements, arguments in [
+            ("setup", "\n".join(_requirements("setup")), []),
+            ("grader", None, ["--extra", "view"]),
+            ("ros", None, ["--extra", "ros"]),
+            ("cluster", None, ["--extra", "cluster"]),
+            ("notebooks", None, ["--extra", "notebooks"]),
+            ("tests", None, ["--extra", "dev"]),
+        ]:
+            # Compiling a part keeps to the versions that stand in its output file: the whole's.
+            path = shutil.copyfile(whole, Path(folder, f"{part}.txt"))
+            _compile(uv, path, arguments, requirements)
+            needs[part] = set(_NAME.findall(path.read_text(encoding="utf-8")))
+    return split(entries, needs)
+
+
+def _requirements(extra: str) -> list[str]:
+    """What an extra of the project names, without the project's own dependencies."""
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib
+    project = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]
+    return [str(requirement) for requirement in project["optional-dependencies"][extra]]
+
+
+def _compile(uv: str, output: Path, arguments: list[str], requirements: str | None = None) -> None:
+    """Resolve the project, or `requirements` (one a line) instead of it, into `output`."""
+    command = [
+        *(uv, "pip", "compile", str(PROJECT) if requirements is None else "-"),
+        *("--output-file", str(output), "--quiet", *arguments),
+        *("--universal", "--python-version", "3.10", "--no-python-downloads"),
+        # Where a package is downloaded from is each machine's own business: no index, no addresses.
+        *("--generate-hashes", "--no-emit-index-url", "--no-annotate", "--no-header"),
+    ]
+    done = subprocess.run(command, cwd=ROOT, check=False, input=requirements, text=True)
+    if done.returncode != 0:
+        message = f"uv could not make the lock file (its exit code is {done.returncode}; what it said stands above)."
+        raise MachineError(message)
+
+
+def main(arguments: list[str]) -> int:
+    """Write the lock file; `--upgrade` takes the newest versions that fit."""
+    uv = str(Path(sys.prefix, "bin", "uv"))
+    text = make(uv, upgrade="--upgrade" in arguments)
+    parts = parse(text)
+    unchanged = LOCK_FILE.exists() and LOCK_FILE.read_text(encoding="utf-8") == text
+    if not unchanged:
+        LOCK_FILE.write_text(text, encoding="utf-8")
+    counts = ", ".join(f"{part} {len(entries)}" for part, entries in parts.items())
+    print(f"requirements.lock: {'unchanged' if unchanged else 'written'}; packages by part: {counts}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,218 @@
+"""What this machine has and lacks: Pythons, a sourced ROS 2, the system's programs, and the words for what is missing.
+
+The set-up asks before anything is installed, under whatever `python3` there is, so that the answer for one that is too
+old is a sentence and not a SyntaxError: syntax of Python 3.6 and standard library only, here and in bootstrap.py.
+"""
+
+import json
+import os
+import shutil
+import stat
+import subprocess
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from grader.interpreter import clean, interpreter
+
+OLDEST, NEWEST = (3, 10), (3, 14)
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+SYSTEM_PATH = ("/usr/local/bin", "/usr/bin", "/bin")
+NO_SANDBOX = "your own code is checked with limits on time, memory, processes and file size only; no marks are given"
+
+CONTAINER = """\
+  - a container, started in this folder (--privileged, since the grader makes sandboxes of its own):
+      docker run --rm -it --privileged --platform linux/amd64 -v "$PWD":/course -w /course debian:12 \\
+          bash -c "apt-get update && apt-get install -y make python3 && CI=true make demo; exec bash"
+  - a ROS 2 Jazzy of your own, on any Linux: source /opt/ros/jazzy/setup.bash, then run make again."""
+
+_PROBE = """
+import importlib.util, json, os, platform, sys, sysconfig
+print(json.dumps({
+    "path": os.path.realpath(getattr(sys, "_base_executable", None) or sys.executable),
+    "version": list(sys.version_info[:3]),
+    "cpython": platform.python_implementation() == "CPython" and not sysconfig.get_config_var("Py_GIL_DISABLED"),
+    "venv": all(importlib.util.find_spec(name) for name in ("venv", "ensurepip")),
+    "headers": os.path.isfile(os.path.join(sysconfig.get_path("include"), "Python.h")),
+}))
+"""
+
+
+class Python(NamedTuple):
+    """An interpreter: `path` is free of symlinks; `cpython` means one that the ROS 2 wheels are built for."""
+
+    path: str
+    version: tuple[int, int, int]
+    cpython: bool
+    venv: bool
+    headers: bool
+
+    @property
+    def is_systems(self) -> bool:
+        """Whether the system's package manager installed it, and so has its missing pieces."""
+        return Path(self.path).parent == Path("/usr/bin")
+
+
+class SourcedRos(NamedTuple):
+    """A sourced ROS 2 Jazzy: its prefix, the (major, minor) of its Python, and whether it brings a turtlesim."""
+
+    prefix: str
+    python: tuple[int, int]
+    turtlesim: bool
+
+
+class Need(NamedTuple):
+    """Something that the system lacks, and the Debian or Ubuntu package that brings it."""
+
+    what: str
+    package: str
+    lost: str = ""
+    """What does not work without it; empty where nothing does."""
+
+
+def sourced_ros(env: Mapping[str, str], ours: Path) -> SourcedRos | None:
+    """The ROS 2 Jazzy that the caller has sourced, if any; `ours` is the prefix of the wheels, which does not count."""
+    if env.get("ROS_DISTRO") != "jazzy":
+        return None
+    for prefix in map(Path, clean(env).get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
+        index = prefix / "share/ament_index/resource_index/packages"
+        if prefix == ours or not (index / "rclpy").is_file():
+            continue
+        for minor in range(OLDEST[1], NEWEST[1] + 1):
+            if (prefix / f"lib/python3.{minor}/site-packages/rclpy").is_dir():
+                return SourcedRos(str(prefix), (3, minor), (index / "turtlesim").is_file())
+    return None
+
+
+def platform_problem(system: str, machine: str, libc: tuple[str, str], ros: SourcedRos | None) -> str:
+    """Why the ROS 2 wheels cannot be installed here, with what to do instead; empty if they can.
+
+    The arguments are what the module `platform` says: system(), machine(), libc_ver().
+    """
+    if system == "Linux" and ros:
+        return ""
+    if system != "Linux" or machine != "x86_64":
+        seen = "{} on {}".format({"Darwin": "macOS"}.get(system, system or "unknown"), machine or "unknown")
+    elif libc[0] != "glibc":
+        seen = "a Linux with another C library than glibc"
+    elif tuple(int(number) for number in libc[1].split(".")[:2]) < (2, 28):
+        seen = f"a Linux with glibc {libc[1]}"
+    else:
+        return ""
+    return (
+        "The course brings ROS 2 as packages that exist for Linux on x86-64 with glibc 2.28 or newer (Debian 10, "
+        f"Ubuntu 20.04 or later). This is {seen}.\nTwo ways from here:\n{CONTAINER}"
+    )
+
+
+def closed_folder(path: str) -> Path | None:
+    """The topmost folder above `path` that other users cannot enter: what lies below it, they cannot run."""
+    folders = Path(path).resolve().parents
+    return next((folder for folder in reversed(list(folders)) if not folder.stat().st_mode & stat.S_IXOTH), None)
+
+
+def probe(executable: str) -> Python | None:
+    """Ask an interpreter what it is; None if it does not answer, like a shim for one not installed."""
+    try:
+        asking = interpreter("-c", _PROBE, python=executable)
+        output = subprocess.check_output(asking.argv, env=asking.env, stderr=subprocess.DEVNULL, timeout=30)
+        answer = json.loads(output.decode())
+    except (OSError, ValueError, subprocess.SubprocessError):
+        return None
+    return Python(answer["path"], tuple(answer["version"]), answer["cpython"], answer["venv"], answer["headers"])
+
+
+def find_pythons(path: str) -> Iterator[Python]:
+    """Interpreters on PATH and in the system's folders: `python3` first, then by name from the newest."""
+    folders = list(dict.fromkeys([*filter(None, path.split(os.pathsep)), *SYSTEM_PATH]))
+    seen = set()
+    for name in ["python3", *(f"python3.{minor}" for minor in range(NEWEST[1], OLDEST[1] - 1, -1))]:
+        for executable in [Path(folder, name) for folder in folders]:
+            python = probe(str(executable)) if os.access(str(executable), os.X_OK) else None
+            if python and python.path not in seen:
+                seen.add(python.path)
+                yield python
+
+
+def choose_python(pythons: Iterable[Python], *, root: bool, wanted: tuple[int, int] | None = None) -> Python | None:
+    """The interpreter for .venv: the first that will do, and one that lacks nothing before one that does.
+
+    Root gets one that others can run too (not below its own home), since the sandbox gives up root's rights.
+    `wanted` is the only (major, minor) that will do: the one a sourced ROS 2 was built for.
+    """
+    best: tuple[tuple[bool, bool], Python] | None = None
+    for python in pythons:
+        fits = python.version[:2] == wanted if wanted else OLDEST <= python.version[:2] <= NEWEST
+        lacks = not (python.venv and python.headers)
+        # What a Python that is not the system's lacks, no package manager could add.
+        if not python.cpython or not fits or (lacks and not python.is_systems):
+            continue
+        rank = (root and closed_folder(python.path) is not None, lacks)
+        if best is None or rank < best[0]:
+            best = (rank, python)
+        if not any(rank):
+            break
+    return best[1] if best else None
+
+
+def missing_tools(path: str, ros: SourcedRos | None) -> list[Need]:
+    """Programs that the system lacks. Where turtlesim is installed, its messages need no compiler."""
+    tools = {"bwrap": Need("bubblewrap, the sandbox that student code runs in", "bubblewrap", NO_SANDBOX)}
+    limits = Need("setpriv, prlimit and choom, which set the sandbox's limits", "util-linux")
+    tools.update({"setpriv": limits, "prlimit": limits, "choom": limits})
+    if not (ros and ros.turtlesim):
+        tools["g++"] = Need("a C++ compiler, for turtlesim's messages", "g++")
+        tools["cmake"] = Need("cmake, for turtlesim's messages", "cmake")
+        tools["make"] = Need("make, for turtlesim's messages", "make")
+    search = os.pathsep.join([path, *SYSTEM_PATH])
+    return list(dict.fromkeys(need for name, need in tools.items() if shutil.which(name, path=search) is None))
+
+
+def missing_of_tests(path: str) -> list[Need]:
+    """What is missing that only some tests need: no reason to stop, since the others run without it."""
+    tools = {
+        BROWSERS: Need("a browser, for the tests of the pages", "chromium"),
+        ("shellcheck",): Need("shellcheck, for the test of the shell scripts", "shellcheck"),
+    }
+    search = os.pathsep.join([path, *SYSTEM_PATH])
+    return [need for names, need in tools.items() if not any(shutil.which(name, path=search) for name in names)]
+
+
+def missing_of_python(python: Python | None, wanted: tuple[int, int] | None = None) -> list[Need]:
+    """What the chosen Python lacks; all of it, if there is none."""
+    if python is None:
+        name = f"python{wanted[0]}.{wanted[1]}" if wanted else "python3"
+        what = f"CPython {wanted[0]}.{wanted[1]}" if wanted else f"CPython 3.{OLDEST[1]} to 3.{NEWEST[1]}"
+        return [Need(what + " with its headers", name + part) for part in ("", "-venv", "-dev")]
+    default = os.path.realpath("/usr/bin/python3") == python.path
+    name = "python3" if default else f"python{python.version[0]}.{python.version[1]}"
+    needs = []
+    if not python.venv:
+        needs.append(Need("Python's module venv, which makes the course's own environment", name + "-venv"))
+    if not python.headers:
+        needs.append(Need("Python's headers (Python.h), for turtlesim's messages", name + "-dev"))
+    return needs
+
+
+def apt_command(needs: Sequence[Need], *, root: bool) -> str:
+    """The one line that installs what is missing on Debian and Ubuntu."""
+    sudo = "" if root else "sudo "
+    packages = " ".join(dict.fromkeys(need.package for need in needs))
+    return f"{sudo}apt-get update && {sudo}apt-get install -y {packages}"
+
+
+def lack_message(needs: Sequence[Need], *, root: bool, apt: bool) -> str:
+    """All that the system lacks, and the one command for it; `apt` says whether there is an apt-get."""
+    whats = [f"  - {what}" for what in dict.fromkeys(need.what for need in needs)]
+    lines = ["The course needs these, which this system does not have:", *whats]
+    if not apt:
+        packages = ", ".join(dict.fromkeys(need.package for need in needs))
+        lines.append(f"Install them with your package manager (Debian's names: {packages}), then run make again.")
+        return "\n".join(lines)
+    lines += ["Install them with this command, then run make again:", "", "    " + apt_command(needs, root=root), ""]
+    if any(need.what.startswith("CPython") for need in needs):
+        lines += [
+            "Where the system's own Python is older, take a newer system (Debian 12, Ubuntu 22.04), or",
+            CONTAINER,
+        ]
+    return "\n".join(lines)

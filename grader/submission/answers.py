@@ -1,0 +1,64 @@
+"""Answers: what a student's answers.toml says."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from grader.common.words import shorten
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+FILE = "answers.toml"
+MAX_BYTES = 100_000
+
+Answer = str | float | tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Answers:
+    """The table [answers], by id; what is neither text, number nor list of texts is left out, so is what is empty or 0.
+
+    `lines` are where the answers stand, from 1. `problem` says why the file cannot be read.
+    """
+
+    given: Mapping[str, Answer] = field(default_factory=dict)
+    lines: Mapping[str, int] = field(default_factory=dict)
+    problem: str | None = None
+
+
+def read_answers(data: bytes) -> Answers:
+    """Read an answers.toml; what is wrong with it is told, never raised."""
+    if len(data) > MAX_BYTES:
+        return Answers(problem=f"it is larger than {MAX_BYTES // 1000} kB")
+    try:
+        text = data.decode("utf-8-sig")
+        table = tomllib.loads(text).get("answers")
+    except UnicodeDecodeError:
+        return Answers(problem="it is not UTF-8")
+    except (ValueError, RecursionError) as error:
+        return Answers(problem=shorten(str(error), 120))
+    if not isinstance(table, dict):
+        return Answers(problem="it has no table [answers]")
+    given = {key: answer for key, value in table.items() if (answer := _answer(value)) is not None}
+    lines = {line.split("=")[0].strip(): number for number, line in enumerate(text.splitlines(), 1) if "=" in line}
+    return Answers(given, lines)
+
+
+def _answer(value: object) -> Answer | None:
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, int | float):
+        return float(value) if 0.0 < abs(value) < 1e300 else None
+    if isinstance(value, str):
+        return value.strip() or None
+    if isinstance(value, list) and value and all(isinstance(item, str) for item in value):
+        return tuple(item.strip() for item in value)
+    return None

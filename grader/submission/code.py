@@ -1,0 +1,203 @@
+"""Code: what the Python files of a submission say, by `ast`, without running any of it."""
+
+from __future__ import annotations
+
+import ast
+import warnings
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from grader.checks.outcome import Where
+from grader.submission.constants import Names, dotted, single_names
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+MAX_BYTES = 400_000
+"""A longer file is not parsed: nobody wrote it by hand."""
+
+SRC = "src/"
+"""Where Python people put their packages, with package_dir={"": "src"} in setup.py."""
+
+
+@dataclass(frozen=True)
+class Unreadable:
+    """Why Python cannot read a file; `line` from 1 where Python names one."""
+
+    message: str
+    line: int | None = None
+
+
+@dataclass(frozen=True)
+class Module:
+    """One Python file: its tree, or why there is none (both None: not looked at, it is too long)."""
+
+    file: str
+    tree: ast.Module | None = None
+    unreadable: Unreadable | None = None
+
+    @cached_property
+    def names(self) -> Names:
+        """The names that are assigned, with their expressions."""
+        return {} if self.tree is None else single_names(self.tree)
+
+    @property
+    def body(self) -> list[ast.stmt]:
+        """The statements of the top level."""
+        return [] if self.tree is None else self.tree.body
+
+    @cached_property
+    def nodes(self) -> tuple[ast.AST, ...]:
+        """Every node of the tree."""
+        return () if self.tree is None else tuple(ast.walk(self.tree))
+
+
+@dataclass(frozen=True)
+class Call:
+    """A call of a function, and the module it stands in."""
+
+    node: ast.Call
+    module: Module
+
+    @property
+    def where(self) -> Where:
+        """The line of the call."""
+        return Where(self.module.file, self.node.lineno)
+
+    def argument(self, place: int, name: str) -> ast.expr | None:
+        """The argument at this place (from 0) or with this name."""
+        for keyword in self.node.keywords:
+            if keyword.arg == name:
+                return keyword.value
+        plain = self.node.args[: place + 1]
+        starred = any(isinstance(argument, ast.Starred) for argument in plain)
+        return plain[place] if len(plain) > place and not starred else None
+
+
+@dataclass(frozen=True)
+class Code:
+    """The node's file and what it imports of the submission, in that order; tests and setup.py left out."""
+
+    modules: tuple[Module, ...]
+    node_file: str | None = None
+
+    @property
+    def start(self) -> Where | None:
+        """The node's file as a place to look."""
+        return None if self.node_file is None else Where(self.node_file)
+
+    @cached_property
+    def _calls(self) -> dict[str, list[Call]]:
+        found: dict[str, list[Call]] = {}
+        for module in self.modules:
+            for node in module.nodes:
+                if isinstance(node, ast.Call):
+                    name = (dotted(node.func) or "").rpartition(".")[2] or getattr(node.func, "attr", "")
+                    found.setdefault(name, []).append(Call(node, module))
+        place = {module.file: index for index, module in enumerate(self.modules)}
+        for calls in found.values():
+            calls.sort(key=lambda call: (place[call.module.file], call.node.lineno, call.node.col_offset))
+        return found
+
+    def calls(self, name: str) -> list[Call]:
+        """The calls of a function or method with this last name, in the order of the source."""
+        return self._calls.get(name, [])
+
+    def assigned(self, *path: str) -> Where | None:
+        """Where an attribute such as ("linear", "x") of something is first set, by assignment or keyword."""
+        for module in self.modules:
+            lines = [line for node in module.nodes for line in _sets(node, path)]
+            if lines:
+                return Where(module.file, min(lines))
+        return None
+
+
+def _sets(node: ast.AST, path: tuple[str, ...]) -> list[int]:
+    if isinstance(node, ast.Assign):
+        targets = node.targets
+    elif isinstance(node, ast.AnnAssign | ast.AugAssign):
+        targets = [node.target]
+    elif isinstance(node, ast.keyword) and node.arg == path[0] and isinstance(node.value, ast.Call):
+        return [node.value.lineno for keyword in node.value.keywords if keyword.arg == path[-1]]
+    else:
+        return []
+    return [
+        target.lineno
+        for target in targets
+        if isinstance(target, ast.Attribute) and (dotted(target) or "").split(".")[-len(path) :] == list(path)
+    ]
+
+
+def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
+    """Parse the node's file `first` and those files of the submission that it imports; all files where it is None.
+
+    The other nodes of a package say nothing about this one.
+    """
+    paths = [path for path in sorted(files) if path.endswith(".py") and not _left_out(path)]
+    if first is None:
+        return Code(tuple(read_module(path, files[path]) for path in paths))
+    modules: dict[str, Module] = {}
+    waiting = [first]
+    while waiting:
+        path = waiting.pop(0)
+        if path not in modules:
+            modules[path] = read_module(path, files[path])
+            waiting += [*imported_files(modules[path], paths), *_packages_around(path, paths)]
+    return Code(tuple(modules.values()), first)
+
+
+def _packages_around(path: str, paths: Collection[str]) -> list[str]:
+    """The files __init__.py that Python runs before it runs the file at this path."""
+    folders = path.split("/")[:-1]
+    around = ["/".join([*folders[:depth], "__init__.py"]) for depth in range(len(folders), 0, -1)]
+    return [file for file in around if file in paths]
+
+
+def imported_files(module: Module, paths: Collection[str]) -> list[str]:
+    """The files among `paths` that a module imports, absolutely or relative to its own package."""
+    found: list[str] = []
+    for node in module.nodes:
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            folder = module.file.split("/")[: -node.level] if node.level else []
+            base = ".".join([*folder, *([node.module] if node.module else [])])
+            names = [base, *(f"{base}.{alias.name}" for alias in node.names)]
+        else:
+            continue
+        found += [file for name in names if (file := module_file(name, paths)) is not None]
+    return found
+
+
+def module_file(module: str, paths: Collection[str]) -> str | None:
+    """The file of a dotted module name among the submission's files, None when there is none."""
+    path = module.replace(".", "/")
+    candidates = (f"{root}{path}{end}" for root in ("", SRC) for end in (".py", "/__init__.py"))
+    return next((each for each in candidates if each in paths), None)
+
+
+def import_path(file: str) -> str:
+    """The path of a Python file as it is installed: what lies in src/ is imported without that."""
+    return file.removeprefix(SRC)
+
+
+def _left_out(path: str) -> bool:
+    folders = path.split("/")[:-1]
+    return path == "setup.py" or path.startswith("launch/") or any(folder in ("test", "tests") for folder in folders)
+
+
+def read_module(file: str, data: bytes) -> Module:
+    """Parse one file; what Python cannot read is told, never raised."""
+    if len(data) > MAX_BYTES:
+        return Module(file)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # an invalid escape sequence is the student's, and no news for the grader
+            return Module(file, ast.parse(data, filename=file))
+    except SyntaxError as error:
+        return Module(file, unreadable=Unreadable(error.msg, error.lineno))
+    except ValueError as error:  # null bytes, in Python before 3.12
+        return Module(file, unreadable=Unreadable(str(error)))
+    except (RecursionError, MemoryError):
+        return Module(file)

@@ -1,0 +1,156 @@
+"""Find the one package in a folder, or tell a beginner why there is not exactly one.
+
+As colcon does: a folder with package.xml or setup.py is a package, and what lies below it belongs to it.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import posixpath
+import stat
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from grader.errors import UsageError
+from grader.submission import tree
+from grader.submission.tree import Entry, shown
+
+PACKAGE_FILES = ("package.xml", "setup.py")
+IGNORE_MARKER = "COLCON_IGNORE"
+GIVE = "Give the folder of your package: the one with package.xml in it."
+MAX_FOLDERS = 5000
+MAX_NAMED = 10
+"""Names in a message."""
+
+
+@dataclass
+class _Search:
+    """What was met on the way; paths relative to the folder where the search began."""
+
+    packages: list[str] = field(default_factory=list)
+    nearly: list[str] = field(default_factory=list)
+    """Files whose name is package.xml or setup.py but for case or a second ending."""
+    linked: list[str] = field(default_factory=list)
+    """Links to folders: not followed."""
+    ignored: list[str] = field(default_factory=list)
+    """Folders that colcon was told to pass over."""
+    folders: int = 0
+
+
+def find_package(root: int, name: str) -> str:
+    """The POSIX path of the only package in the folder `root`, "." if it is one. `name`: as the user named it.
+
+    Raises UsageError where there is none, or several.
+    """
+    search = _Search()
+    _visit(search, root, ".", 0, name)
+    if len(search.packages) == 1:
+        return search.packages[0]
+    message = _several(search.packages, name) if search.packages else _none(search, root, name)
+    raise UsageError(message)
+
+
+def why_not_opened(error: OSError, name: str) -> str:
+    """What to tell somebody whose path is not a folder that can be read."""
+    path = shown(name)
+    if error.errno not in (errno.ENOENT, errno.ENOTDIR):
+        return f"{path} cannot be opened: it {tree.reason(error, name)}."
+    if Path(name).is_file():
+        return f"{path} is a file. {_for_a_file(name)}"
+    if Path(name).is_symlink():
+        return f"{path} is a link to a place that does not exist. {GIVE}"
+    return f"There is no folder {path}{_nearest_parent(name)}. {GIVE}"
+
+
+def _visit(search: _Search, folder: int, path: str, depth: int, name: str) -> None:
+    search.folders += 1
+    if search.folders > MAX_FOLDERS:
+        message = f"{shown(name)} holds more than {MAX_FOLDERS} folders. {GIVE}"
+        raise UsageError(message)
+    listing = tree.entries(folder) or []
+    names = {entry.name for entry in listing if not entry.is_folder}
+    if path != "." and IGNORE_MARKER in names:
+        search.ignored.append(path)
+        return
+    if not names.isdisjoint(PACKAGE_FILES):
+        search.packages.append(path)
+        return
+    for entry in listing:
+        below = posixpath.normpath(posixpath.join(path, entry.name))
+        if entry.is_folder:
+            if depth < tree.MAX_DEPTH and not tree.is_left_out(entry.name, folder):
+                _visit_below(search, folder, entry, below, depth, name)
+        elif entry.target is not None and _is_folder_behind(entry.name, folder):
+            search.linked.append(below)
+        elif entry.name.lower().startswith(PACKAGE_FILES):
+            search.nearly.append(below)
+
+
+def _visit_below(search: _Search, folder: int, entry: Entry, path: str, depth: int, name: str) -> None:
+    try:
+        with tree.open_folder(entry.name, folder) as descriptor:
+            _visit(search, descriptor, path, depth + 1, name)
+    except OSError as error:
+        tree.reason(error, path)  # raises what is the machine's fault; a closed folder holds no package for us
+
+
+def _is_folder_behind(name: str, folder: int) -> bool:
+    """Only to name it in a message: nothing behind the link is read."""
+    try:
+        return stat.S_ISDIR(os.stat(name, dir_fd=folder).st_mode)
+    except OSError:
+        return False
+
+
+def _several(packages: list[str], name: str) -> str:
+    ways = [shown(posixpath.join(name, package)) for package in packages]
+    return f"{shown(name)} holds {len(ways)} packages: {_listed(ways)}. Give the one to grade, for example {ways[0]}."
+
+
+def _none(search: _Search, root: int, name: str) -> str:
+    seen = f"There is no package in {shown(name)}: no folder in it has a package.xml or a setup.py."
+    if search.nearly:
+        return f"{seen} {shown(search.nearly[0])} is nearly one: the name must be exactly package.xml or setup.py."
+    if search.linked:
+        return (
+            f"{seen} {shown(search.linked[0])} is a link, and links are not followed: give the folder that it leads to."
+        )
+    if search.ignored:
+        return (
+            f"{seen} {shown(search.ignored[0])} was passed over, as by colcon, since it holds a file {IGNORE_MARKER}."
+        )
+    for above in list(Path(name).resolve().parents)[:2]:
+        if any((above / file).is_file() for file in PACKAGE_FILES):
+            return f"{seen} The folder around it, {shown(str(above))}, is one: give that."
+    names = [shown(entry.name) + ("/" if entry.is_folder else "") for entry in tree.entries(root) or []]
+    if not names:
+        return f"{seen} The folder is empty. Give the folder of your package."
+    return f"{seen} It holds {_listed(names)}. {GIVE}"
+
+
+def _listed(names: list[str]) -> str:
+    more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
+    return ", ".join(names[:MAX_NAMED]) + more
+
+
+def _for_a_file(name: str) -> str:
+    folder = Path(name).resolve().parent
+    for above in (folder, *list(folder.parents)[:2]):
+        if any((above / file).is_file() for file in PACKAGE_FILES):
+            return f"What is graded is the whole package, so give its folder: {shown(str(above))}."
+    if name.lower().endswith((".zip", ".tar", ".tar.gz", ".tgz")):
+        return "Unpack it, and give the folder of the package."
+    if name.endswith(".py"):
+        return "What is graded is the package that it belongs to: give the folder with package.xml in it."
+    return GIVE
+
+
+def _nearest_parent(name: str) -> str:
+    """The part of the path that does exist, where a typing mistake is likely behind it."""
+    above = Path(name).absolute().parent
+    if above.is_dir():
+        return ""
+    while not above.is_dir():
+        above = above.parent
+    return f" (the path is right as far as {shown(str(above))})"

@@ -1,0 +1,178 @@
+"""SetupPy: what a setup.py says to setuptools, read by `ast` without running it."""
+
+from __future__ import annotations
+
+import ast
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.submission.code import Call, Module, Unreadable, read_module
+from grader.submission.constants import dotted, evaluate
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ENTRY_POINT = re.compile(
+    r"\s*(?P<name>[^=\s][^=]*?)\s*=\s*(?P<module>[\w.]+)\s*:\s*(?P<attribute>[\w.]+)\s*(\[.*\])?\s*"
+)
+"""name = module:attribute, as setuptools reads a console script."""
+MAX_ENTRY_POINT = 300
+
+
+@dataclass(frozen=True)
+class EntryPoint:
+    """One text in console_scripts. `target` is "module:attribute", None when the text is not of that form."""
+
+    text: str
+    line: int
+    name: str
+    target: str | None
+
+
+@dataclass(frozen=True)
+class SetupPy:
+    """The arguments of setup() as far as they are constants; None where they cannot be told."""
+
+    name: str | None = None
+    name_line: int | None = None
+    entry_points: tuple[EntryPoint, ...] | None = None
+    data_files: tuple[tuple[str, tuple[str, ...]], ...] | None = None
+    finds_packages: bool = False
+    """packages=find_packages(...)"""
+    setup_line: int | None = None
+    groups: tuple[str, ...] = ()
+    """The names of the groups in entry_points."""
+    required: tuple[str, ...] = ()
+    """install_requires."""
+    stray: tuple[EntryPoint, ...] = ()
+    """What reads like an entry point, and stands in setup.py outside of console_scripts."""
+    unreadable: Unreadable | None = None
+
+    def entry_point(self, name: str) -> EntryPoint | None:
+        """The console script of this name."""
+        return next((point for point in self.entry_points or () if point.name == name), None)
+
+
+def read_setup_py(data: bytes) -> SetupPy:
+    """Read a setup.py. What is not constant stays unknown; nothing is raised."""
+    module = read_module("setup.py", data)
+    if module.tree is None:
+        return SetupPy(unreadable=module.unreadable)
+    calls = [node for node in module.nodes if isinstance(node, ast.Call) and _last(node.func) == "setup"]
+    if not calls:
+        return SetupPy()
+    call = Call(calls[0], module)
+    name = call.argument(0, "name")
+    value = evaluate(name, module.names)
+    packages = call.argument(99, "packages")
+    groups = _groups(call, module)
+    points = _entry_points(groups, module)
+    return SetupPy(
+        name=value if isinstance(value, str) else None,
+        name_line=_value_line(name, module),
+        entry_points=points,
+        data_files=_data_files(call, module),
+        finds_packages=isinstance(packages, ast.Call) and _last(packages.func) == "find_packages",
+        setup_line=call.node.lineno,
+        groups=tuple(groups or ()),
+        required=tuple(_texts(call.argument(99, "install_requires"), module)),
+        stray=_stray(module, points or ()),
+    )
+
+
+def _stray(module: Module, points: tuple[EntryPoint, ...]) -> tuple[EntryPoint, ...]:
+    known = {point.text for point in points}
+    texts = [
+        (node.value, node.lineno)
+        for node in module.nodes
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    ]
+    matches = [(ENTRY_POINT.fullmatch(text[:MAX_ENTRY_POINT]), text, line) for text, line in texts if text not in known]
+    return tuple(
+        EntryPoint(text, line, match["name"], f"{match['module']}:{match['attribute']}")
+        for match, text, line in matches
+        if match
+    )
+
+
+def _last(node: ast.expr) -> str:
+    return (dotted(node) or "").rpartition(".")[2]
+
+
+def _value_line(node: ast.expr | None, module: Module) -> int | None:
+    """The line of the text itself, where a name stands for it."""
+    while isinstance(node, ast.Name) and module.names.get(node.id) is not None:
+        node = module.names[node.id]
+    return None if node is None else node.lineno
+
+
+def _resolved(node: ast.expr | None, module: Module) -> ast.expr | None:
+    """The expression, or the one that its name stands for."""
+    return module.names.get(node.id) if isinstance(node, ast.Name) else node
+
+
+def _groups(call: Call, module: Module) -> dict[str, ast.expr] | None:
+    """The groups of entry_points; None when they cannot be told, empty when there are none."""
+    given = call.argument(99, "entry_points")
+    if given is None:
+        return None if any(keyword.arg is None for keyword in call.node.keywords) else {}
+    table = _resolved(given, module)
+    if not isinstance(table, ast.Dict):
+        return None
+    groups: dict[str, ast.expr] = {}
+    for key, value in zip(table.keys, table.values, strict=True):
+        name = evaluate(key, module.names)
+        if isinstance(name, str):
+            groups[name] = value
+    return groups
+
+
+def _entry_points(groups: dict[str, ast.expr] | None, module: Module) -> tuple[EntryPoint, ...] | None:
+    if groups is None:
+        return None
+    listed = _resolved(groups.get("console_scripts"), module)
+    if listed is None:
+        return ()
+    if not isinstance(listed, ast.List | ast.Tuple):
+        return None
+    points: list[EntryPoint] = []
+    for item in listed.elts:
+        text = evaluate(item, module.names)
+        if not isinstance(text, str):
+            return None
+        text = text[:MAX_ENTRY_POINT]
+        match = ENTRY_POINT.fullmatch(text)
+        target = f"{match['module']}:{match['attribute']}" if match else None
+        name = match["name"] if match else text.partition("=")[0].strip()
+        points.append(EntryPoint(text, item.lineno, name, target))
+    return tuple(points)
+
+
+def _data_files(call: Call, module: Module) -> tuple[tuple[str, tuple[str, ...]], ...] | None:
+    listed = _resolved(call.argument(99, "data_files"), module)
+    if listed is None:
+        return () if call.argument(99, "data_files") is None else None
+    if not isinstance(listed, ast.List | ast.Tuple):
+        return None
+    return tuple(_data_file(item, module) for item in listed.elts)
+
+
+def _data_file(item: ast.expr, module: Module) -> tuple[str, tuple[str, ...]]:
+    """One (folder, [files]); a part that is no constant is an empty text."""
+    if not isinstance(item, ast.Tuple | ast.List) or len(item.elts) != 2:
+        return "", ()
+    folder, files = item.elts
+    return _text(folder, module), tuple(_texts(files, module))
+
+
+def _texts(node: ast.expr | None, module: Module) -> Iterator[str]:
+    resolved = _resolved(node, module)
+    if isinstance(resolved, ast.List | ast.Tuple):
+        for item in resolved.elts:
+            yield _text(item, module)
+
+
+def _text(node: ast.expr, module: Module) -> str:
+    value = evaluate(node, module.names)
+    return value if isinstance(value, str) else ""

@@ -1,0 +1,148 @@
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from grader.authoring.release import main, release, released, stale
+from grader.errors import UsageError
+
+ROOT = Path(__file__).parent.parent.parent.parent
+MARKED = "a = 1\n# BEGIN SOLUTION\nb = 2\n# END SOLUTION\n# BEGIN STARTER\n# # TODO\n# END STARTER\n"
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    step = tmp_path / "solutions" / "01-x"
+    (step / "pkg").mkdir(parents=True)
+    (step / "pkg" / "node.py").write_text(MARKED)
+    (step / "pkg" / "data.bin").write_bytes(b"\x00\xff\r\n")
+    (step / "pkg" / "run.sh").write_text("true\n")
+    (step / "pkg" / "run.sh").chmod(0o755)
+    return tmp_path
+
+
+def test_exercises_is_what_release_makes_of_solutions() -> None:
+    assert stale(ROOT / "solutions", ROOT / "exercises") == ()
+
+
+def test_files_are_stripped_or_copied_as_they_are(root: Path) -> None:
+    release(root / "solutions" / "01-x", root / "out")
+    assert (root / "out/pkg/node.py").read_text() == "a = 1\n# TODO\n"
+    assert (root / "out/pkg/data.bin").read_bytes() == b"\x00\xff\r\n"
+    modes = {path.name: path.stat().st_mode & 0o777 for path in (root / "out/pkg").iterdir()}
+    assert modes == {"node.py": 0o644, "data.bin": 0o644, "run.sh": 0o755}
+
+
+def test_what_was_released_before_and_is_no_more_goes(root: Path) -> None:
+    step = root / "solutions" / "01-x"
+    release(step, root / "out")
+    (step / "pkg" / "data.bin").unlink()
+    (root / "out" / "pkg" / "node.py").write_text("changed")
+    release(step, root / "out")
+    assert sorted(path.name for path in (root / "out/pkg").iterdir()) == ["node.py", "run.sh"]
+    assert (root / "out/pkg/node.py").read_text() == "a = 1\n# TODO\n"
+
+
+def test_a_file_of_which_nothing_is_left_is_for_the_student_to_make(root: Path) -> None:
+    step = root / "solutions" / "01-x"
+    (step / "pkg" / "node.py").write_text("# BEGIN SOLUTION\na = 1\n# END SOLUTION\n")
+    (step / "pkg" / "__init__.py").write_text("")
+    assert sorted(released(step)) == ["pkg/__init__.py", "pkg/data.bin", "pkg/run.sh"]
+
+
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        ("a.py", "def f():\n# BEGIN SOLUTION\n    return 1\n# END SOLUTION\n"),
+        ("a.xml", "<a>\n<!-- BEGIN SOLUTION -->\n</a>\n<!-- END SOLUTION -->\n"),
+        ("a.toml", "a = [\n# BEGIN SOLUTION\n]\n# END SOLUTION\n"),
+    ],
+)
+def test_what_is_released_must_parse(root: Path, path: str, text: str) -> None:
+    (root / "solutions" / "01-x" / path).write_text(text)
+    with pytest.raises(UsageError, match=rf"01-x/{path}: what is released does not parse"):
+        released(root / "solutions" / "01-x")
+
+
+def test_a_marker_where_we_know_no_comments_is_an_error(root: Path) -> None:
+    (root / "solutions" / "01-x" / "a.cpp").write_text("// BEGIN SOLUTION\n")
+    with pytest.raises(UsageError, match=r"a\.cpp: a marker in a file whose comments are not known"):
+        released(root / "solutions" / "01-x")
+
+
+def test_a_text_that_is_not_utf8_is_an_error(root: Path) -> None:
+    (root / "solutions" / "01-x" / "a.py").write_bytes(b"# \xff\n")
+    with pytest.raises(UsageError, match=r"a\.py: is not UTF-8"):
+        released(root / "solutions" / "01-x")
+
+
+def test_a_link_out_is_an_error(root: Path) -> None:
+    (root / "solutions" / "01-x" / "link").symlink_to("/etc/hostname")
+    with pytest.raises(UsageError, match="link is a link to /etc/hostname"):
+        released(root / "solutions" / "01-x")
+
+
+def test_notebooks_lose_solutions_and_output(root: Path) -> None:
+    cells = [
+        {"cell_type": "markdown", "source": ["é\n", "<!-- BEGIN SOLUTION -->\n", "x\n", "<!-- END SOLUTION -->"]},
+        {"cell_type": "code", "source": MARKED, "outputs": [{"text": "2"}], "execution_count": 3},
+    ]
+    path = root / "solutions" / "01-x" / "a.ipynb"
+    path.write_text(json.dumps({"nbformat": 4, "cells": cells}))
+    text = released(root / "solutions" / "01-x")["a.ipynb"].data.decode()
+    markdown, code = json.loads(text)["cells"]
+    assert markdown["source"] == ["é\n"]
+    assert code["source"] == ["a = 1\n", "# TODO\n"]
+    assert code["outputs"] == []
+    assert code["execution_count"] is None
+    assert "é" in text
+    assert text.startswith('{\n "cells": [')
+    assert text.endswith("}\n")
+
+
+def test_markers_amiss_in_a_notebook_name_the_cell(root: Path) -> None:
+    cells = [{"cell_type": "raw", "source": "a"}, {"cell_type": "code", "source": "# END SOLUTION"}]
+    (root / "solutions" / "01-x" / "a.ipynb").write_text(json.dumps({"cells": cells}))
+    with pytest.raises(UsageError, match=r"a\.ipynb, cell 2:1: END SOLUTION without"):
+        released(root / "solutions" / "01-x")
+
+
+@pytest.mark.parametrize("text", ["no json", "[]", '{"cells": [{}]}'])
+def test_a_broken_notebook_is_an_error(root: Path, text: str) -> None:
+    (root / "solutions" / "01-x" / "a.ipynb").write_text(text)
+    with pytest.raises(UsageError, match=r"a\.ipynb: is no notebook"):
+        released(root / "solutions" / "01-x")
+
+
+def test_the_command_makes_and_checks(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    check = ["--check", "--root", str(root)]
+    (root / "exercises").mkdir()
+    assert main(check) == 1
+    assert "01-x/pkg/node.py is missing." in capsys.readouterr().out
+    assert main(["--root", str(root)]) == 0
+    assert main(check) == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        ("printf x >> 01-x/pkg/node.py", "01-x/pkg/node.py is not what its solution makes."),
+        ("chmod -x 01-x/pkg/run.sh", "01-x/pkg/run.sh has another executable bit than its solution."),
+        ("touch 01-x/more.txt", "01-x/more.txt comes from no solution: delete it."),
+        ("mkdir 02-y; touch 02-y/a", "02-y/a comes from no solution: delete it."),
+        ("rm 01-x/pkg/data.bin", "01-x/pkg/data.bin is missing."),
+    ],
+)
+def test_whatever_was_changed_by_hand_is_stale(root: Path, change: str, what: str) -> None:
+    main(["--root", str(root)])
+    subprocess.run(change, shell=True, check=True, cwd=root / "exercises")
+    assert stale(root / "solutions", root / "exercises") == (f"{root}/exercises/{what}",)
+
+
+def test_the_command_tells_authors_errors_without_a_traceback(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (root / "solutions" / "01-x" / "pkg" / "node.py").write_text("# END SOLUTION\n")
+    assert main(["--root", str(root)]) == 2
+    assert "node.py:1: END SOLUTION without" in capsys.readouterr().err

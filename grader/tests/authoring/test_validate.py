@@ -1,0 +1,112 @@
+"""The course is valid, and so is an exercise that an author adds by what README says; what is amiss in one is told."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.authoring.release import main as release
+from grader.authoring.validate import validate
+from grader.errors import UsageError
+from grader.tests.case import copy_solution
+from grader.tests.console import blocks
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+ROOT = Path(__file__).parent.parent.parent.parent
+NEW = "08-straight-on"
+NODE = "my_robot_controller/straight_on.py"
+TASK = """\
+        # BEGIN SOLUTION
+        msg.linear.x = 0.5
+        # END SOLUTION
+        # BEGIN STARTER
+        # # TODO: make it drive.
+        # END STARTER
+"""
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    """A course of the one exercise that README's page for authors shows."""
+    text = (ROOT / "README.md").read_text("utf-8").split("## For authors", 1)[1]
+    exercise = next(block.text for block in blocks(text) if block.language == "toml")
+    (tmp_path / "course" / NEW).mkdir(parents=True)
+    (tmp_path / "course" / NEW / "exercise.toml").write_text(exercise)
+    (tmp_path / "course" / NEW / "lesson.md").write_text("# Straight on\n\n" + "word " * 1200 + "\n")
+    package = tmp_path / "solutions" / NEW / "my_robot_controller"
+    copy_solution("03-circle-publisher", package)
+    node = (package / "my_robot_controller/draw_circle.py").read_text().replace("draw_circle", "straight_on")
+    driving = "        msg.linear.x = 2.0\n        msg.angular.z = 1.0\n"
+    assert driving in node
+    (package / NODE).write_text(node.replace(driving, TASK))
+    setup = (package / "setup.py").read_text()
+    (package / "setup.py").write_text(setup.replace("draw_circle", "straight_on"))
+    (tmp_path / "exercises").mkdir()
+    return tmp_path
+
+
+def problems(root: Path) -> list[str]:
+    assert release(["--root", str(root)]) == 0
+    return validate([], course=root / "course")
+
+
+def change(file: Path, old: str, new: str) -> None:
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new))
+
+
+def test_the_course_is_valid() -> None:
+    assert validate([]) == []
+
+
+def test_a_new_exercise_is_one_folder_a_side_and_no_python(root: Path) -> None:
+    assert problems(root) == []
+    assert "TODO: make it drive." in (root / "exercises" / NEW / "my_robot_controller" / NODE).read_text()
+
+
+def wrong_solution(root: Path) -> None:
+    change(root / "solutions" / NEW / "my_robot_controller" / NODE, "0.5", "0.6")
+
+
+def solved_starting_point(root: Path) -> None:
+    change(root / "solutions" / NEW / "my_robot_controller" / NODE, "# # TODO: make it drive.", "# msg.linear.x = 0.5")
+
+
+def other_fault_at_the_start(root: Path) -> None:
+    change(root / "course" / NEW / "exercise.toml", '["values"]', '["start"]')
+
+
+@pytest.mark.parametrize(
+    ("spoil", "told"),
+    [
+        (wrong_solution, f"solutions/{NEW} does not pass: The turtle drives straight on at 0.5 m/s: failed."),
+        (solved_starting_point, f"exercises/{NEW} was to fail the check 'values', and does not."),
+        (other_fault_at_the_start, f"exercises/{NEW} fails for a reason that was not intended: "),
+    ],
+)
+def test_gradings_that_come_out_otherwise_are_told(root: Path, spoil: Callable[[Path], None], told: str) -> None:
+    spoil(root)
+    assert any(problem.startswith(told) for problem in problems(root))
+
+
+def test_what_is_missing_is_told_all_at_once(root: Path) -> None:
+    course = root / "course" / NEW
+    (course / "lesson.md").write_text("Too short, with a [link](nowhere.md).\n")
+    change(course / "exercise.toml", "[[hint]]", "[[trial]]")
+    assert validate([], course=root / "course")[1:] == validate([NEW], course=root / "course")[1:]
+    change(course / "exercise.toml", '[[trial]]\ntext = "Two', '# "Two')
+    shutil.rmtree(root / "solutions" / NEW)
+    told = "\n".join(validate([], course=root / "course"))
+    for problem in ("there is no [[hint]]", "words (code left out)", "links to nowhere.md", f"solutions/{NEW}"):
+        assert problem in told
+
+
+def test_an_exercise_that_is_not_there_is_told_with_those_that_are(root: Path) -> None:
+    with pytest.raises(UsageError, match=f"There is no exercise 09-x. The exercises are {NEW}."):
+        validate(["09-x"], course=root / "course")

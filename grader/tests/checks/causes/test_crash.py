@@ -1,0 +1,131 @@
+"""How a node ended, in words, and the exception that ended it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.causes.crash import START, Crash, crash_of, end_seen, ended_early, read_traceback
+from grader.tests.checks.made import NODE_FILE, evidence, recording
+from grader.tests.checks.shapes import TRACEBACK
+from grader.trial.recording import Output, ProcessEnd
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+FILES = {NODE_FILE: b"", "helper.py": b"", "my_robot_controller/helper.py": b""}
+HANDLING = "\nDuring handling of the above exception, another exception occurred:\n\n"
+CAUSE = "\nThe above exception was the direct cause of the following exception:\n\n"
+
+
+def ended(by: str = "itself", exit_code: int = 1, t_s: float = 3.0, stderr: str = "", **more: str) -> Evidence:
+    end = ProcessEnd(by=by, exit_code=exit_code, t_s=t_s, stop_s=None, **more)  # type: ignore[arg-type]
+    return evidence(recording([], end=end, stderr=Output(stderr)))
+
+
+def traceback(error: str, line: int = 14, file: str = f"/ws/{NODE_FILE}") -> str:
+    return f'{START}\n  File "{file}", line {line}, in send\n    x\n{error}\n'
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "early", "seen"),
+    [
+        (ended("SIGINT", 0), None, "", ""),
+        (ended("SIGINT", stderr=TRACEBACK), None, "", ""),
+        (ended(exit_code=0), None, "The node ended by itself.", "The node ended by itself after 3.0 s."),
+        (ended(exit_code=0, t_s=0.0), None, "The node ended by itself.", "The node ended by itself at its start."),
+        (ended(exit_code=0, t_s=0.4), None, "The node ended by itself.", "The node ended by itself after 0.4 s."),
+        (ended(), "exit code 1", "The node crashed: exit code 1.", "The node crashed after 3.0 s: exit code 1."),
+        (ended(exit_code=-11), "SIGSEGV", "The node crashed: SIGSEGV.", "The node crashed after 3.0 s: SIGSEGV."),
+        (ended(exit_code=-1), "SIGHUP", "The node crashed: SIGHUP.", "The node crashed after 3.0 s: SIGHUP."),
+        (ended(exit_code=-99), "signal 99", "The node crashed: signal 99.", "The node crashed after 3.0 s: signal 99."),
+        (
+            ended(stderr=TRACEBACK),
+            "ZeroDivisionError",
+            f"The node crashed: ZeroDivisionError at {NODE_FILE}:14.",
+            "The node crashed after 3.0 s: ZeroDivisionError: division by zero.",
+        ),
+        (
+            ended(exit_code=0, stderr=TRACEBACK),
+            "ZeroDivisionError",
+            f"The node crashed: ZeroDivisionError at {NODE_FILE}:14.",
+            "The node crashed after 3.0 s: ZeroDivisionError: division by zero.",
+        ),
+        (
+            ended("SIGKILL", out_of="memory"),
+            "it used up the memory that a node may use",
+            "",
+            "",
+        ),
+    ],
+)
+def test_an_end_is_told_in_words(given: Evidence, error: str | None, early: str, seen: str) -> None:
+    crash = crash_of(given)
+    assert (crash and crash.error, ended_early(given), end_seen(given)) == (error, early, seen)
+
+
+def test_an_exception_is_told_with_its_words_if_it_has_any() -> None:
+    assert Crash("KeyError", "'x'").seen == "KeyError: 'x'"
+    assert Crash("KeyError", "").seen == "KeyError"
+
+
+@pytest.mark.parametrize(
+    ("crash", "meaning"),
+    [
+        (Crash("AssertionError", "The 'x' field must be of type 'float'"), "This field is a float:"),
+        (Crash("AssertionError", "it is so"), "Something that the code, or a message field,"),
+        (Crash("TypeError", "The 'x' field must be of type 'float'"), "A function got another number"),
+    ],
+)
+def test_an_error_has_a_meaning(crash: Crash, meaning: str) -> None:
+    assert crash.meaning.startswith(meaning)
+    assert Crash("BananaError", "").meaning == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "line"),
+    [
+        (traceback("ValueError: a") + traceback("KeyError: b"), "KeyError", 14),
+        (traceback("ValueError: a") + HANDLING + traceback("KeyError: b"), "ValueError", 14),
+        (traceback("ValueError: a") + CAUSE + traceback("KeyError: b"), "ValueError", 14),
+        (traceback("KeyboardInterrupt") + HANDLING + traceback("KeyError: b", 9), "KeyError", 9),
+        (
+            traceback("ValueError: a") + HANDLING + traceback("rclpy.X.NotInitializedException: b", 9),
+            "NotInitializedException",
+            9,
+        ),
+        (traceback("ValueError: a", file="/opt/x.py") + HANDLING + traceback("KeyError: b", 9), "ValueError", 9),
+        (traceback("ValueError: a", file="/opt/x.py"), "ValueError", None),
+        (traceback("ExternalShutdownException"), None, None),
+        (traceback("not an error at all!"), None, None),
+        (f"{START}\n", None, None),
+        ("another exception occurred\n" + "x\n" * 3 + traceback("KeyError: b"), "KeyError", 14),
+        (
+            traceback("ValueError: a") + "another exception occurred\nx\nx\nx\n" + traceback("KeyError: b"),
+            "KeyError",
+            14,
+        ),
+        (f"another exception occurred\n{traceback('KeyError: b')}", "KeyError", 14),
+        (traceback("ValueError: a", 3) + "\n" + START + "\nnot an error!\n", "ValueError", 3),
+    ],
+)
+def test_the_exception_is_the_root_of_the_last_chain(text: str, error: str | None, line: int | None) -> None:
+    crash = read_traceback(text, FILES)
+    assert (crash and crash.error) == error
+    assert (crash and crash.where and crash.where.line) == line
+
+
+def test_a_message_goes_as_far_as_its_first_line_and_without_pythons_guesses() -> None:
+    crash = read_traceback(traceback("AttributeError: no 'x'. Did you mean: 'y'?\n  more\n"), FILES)
+    assert crash is not None
+    assert crash.message == "no 'x'"
+
+
+def test_the_file_is_the_one_whose_whole_path_fits() -> None:
+    crash = read_traceback(traceback("ValueError: a", file="/ws/my_robot_controller/helper.py"), FILES)
+    assert crash is not None
+    assert str(crash.where) == "my_robot_controller/helper.py:14"
+    other = read_traceback(traceback("ValueError: a", file="/ws/another_helper.py"), FILES)
+    assert other is not None
+    assert other.where is None

@@ -1,0 +1,239 @@
+"""Why there is no executable of the exercise's name, or one that leads nowhere."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.building import BUILDS
+from grader.checks.subjects.entry_point import ENTRY_POINT
+from grader.tests.checks.made import BUILD, NODE, NODE_FILE, SETUP_PY, evidence, finding, submission
+
+if TYPE_CHECKING:
+    from grader.build.build import Build
+
+POINT = '            "draw_circle = my_robot_controller.draw_circle:main",\n'
+NOTHING = replace(BUILD, executables=(), entry_points={})
+OTHER = "my_robot_controller/circle.py"
+Files = dict[str, str | bytes | None]
+
+
+def found(files: Files, build: Build = NOTHING) -> Finding:
+    return finding("entry-point", evidence(package=submission(files), build=build))
+
+
+def setup_py(instead: str, more: str = "") -> Files:
+    """setup.py with this in place of the line of the entry point, and more arguments of setup()."""
+    return {"setup.py": SETUP_PY.replace(POINT, instead).replace("    entry_points=", f"{more}    entry_points=")}
+
+
+@pytest.mark.parametrize(
+    ("files", "diagnosis", "where", "words"),
+    [
+        (setup_py(""), "entry-point-missing", "setup.py:5", f"{NODE_FILE} is there, but"),
+        ({**setup_py(""), NODE_FILE: None, OTHER: NODE}, "entry-point-missing", "setup.py:5", f"{OTHER} is there, but"),
+        ({**setup_py(""), NODE_FILE: None}, "entry-point-missing", "setup.py:5", "setup.py names no such executable,"),
+        (
+            {
+                **setup_py('            "go = my_robot_controller.circle:main",\n'),
+                NODE_FILE: None,
+                OTHER: NODE,
+            },
+            "entry-point-missing",
+            "setup.py:5",
+            "setup.py names no such executable,",
+        ),
+        (
+            setup_py('            "a = b.c:main" "draw_circle = my_robot_controller.draw_circle:main",\n'),
+            "entry-point-comma",
+            "setup.py:14",
+            "A comma is missing",
+        ),
+        (setup_py(f"            # {POINT.strip()}\n"), "entry-point-commented", "setup.py:14", "The line for it is a"),
+        (
+            setup_py("", f"    tests_require=[\n{POINT}    ],\n"),
+            "entry-point-elsewhere",
+            "setup.py:13",
+            "The text for it stands in another list",
+        ),
+        ({"setup.py": None}, "entry-point-missing", "setup.py", f"{NODE_FILE} is there, but"),
+        ({"setup.py": "setup(\n"}, "entry-point-missing", "setup.py", f"{NODE_FILE} is there, but"),
+        ({"setup.py": "print(3)\n"}, "entry-point-missing", "setup.py", f"{NODE_FILE} is there, but"),
+    ],
+)
+def test_what_setup_py_has_instead_is_told(files: Files, diagnosis: str, where: str, words: str) -> None:
+    got = found(files)
+    assert (got.diagnosis, str(got.where)) == (diagnosis, where)
+    assert got.cause.startswith(words)
+
+
+def test_another_group_is_shown_at_the_line_or_at_setup() -> None:
+    other = SETUP_PY.replace("console_scripts", "console_script")
+    assert [found({"setup.py": text}).diagnosis for text in (other, other.replace(POINT, ""))] == [
+        "entry-point-group"
+    ] * 2
+    assert [str(found({"setup.py": text}).where) for text in (other, other.replace(POINT, ""))] == [
+        "setup.py:14",
+        "setup.py:5",
+    ]
+
+
+def test_comments_that_are_no_entry_point_are_none() -> None:
+    for comment in ("draw_circle is to come", "x = draw_circle", "draw_circle_2 = my_robot_controller.a:main"):
+        assert found(setup_py(f"            # {comment}\n")).diagnosis == "entry-point-missing"
+    text = '            "# draw_circle = in a text",\n'
+    assert found(setup_py(text)).diagnosis != "entry-point-commented"
+    assert found(setup_py("            # draw_circle =\n")).diagnosis == "entry-point-commented"
+    twice = found(setup_py("            # draw_circle = my_robot_controller.draw_circle:main = x\n"))
+    assert twice.diagnosis == "entry-point-commented"
+
+
+@pytest.mark.parametrize(
+    "build", [replace(NOTHING, entry_points={"draw_cirle": "a.b:c"}), replace(NOTHING, executables=("draw_cirle",))]
+)
+def test_an_executable_of_nearly_that_name_is_named(build: Build) -> None:
+    got = found(setup_py(POINT.replace("draw_circle =", "draw_cirle =")), build)
+    assert (got.diagnosis, str(got.where)) == ("entry-point-name", "setup.py:14")
+    assert got.seen == "There is no executable draw_circle; there is draw_cirle."
+
+
+SCRIPT = replace(BUILD, entry_points={})
+
+
+@pytest.mark.parametrize(
+    ("files", "diagnosis", "where", "words"),
+    [
+        (
+            {"scripts/draw_circle": "#!/usr/bin/env python3\nprint(1)\n"},
+            "script-for-entry-point",
+            "scripts/draw_circle:1",
+            "",
+        ),
+        (
+            {"scripts/draw_circle": "import rclpy\nprint(1)\n"},
+            "script-shebang",
+            "scripts/draw_circle:1",
+            '"import rclpy"',
+        ),
+        ({"scripts/draw_circle": "#!/bin/sh\necho python\n"}, "script-shebang", "scripts/draw_circle:1", '"#!/bin/sh"'),
+        ({"scripts/draw_circle": "#!/usr/bin/python\r\n1\r\n"}, "script-shebang", "scripts/draw_circle:1", ""),
+        ({"draw_circle": "python3\n"}, "script-shebang", "draw_circle:1", '"python3"'),
+        ({}, "script-shebang", f"{NODE_FILE}:1", '"import rclpy"'),
+        ({NODE_FILE: None}, "entry-point-missing", "setup.py:5", ""),
+    ],
+)
+def test_a_script_is_no_entry_point(files: Files, diagnosis: str, where: str, words: str) -> None:
+    got = found({**setup_py(""), **files}, SCRIPT)
+    assert (got.diagnosis, str(got.where)) == (diagnosis, where)
+    assert words in got.cause
+
+
+@pytest.mark.parametrize(
+    ("files", "package", "where", "cause"),
+    [
+        ({"setup.cfg": None}, "my_robot_controller", "setup.py", "setup.cfg is missing."),
+        ({}, "my_robot_controller", "setup.cfg", "Compare it with the lesson's, letter by letter."),
+        ({}, None, "setup.cfg", "Compare it with the lesson's, letter by letter."),
+        ({}, "my_robot", "setup.cfg", "It must name the folder after the package, as package.xml names that."),
+    ],
+)
+def test_an_executable_in_another_folder_is_told(files: Files, package: str | None, where: str, cause: str) -> None:
+    got = found(files, replace(BUILD, executables=(), package=package))
+    assert (got.diagnosis, str(got.where), got.cause) == ("setup-cfg", where, cause)
+    assert f"lib/{package or 'my_robot_controller'}." in got.seen
+
+
+def leads_to(target: str) -> Build:
+    return replace(BUILD, entry_points={"draw_circle": target})
+
+
+@pytest.mark.parametrize(
+    ("target", "diagnosis", "cause"),
+    [
+        (
+            "my_robot_controller.draw_cirle:main",
+            "entry-point-module",
+            "There is a module my_robot_controller.draw_circle.",
+        ),
+        ("elsewhere.quaff:main", "entry-point-module", "Compare it with the names of your files."),
+        (
+            "draw_circle:main",
+            "entry-point-module",
+            "The folder comes first, then a point, then the file without its .py.",
+        ),
+        ("my_robot:main", "entry-point-module", "The folder comes first, then a point, then the file without its .py."),
+        ("my_robot_controller.draw_circle.py:main", "entry-point-py", "A module is named without the ending .py."),
+        ("my_robot_controller.draw_circle:mian", "entry-point-function", "It has main."),
+        (
+            "my_robot_controller.draw_circle:send_it",
+            "entry-point-function",
+            "Nothing at the left edge of the file has that name.",
+        ),
+        ("my_robot_controller.draw_circle:", "entry-point-no-function", "After the module come a colon"),
+    ],
+)
+def test_an_entry_point_that_leads_nowhere_is_explained_by_the_files(target: str, diagnosis: str, cause: str) -> None:
+    got = found({}, leads_to(target))
+    assert (got.diagnosis, str(got.where)) == (diagnosis, "setup.py:14")
+    assert got.cause.startswith(cause)
+    assert "draw_circle leads to" in got.seen
+
+
+def test_a_module_that_was_not_installed_is_none_unless_it_is_linked() -> None:
+    bare = replace(BUILD, installed=("share/my_robot_controller/package.xml",))
+    got = found({}, bare)
+    assert (got.diagnosis, str(got.where)) == ("module-not-installed", "setup.py:14")
+    linked = replace(bare, installed=("lib/python3.11/site-packages/my-robot-controller.egg-link",))
+    assert found({}, linked).status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("text", "diagnosis", "line"),
+    [
+        ("", "empty-file", ""),
+        ("# nothing yet\n", "empty-file", ""),
+        ("pass\n", "entry-point-function", None),
+        ('"""Only this."""\n', "entry-point-function", None),
+        ("import rclpy\nnode = rclpy.init()\nrclpy.spin(node)\n", "top-level-code", ":2"),
+        ("import rclpy\ndef mian():\n    rclpy.init()\n", "entry-point-function", None),
+        ("import rclpy\nclass A:\n    def main(self):\n        pass\nrclpy.init()\n", "main-in-class", ":3"),
+        ("main: int = 7\n", "entry-point-not-callable", ":1"),
+        ("def main():\n    pass\nmain = [1]\n", "entry-point-not-callable", ":3"),
+        ("(main, other) = 1, 2\n", "entry-point-not-callable", ":1"),
+    ],
+)
+def test_a_file_without_the_function_is_shown_what_it_has(text: str, diagnosis: str, line: str | None) -> None:
+    got = found({NODE_FILE: text}, BUILD)
+    assert (got.diagnosis, str(got.where)) == (diagnosis, "setup.py:14" if line is None else f"{NODE_FILE}{line}")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["main: object = print\n", "try:\n    pass\nfinally:\n    def main():\n        pass\n", "def main(): pass\n"],
+)
+def test_what_may_be_called_is_enough(text: str) -> None:
+    assert found({NODE_FILE: text}, BUILD).status is Status.PASSED
+
+
+def test_a_file_that_is_too_long_to_be_parsed_is_believed() -> None:
+    assert found({NODE_FILE: b"#" * 500_000}, BUILD).status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("files", "told"),
+    [
+        ({}, []),
+        ({NODE_FILE: "def main(\n"}, ["entry-point"]),
+        ({NODE_FILE: "def main(\n", **setup_py("")}, []),
+        ({NODE_FILE: "def main(\n", **setup_py('            "draw_circle = nothing",\n')}, []),
+        ({NODE_FILE: None, **setup_py(POINT)}, []),
+        ({NODE_FILE: "def main(\n", "setup.py": None}, ["build"]),
+    ],
+)
+def test_a_module_that_python_cannot_read_is_known_before_anything_is_built(files: Files, told: list[str]) -> None:
+    given = evidence(package=submission(files), build=None)
+    early = {"entry-point": ENTRY_POINT.judge_early(given, {}), "build": BUILDS.judge_early(given, {})}
+    assert [name for name, finding in early.items() if finding is not None] == told

@@ -1,0 +1,44 @@
+"""Python's own words for a file that it cannot read, told by the mistake that is usually behind them."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.causes.syntax import unreadable_finding
+from grader.submission.code import Unreadable
+
+WORDS = {
+    "(unicode error) 'utf-8' codec can't decode byte 0xe4": "not-utf8",
+    "inconsistent use of tabs and spaces in indentation": "tabs-and-spaces",
+    "Missing parentheses in call to 'print'. Did you mean print(...)?": "python-2-print",
+    "expected ':'": "colon-missing",
+    "'(' was never closed": "bracket-open",
+    "unmatched ')'": "bracket-extra",
+    "closing parenthesis ']' does not match opening parenthesis '('": "bracket-extra",
+    "unterminated string literal (detected at line 3)": "text-open",
+    "invalid character '\u201c' (U+201C)": "typographic-character",
+    "invalid non-printable character U+00A0": "typographic-character",
+    "unindent does not match any outer indentation level": "indentation",
+    "unexpected indent": "indentation",
+    "expected an indented block after function definition on line 3": "indentation",
+    "invalid syntax. Perhaps you forgot a comma?": "comma-missing",
+    "invalid syntax. Maybe you meant '==' or ':=' instead of '='?": "equals",
+    "cannot assign to function call here.": "equals",
+    "invalid syntax": "syntax-error",
+}
+
+
+@pytest.mark.parametrize(("words", "diagnosis"), WORDS.items())
+def test_pythons_words_lead_to_the_mistake(words: str, diagnosis: str) -> None:
+    found = unreadable_finding("a.py", Unreadable(words, 3), b"x = 1\n")
+    assert (found.diagnosis, str(found.where)) == (diagnosis, "a.py:3")
+    assert found.cause
+    assert found.seen.startswith(f"Python cannot read a.py: {words[:20]}")
+    assert found.seen[-1] in ".?!"
+    assert not found.seen.endswith("..")
+
+
+@pytest.mark.parametrize("mark", [b"<<<<<<< HEAD", b"=======", b">>>>>>> main"])
+def test_marks_of_a_conflict_are_told_whatever_python_says(mark: bytes) -> None:
+    found = unreadable_finding("a.py", Unreadable("expected ':'", 1), b"x = 1\n" + mark + b"\n")
+    assert found.diagnosis == "merge-conflict"

@@ -1,0 +1,101 @@
+"""Why a program ended by itself, or ran without a node."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.causes.why_ended import named_only, why_ended, why_no_node
+from grader.tests.checks.crashes import LOOK, line_with
+from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
+from grader.trial.recording import ProcessEnd
+
+SOURCE = """\
+import rclpy
+from rclpy.node import Node
+
+class Driver(Node):
+    pass
+
+def main():
+    rclpy.init()
+    {body}
+"""
+
+
+def ended(source: str, t_s: float = 3.0) -> tuple[str, str, int | None]:
+    end = ProcessEnd(by="itself", exit_code=0, t_s=t_s, stop_s=None)
+    cause = why_ended(evidence(recording([], end=end), submission({NODE_FILE: source})))
+    return cause.diagnosis, cause.text, None if cause.where is None else cause.where.line
+
+
+@pytest.mark.parametrize(
+    ("body", "diagnosis", "words"),
+    [
+        ("rclpy.spin  # look", "not-called", "The line names rclpy.spin and does not call it"),
+        ("node = Driver()", "no-spin", "rclpy.spin keeps a node running;"),
+        ("rclpy.spin_once(Driver())  # look", "spin-once", "rclpy.spin_once waits for one thing"),
+        ("while True: rclpy.spin_once(Driver())", "ended-early", ""),
+        ("for _ in range(3): rclpy.spin_once(Driver())", "ended-early", ""),
+        ("rclpy.spin_until_future_complete(Driver(), done)", "ended-early", ""),
+        ("rclpy.spin_once(node); rclpy.spin(Driver())  # look", "ended-early", ""),
+        ("rclpy.spin(Driver())  # look", "ended-early", ""),
+        ("count = 3; rclpy.spin(Driver())  # look", "ended-early", ""),
+    ],
+)
+def test_an_end_before_ctrl_c_is_explained_by_the_source(body: str, diagnosis: str, words: str) -> None:
+    source = SOURCE.format(body=body)
+    assert ended(source)[::2] == (diagnosis, line_with(LOOK, source) or 8)
+    assert ended(source)[1].startswith(words)
+
+
+def test_an_end_at_the_start_is_told_as_such() -> None:
+    source = SOURCE.format(body="rclpy.spin(Driver())")
+    assert [ended(source, t_s)[0] for t_s in (-0.1, 0.0, 0.1)] == ["ends-at-once", "ends-at-once", "ended-early"]
+
+
+@pytest.mark.parametrize("name", ["rclpy.init", "rclpy.spin", "main"])
+def test_a_function_that_is_only_named_is_found(name: str) -> None:
+    source = f"import rclpy\nrclpy.spin(node)\n{name}\n"
+    assert ended(source)[::2] == ("not-called", 3)
+
+
+def test_only_the_functions_that_are_asked_for_are_found() -> None:
+    given = evidence(recording([]), submission({NODE_FILE: "import rclpy\nrclpy.ok\nprint(main)\nmain()\n"}))
+    assert named_only(given, "rclpy.init", "main") is None
+
+
+NO_NODE = """\
+import rclpy
+
+class Plain:
+    pass
+
+{node}
+    pass
+
+def main():
+    {init}
+    {body}
+"""
+
+
+@pytest.mark.parametrize(
+    ("node", "init", "body", "diagnosis", "line"),
+    [
+        ("class Driver(Node):", "rclpy.init", "rclpy.spin(Driver())", "not-called", 10),
+        ("class Driver(Node):", "pass", "rclpy.spin(Driver())", "no-init", None),
+        ("class Driver(Node):", "rclpy.init()", "rclpy.spin(node)", "node-not-made", 6),
+        ("class Driver(rclpy.node.Node):", "rclpy.init()", "rclpy.spin(node)", "node-not-made", 6),
+        ("class Driver(Base()):", "rclpy.init()", "rclpy.spin(node)", "no-node", 10),
+        ("class Driver(Node):", "rclpy.init()", "rclpy.spin(Driver())", "no-node", 10),
+        ("def drive():", "rclpy.init()", "rclpy.spin(node)", "no-node", 10),
+    ],
+)
+def test_a_program_without_a_node_is_explained_by_the_source(
+    node: str, init: str, body: str, diagnosis: str, line: int | None
+) -> None:
+    source = NO_NODE.format(node=node, init=init, body=body)
+    cause = why_no_node(evidence(recording([]), submission({NODE_FILE: source})))
+    assert (cause.diagnosis, cause.where and cause.where.line) == (diagnosis, line)
+    assert cause.where is not None
+    assert cause.where.file == NODE_FILE

@@ -1,0 +1,85 @@
+"""Why something comes far too often, or ever more often."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.causes.why_rate import FRAME_S, why_often, why_timers_grow
+from grader.tests.checks.crashes import LOOK, line_with
+from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
+
+PERIOD_S = 0.5
+NODE = """\
+class Driver(Node):
+    def __init__(self):
+        {made}
+
+    def send(self, msg):{at_send}
+        {sent}
+
+    def other(self):
+        self.publisher.publish(msg)
+"""
+
+
+def often(source: str, mean_s: float) -> tuple[str, int | None] | None:
+    cause = why_often(evidence(recording([]), submission({NODE_FILE: source})), "publish", mean_s, PERIOD_S)
+    return None if cause is None else (cause.diagnosis, cause.where.line if cause.where else None)
+
+
+@pytest.mark.parametrize(
+    ("loop", "mean_s", "found"),
+    [
+        ("while True: self.publisher.publish(msg)", 0.001, True),
+        ("while True: publish(msg)", 0.24, True),
+        ("while True: publish(msg)", 0.25, False),
+        ("while True: publish(msg); time.sleep(0.5)", 0.001, False),
+        ("while True: publish(msg); rclpy.spin_once(self)", 0.001, False),
+        ("while True: print(msg)", 0.001, False),
+        ("for each in range(3): publish(each)", 0.001, False),
+    ],
+)
+def test_a_loop_that_waits_for_nothing_is_found(loop: str, mean_s: float, *, found: bool) -> None:
+    source = NODE.format(made="count = 3", at_send="", sent=f"{loop}  # look")
+    assert often(source, mean_s) == (("loop-without-pause", line_with(LOOK, source)) if found else None)
+
+
+SUBSCRIBES = 'self.create_subscription(Pose, "/turtle1/pose", self.send, 10)'
+
+
+@pytest.mark.parametrize(
+    ("made", "sent", "mean_s", "found"),
+    [
+        (SUBSCRIBES, "publish(msg)", FRAME_S, True),
+        ('self.create_subscription(Pose, "/pose", qos_profile=1, callback=self.send)', "publish(msg)", FRAME_S, True),
+        (SUBSCRIBES.replace("self.send", "self.driver.send"), "publish(msg)", FRAME_S, True),
+        (SUBSCRIBES, "publish(msg)", 1.09 * FRAME_S, True),
+        (SUBSCRIBES, "publish(msg)", 0.91 * FRAME_S, True),
+        (SUBSCRIBES, "publish(msg)", 1.11 * FRAME_S, False),
+        (SUBSCRIBES, "publish(msg)", 0.89 * FRAME_S, False),
+        (SUBSCRIBES, "print(msg)", FRAME_S, False),
+        ('self.create_subscription(Pose, "/turtle1/pose")', "publish(msg)", FRAME_S, False),
+        ("self.create_timer(0.016, self.send)", "publish(msg)", FRAME_S, False),
+    ],
+)
+def test_a_method_that_each_message_calls_is_found(made: str, sent: str, mean_s: float, *, found: bool) -> None:
+    source = NODE.format(made=made, at_send="  # look", sent=sent)
+    assert often(source, mean_s) == (("every-message", line_with(LOOK, source)) if found else None)
+
+
+@pytest.mark.parametrize(
+    ("made", "sent", "found"),
+    [
+        ("self.create_timer(0.5, self.send)", "self.create_timer(0.5, self.other)  # look", True),
+        ("self.create_timer(0.5, callback=self.send)", "self.create_timer(0.5, self.other)  # look", True),
+        (SUBSCRIBES, "self.create_timer(0.5, self.other)  # look", True),
+        ("self.create_timer(0.5, self.other)", "self.create_timer(0.5, self.other)  # look", False),
+        ("self.create_timer(0.5, self.send)", "self.destroy_timer(self.timer)", False),
+        ("self.create_timer(0.5, self.send)", "make()()", False),
+    ],
+)
+def test_a_timer_that_a_callback_makes_is_found(made: str, sent: str, *, found: bool) -> None:
+    source = NODE.format(made=made, at_send="", sent=sent)
+    cause = why_timers_grow(evidence(recording([]), submission({NODE_FILE: source})))
+    got = None if cause is None else (cause.diagnosis, cause.where and cause.where.line)
+    assert got == (("timer-in-callback", line_with(LOOK, source)) if found else None)

@@ -1,0 +1,197 @@
+"""Why a node that runs sends nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.causes.why_silent import why_nothing, why_qos
+from grader.tests.checks.crashes import LOOK, line_with
+from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
+from grader.trial.recording import LogLine, Output
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+NODE = """\
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        {made}
+
+    def send(self):
+        {sent}
+        self.publisher.publish(Twist())
+
+
+rclpy.spin(Driver())
+"""
+TIMER = "self.create_timer(0.5, self.send)"
+
+
+def given(source: str) -> Evidence:
+    return evidence(recording([]), submission({NODE_FILE: source}))
+
+
+def silence(source: str) -> tuple[str, str, int | None] | None:
+    cause = why_nothing(given(source), ("publish",))
+    if cause is None:
+        return None
+    assert cause.where is not None
+    assert cause.where.file == NODE_FILE
+    return cause.diagnosis, cause.text, cause.where.line
+
+
+@pytest.mark.parametrize(
+    ("made", "sent", "diagnosis", "words"),
+    [
+        ("self.create_timer(500, self.send)  # look", "pass", "timer-milliseconds", "The timer waits 500 s"),
+        ("self.create_timer(10, self.send)  # look", "pass", "timer-milliseconds", "The timer waits 10 s"),
+        ("self.create_timer(0.5, self.send())  # look", "pass", "callback-called", "create_timer wants the method"),
+        ("while True: self.send()  # look", "pass", "blocks-in-init", "__init__ loops for ever"),
+        ("while 1: self.send()  # look", "pass", "blocks-in-init", "__init__ loops for ever"),
+        ("while rclpy.ok(): self.send()  # look", "pass", "blocks-in-init", "__init__ loops for ever"),
+        (
+            TIMER,
+            "rclpy.spin_until_future_complete(self, done)  # look",
+            "waits-in-callback",
+            "A callback that waits for an answer",
+        ),
+        (TIMER, "self.client.call(request)  # look", "waits-in-callback", "A callback that waits for an answer"),
+        ("pass", "pass", "method-never-called", "Nothing calls send:"),
+    ],
+)
+def test_silence_is_explained_at_its_line(made: str, sent: str, diagnosis: str, words: str) -> None:
+    source = NODE.format(made=made, sent=sent)
+    found = silence(source)
+    assert found is not None
+    assert (found[0], found[2]) == (diagnosis, line_with(LOOK, source) or 7)
+    assert found[1].startswith(words)
+
+
+@pytest.mark.parametrize(
+    ("made", "sent"),
+    [
+        (TIMER, "pass"),
+        ("self.create_timer(0.5, partial(self.send))", "pass"),
+        ("self.create_timer(0.5, make_callback(self.send))", "pass"),
+        ("self.create_timer(PERIOD, self.send)", "pass"),
+        (f"while self.count < 3: self.count += 1\n        {TIMER}", "pass"),
+        (f"rclpy.spin_until_future_complete(self, done)\n        {TIMER}", "pass"),
+        (f"self.client.call(request)\n        {TIMER}", "pass"),
+        (TIMER, "subprocess.call(words)"),
+        (TIMER, "make().call(words)"),
+        (TIMER, "call(words)"),
+        (TIMER, "while True: break"),
+    ],
+)
+def test_what_looks_right_is_not_blamed(made: str, sent: str) -> None:
+    assert silence(NODE.format(made=made, sent=sent)) is None
+
+
+def test_a_method_that_sends_nothing_need_not_be_called() -> None:
+    source = NODE.format(made=TIMER, sent="pass") + "\n\nclass Other:\n    def idle(self):\n        print(3)\n"
+    assert silence(source) is None
+    sends = "class Driver:\n    def __init__(self):\n        self.publisher.publish(Twist())\n\nrclpy.spin(Driver())\n"
+    assert silence(sends) is None
+
+
+@pytest.mark.parametrize(
+    ("last", "expected"),
+    [
+        ("rclpy.spin", ("not-called", 1)),
+        ("rclpy.spin(node)", None),
+        ("rclpy.spin_once(node, timeout_sec=1.0)", None),
+        ("rclpy.shutdown()", ("no-spin", None)),
+    ],
+)
+def test_a_missing_spin_is_told_in_the_end(last: str, expected: tuple[str, int | None] | None) -> None:
+    found = silence(f"{last}\n")
+    assert (found and (found[0], found[2])) == expected
+
+
+SERVICE = NODE.format(
+    made="""self.client = self.create_client(Spawn, {name})  # look
+        {waits}
+        self.create_timer(0.5, self.send)""",
+    sent="pass",
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "waits", "words"),
+    [
+        ('"/spwan"', "self.client.wait_for_service()", "It waits for the service /spwan, which nobody offers."),
+        ('"spwan"', "self.client.wait_for_service()", "It waits for the service spwan, which nobody offers."),
+        ('"/quaff"', "self.client.wait_for_service()", "It waits for the service /quaff, which nobody offers."),
+        ('"/spawn"', "self.client.wait_for_service()", None),
+        ('"spawn"', "self.client.wait_for_service()", None),
+        ('"/spwan"', "self.client.service_is_ready()", None),
+        ("NAME", "self.client.wait_for_service()", None),
+    ],
+)
+def test_a_service_that_nobody_offers_is_named(name: str, waits: str, words: str | None) -> None:
+    source = SERVICE.format(name=name, waits=waits)
+    found = silence(source)
+    assert (found is not None) == (words is not None)
+    if found is not None and words is not None:
+        assert (found[0], found[2]) == ("service-not-there", line_with(LOOK, source))
+        assert found[1].startswith(words)
+        assert found[1].endswith(" There is /spawn.") == ("spwan" in name)
+
+
+def test_a_client_without_a_name_is_none() -> None:
+    source = NODE.format(made=f"self.create_client(Spawn).wait_for_service()\n        {TIMER}", sent="pass")
+    assert silence(source) is None
+
+
+def test_ends_that_do_not_go_together_are_told_by_rclpy() -> None:
+    source = NODE.format(made=TIMER, sent="pass")
+    said = "New subscription discovered on topic, requesting incompatible QoS. No messages will be sent to it."
+    quiet = given(source)
+    by_stderr = replace(quiet, recording=recording([], stderr=Output(said)))
+    by_log = replace(quiet, recording=recording([], log=(LogLine(0.5, "WARN", "driver", said),)))
+    assert why_qos(quiet) is None
+    for loud in (by_stderr, by_log):
+        cause = why_qos(loud)
+        assert cause is not None
+        assert (cause.diagnosis, str(cause.where)) == ("qos-mismatch", f"{NODE_FILE}:4")
+
+
+LOOP = """\
+node = rclpy.create_node("driver")
+publisher = node.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+{made}
+while rclpy.ok():
+    publisher.publish(Twist())
+    {spun}
+"""
+
+
+@pytest.mark.parametrize(
+    ("made", "spun", "waits"),
+    [
+        ("pass", "rclpy.spin_once(node)  # look", True),
+        ("pass", "executor.spin_once()  # look", True),
+        ("pass", "rclpy.spin_once(node, timeout_sec=0.5)", False),
+        ("pass", "rclpy.spin_once(node, None, 0.5)", False),
+        ("pass", "rclpy.spin_once(node, timeout_sec=None)  # look", True),
+        ("pass", "rclpy.spin_once(node, timeout_sec=limit)", False),
+        ("pass", "executor.spin_once(0.5)", False),
+        ("pass", "executor.spin_once(self.limit)", False),
+        ("client = node.create_client(Empty, '/clear')", "rclpy.spin_once(node)", False),
+        ("timer = node.create_timer(0.5, send)", "rclpy.spin_once(node)", False),
+        ("heard = node.create_subscription(Pose, '/turtle1/pose', hear, 10)", "rclpy.spin_once(node)", False),
+    ],
+)
+def test_what_nothing_wakes_waits_for_ever_in_spin_once(made: str, spun: str, *, waits: bool) -> None:
+    source = LOOP.format(made=made, spun=spun)
+    told = silence(source)
+    if waits:
+        assert told is not None
+        assert (told[0], told[2]) == ("spin-once-waits", line_with(LOOK, source))
+    else:
+        assert told is None

@@ -1,0 +1,173 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.answers import ANSWERS, GRAPH, LIST, RATE, TEXT
+from grader.tests.checks.made import evidence, found, recording, submission
+from grader.trial.recording import Endpoint, Graph, Message
+
+if TYPE_CHECKING:
+    from grader.checks.kind import Kind
+    from grader.evidence.evidence import Evidence
+
+COFFEE = Graph(
+    0.0,
+    ("/kitchen/cook", "/waiter"),
+    (
+        Endpoint("publisher", "/kitchen/cook", "/cups", "std_msgs/msg/String"),
+        Endpoint("subscription", "/waiter", "/cups", "std_msgs/msg/String"),
+        Endpoint("publisher", "/waiter", "/bills", "std_msgs/msg/Float32"),
+        Endpoint("publisher", "/waiter", "/rosout", "rcl_interfaces/msg/Log"),
+    ),
+)
+TOPIC = {"find": "topic", "among": "publisher", "type_ends": "/String"}
+NODES = {"find": "node", "among": "all", "form": "list"}
+
+
+def given(answers: str | None, **changes: Any) -> Evidence:  # noqa: ANN401
+    """A kitchen of two, a submission that says `name = ...` of it, and a message every 0.25 s."""
+    beats = tuple(Message("/cups", "std_msgs/msg/String", b"", 0.25 * beat, 0.25 * beat) for beat in range(1, 40))
+    trial = recording([], graphs=(COFFEE,), messages=beats)
+    text = None if answers is None else f"[answers]\n{answers}\n"
+    return replace(evidence(trial, submission({"answers.toml": text})), **changes)
+
+
+def judged(kind: Kind[Any], answer: str, **values: Any) -> Finding:  # noqa: ANN401
+    return found(kind, given(f"name = {answer}"), answer="name", **values)
+
+
+@pytest.mark.parametrize(
+    ("answers", "diagnosis"),
+    [
+        (None, "no-answers"),
+        ("name = word", "answers-unreadable"),
+        ("", "answers-empty"),
+        ("node = 1\nnade = 2", "unknown-answer"),
+    ],
+)
+def test_the_file_is_looked_at_before_its_answers(answers: str | None, diagnosis: str) -> None:
+    checks = (replace(evidence().exercise.checks[0], params={"answer": "node"}),)
+    exercise = replace(evidence().exercise, checks=checks)
+    finding = found(ANSWERS, given(answers, exercise=exercise))
+    assert (finding.status, finding.diagnosis) == (Status.FAILED, diagnosis)
+    if diagnosis == "unknown-answer":
+        assert finding.seen == "answers.toml answers nade, which nobody asked."
+    line = {"unknown-answer": "answers.toml:3", "no-answers": "None"}.get(str(diagnosis), "answers.toml")
+    assert str(finding.where) == line
+
+
+@pytest.mark.parametrize("answer", ['"left"', '"  LEFT "', '"to the   Left"'])
+def test_capitals_and_blanks_of_words_do_not_matter(answer: str) -> None:
+    assert judged(TEXT, answer, accepts=("left", "to the left")).status is Status.PASSED
+
+
+def test_other_words_are_shown_with_the_authors_reason_and_the_line() -> None:
+    finding = judged(TEXT, '"right"', accepts=("left",), cause="Look at the sign.")
+    assert (finding.seen, finding.cause) == ('name is "right".', "Look at the sign.")
+    assert str(finding.where) == "answers.toml:2"
+    assert "left" not in finding.expected
+
+
+@pytest.mark.parametrize("kind", [TEXT, LIST, GRAPH, RATE])
+def test_no_answer_and_one_of_another_form_are_told(kind: Kind[Any]) -> None:
+    values: dict[str, Any] = {"answer": "name"}
+    if kind is TEXT:
+        values |= {"accepts": ("a",)}
+    elif kind is LIST:
+        values |= {"items": ("a",)}
+    else:
+        values |= {"type_ends": "/String"} if kind is RATE else TOPIC
+    for answers in ('other = "a"', None):
+        nothing = found(kind, given(answers), **values)
+        assert (nothing.diagnosis, str(nothing.where)) == ("no-answer", "answers.toml")
+    other = "1.5" if kind is not RATE else '"4"'
+    finding = found(kind, given(f"name = {other}"), **values)
+    assert (finding.diagnosis, str(finding.where)) == ("answer-form", "answers.toml:2")
+    assert finding.seen == f"name is {other}."
+
+
+@pytest.mark.parametrize(
+    ("answer", "told", "diagnosis"),
+    [
+        ('["y", "x"]', None, None),
+        ('["x", "y", "y"]', None, None),
+        ('["x"]', "name is [x]: 1 missing.", "list-incomplete"),
+        ('["x", "y", "z"]', "name is [x, y, z]: 1 too many.", "list-too-long"),
+        ('["x", "z"]', "name is [x, z]: 1 too many and 1 missing.", "wrong-list"),
+    ],
+)
+def test_a_list_is_compared_whatever_its_order(answer: str, told: str | None, diagnosis: str | None) -> None:
+    finding = judged(LIST, answer, items=("x", "y"))
+    assert (finding.status is Status.PASSED, finding.diagnosis) == (told is None, diagnosis)
+    if told:
+        assert (finding.seen, str(finding.where)) == (told, "answers.toml:2")
+
+
+@pytest.mark.parametrize(
+    ("answer", "values", "diagnosis"),
+    [
+        ('"/cups"', TOPIC, None),
+        ('"cups"', TOPIC, "no-slash"),
+        ('"/Cups"', TOPIC, "capitals"),
+        ('"/bills"', TOPIC, "answer-another"),
+        ('"/rosout"', {"find": "topic"}, "answer-another"),
+        ('"/bills"', {"find": "topic", "node": "/waiter"}, None),
+        ('"/cups"', {"find": "topic", "among": "subscription"}, None),
+        ('"/cups"', {"find": "topic", "among": "publisher", "heard_by": "/waiter"}, None),
+        ('"/bills"', {"find": "topic", "among": "publisher", "heard_by": "/waiter"}, "answer-another"),
+        ('"std_msgs/msg/String"', {"find": "type", "node": "/kitchen/cook"}, None),
+        ('"std_msgs/String"', {"find": "type", "node": "/kitchen/cook"}, "type-without-msg"),
+        ('"String"', {"find": "type", "node": "/kitchen/cook"}, "type-without-package"),
+        ('["/waiter", "/kitchen/cook"]', NODES, None),
+        ('["/waiter"]', NODES, "list-incomplete"),
+        ('"kitchen/cook"', {"find": "node", "among": "publisher", "type_ends": "/String"}, "no-slash"),
+        ('"/rosout"', {"find": "topic", "among": "publisher", "type_starts": "rcl_"}, "answer-another"),
+        ('"/waiter"', {"find": "node", "type_starts": "rcl_"}, None),
+        ('"/cups"', {"find": "topic", "type_starts": "std_", "type_ends": "/Float32"}, "answer-another"),
+        ('"/nowhere"', TOPIC, "wrong-answer"),
+    ],
+)
+def test_the_truth_is_the_graph_as_it_was_recorded(answer: str, values: dict[str, str], diagnosis: str | None) -> None:
+    assert judged(GRAPH, answer, **values).diagnosis == diagnosis
+
+
+def test_another_graph_has_other_right_answers() -> None:
+    renamed = replace(COFFEE, endpoints=(Endpoint("publisher", "/cook", "/mugs", "std_msgs/msg/String"),))
+    trial = recording([], graphs=(renamed,))
+    mugs = replace(given('name = "/mugs"'), recording=trial)
+    assert found(GRAPH, mugs, answer="name", **TOPIC).status is Status.PASSED
+    cups = replace(given('name = "/cups"'), recording=trial)
+    assert found(GRAPH, cups, answer="name", **TOPIC).diagnosis == "wrong-answer"
+
+
+@pytest.mark.parametrize(
+    ("answer", "diagnosis"),
+    [
+        ("4", None),
+        ("4.1", None),
+        ("3.8", None),
+        ("5", "wrong-answer"),
+        ("4.19", None),
+        ("4.21", "wrong-answer"),
+        ("0.25", "period-for-rate"),
+        ("0.2386", "period-for-rate"),
+        ("0.2378", "wrong-answer"),
+        ("-4", "wrong-answer"),
+    ],
+)
+def test_a_rate_is_compared_with_the_one_that_was_measured(answer: str, diagnosis: str | None) -> None:
+    assert judged(RATE, answer, type_ends="/String").diagnosis == diagnosis
+
+
+def test_without_messages_there_is_no_rate_to_compare_with() -> None:
+    with pytest.raises(ValueError, match="no message of that type"):
+        judged(RATE, "4", type_ends="/Float64")
+
+
+def test_an_answer_of_any_length_makes_a_short_message() -> None:
+    finding = judged(TEXT, f'"{"x" * 5000}"', accepts=("left",))
+    assert len(finding.seen) < 200

@@ -1,0 +1,161 @@
+"""The checks of the build: that it ends well, and that what was meant to be installed is installed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.outcome import Status
+from grader.tests.checks.changed import BARE, INIT, LINKED, NOTHING, of, setup_py, xml
+from grader.tests.checks.made import BUILD
+
+if TYPE_CHECKING:
+    from grader.build.build import Build
+    from grader.tests.checks.changed import Files
+
+
+SETUP_TRACEBACK = """\
+--- stderr: my_robot_controller
+Traceback (most recent call last):
+  File "<string>", line 1, in <module>
+  File "/ws/src/my_robot_controller/setup.py", line 5, in <module>
+    raise RuntimeError("no")
+RuntimeError: no
+---
+Failed   <<< my_robot_controller [0.61s, exited with code 1]
+"""
+
+
+READ_BY_COLCON = """\
+Traceback (most recent call last):
+  File "<string>", line 1, in <module>
+  File "/env/setuptools/_distutils/core.py", line 268, in run_setup
+    exec(code, g)
+  File "<string>", line 7, in <module>
+FileNotFoundError: [Errno 2] No such file or directory: 'README.md'
+[0.5s] ERROR:colcon:Exception in job execution
+Traceback (most recent call last):
+  File "/env/colcon_core/executor/sequential.py", line 50, in execute
+    loop.run_until_complete(future)
+subprocess.CalledProcessError: Command '['python3', '-c', 'x']' returned non-zero exit status 1.
+"""
+UNREAD = """\
+Traceback (most recent call last):
+  File "/env/colcon_python_setup_py/python_setup_py.py", line 301, in _get_setup_information
+    return ast.literal_eval(output)
+  File "<unknown>", line 0
+SyntaxError: invalid syntax
+"""
+NO_MARKER = "error: can't copy 'resource/my_robot_controller': doesn't exist or not a regular file\n"
+
+
+@pytest.mark.parametrize(
+    ("files", "build", "diagnosis", "where"),
+    [
+        ({"setup.py": None}, NOTHING, "setup-py-missing", "package.xml"),
+        ({"setup.py": "setup(\n"}, replace(NOTHING, exit_code=1), "setup-py-syntax", "setup.py:1"),
+        ({}, replace(NOTHING, exit_code=1, log=SETUP_TRACEBACK), "setup-py-raises", "setup.py:5"),
+        ({}, replace(NOTHING, exit_code=1, log=READ_BY_COLCON), "setup-py-raises", "setup.py:7"),
+        ({}, replace(NOTHING, exit_code=1, log=UNREAD), "setup-py-output", "setup.py:5"),
+        ({}, replace(NOTHING, exit_code=1, log=NO_MARKER), "data-file-missing", "setup.py:5"),
+        ({}, replace(NOTHING, exit_code=1, log="error: no such option"), "build-failed", "setup.py:5"),
+        ({}, replace(NOTHING, exit_code=-9, timed_out=True, seconds=60.0), "build-timeout", "setup.py:5"),
+        ({}, replace(NOTHING, exit_code=1, out_of="disk"), "build-limit", "setup.py"),
+        (setup_py(":main", ""), replace(NOTHING, exit_code=1), "entry-point-no-function", "setup.py:14"),
+        ({INIT: None}, BARE, "missing-init", "setup.py:5"),
+        ({INIT: None}, LINKED, "missing-init", "setup.py:5"),
+        ({}, BARE, "nothing-installed", "setup.py:5"),
+        ({}, replace(NOTHING, installed=()), "nothing-installed", "setup.py:5"),
+    ],
+)
+def test_each_fault_of_the_build(files: Files, build: Build, diagnosis: str, where: str) -> None:
+    found = of("build", files, build)
+    assert (found.status, found.diagnosis, str(found.where)) == (Status.FAILED, diagnosis, where)
+
+
+def test_the_last_words_of_a_failed_build_are_shown() -> None:
+    found = of("build", build=replace(NOTHING, exit_code=1, log="warning: x\nerror: no such option\nfailed\n"))
+    assert found.seen == "`colcon build` failed: error: no such option."
+
+
+def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
+    no_marker = tuple(path for path in BUILD.installed if "resource_index" not in path)
+    found = of("installed", build=replace(BUILD, installed=no_marker))
+    assert (found.diagnosis, found.seen) == (
+        "resource-marker",
+        "Not installed: the marker resource/my_robot_controller.",
+    )
+    assert str(found.where) == "setup.py:5"
+    no_xml = tuple(path for path in BUILD.installed if "package.xml" not in path)
+    found = of("installed", build=replace(BUILD, installed=no_xml))
+    assert (found.diagnosis, str(found.where)) == ("package-xml-not-installed", "setup.py:5")
+    nothing = of("installed", {"setup.py": None}, replace(BUILD, installed=()))
+    assert (nothing.diagnosis, str(nothing.where)) == ("resource-marker", "setup.py")
+    assert nothing.seen == "Not installed: the marker resource/my_robot_controller and package.xml."
+
+
+@pytest.mark.parametrize(
+    ("files", "package", "name"),
+    [
+        ({}, "my_robot", "my_robot"),
+        (xml("<name>my_robot_controller", "<name>by_package_xml"), None, "by_package_xml"),
+        ({"package.xml": None, **setup_py('"my_robot_controller"', '"by_setup_py"')}, None, "by_setup_py"),
+        ({"package.xml": "<package>", **setup_py('"my_robot_controller"', '"by_setup_py"')}, None, "by_setup_py"),
+        ({"package.xml": None, "setup.py": None}, None, "my_robot_controller"),
+        ({"package.xml": None, "setup.py": "setup()\n"}, None, "my_robot_controller"),
+    ],
+)
+def test_the_package_is_looked_for_by_the_name_that_colcon_knows(files: Files, package: str | None, name: str) -> None:
+    found = of("installed", files, replace(BUILD, package=package, installed=()))
+    assert found.seen == f"Not installed: the marker resource/{name} and package.xml."
+    both = (f"share/ament_index/resource_index/packages/{name}", f"share/{name}/package.xml")
+    assert of("installed", files, replace(BUILD, package=package, installed=both)).status is Status.PASSED
+
+
+OTHER_TYPE = "colcon goes by package.xml, which is not that of an ament_python package."
+
+
+@pytest.mark.parametrize(
+    ("files", "cause"),
+    [
+        ({}, ""),
+        (xml("ament_python", "ament_cmake"), OTHER_TYPE),
+        ({"package.xml": None}, ""),
+        ({"package.xml": "<package>"}, ""),
+    ],
+)
+def test_colcon_may_take_the_package_for_one_of_another_kind(files: Files, cause: str) -> None:
+    failed = of("build", files, replace(NOTHING, exit_code=1))
+    assert (failed.diagnosis, failed.cause, failed.seen) == (
+        "build-failed",
+        cause,
+        "`colcon build` failed (exit code 1).",
+    )
+    nothing = of("build", files, replace(NOTHING, installed=()))
+    assert nothing.cause == (cause or "The argument packages of setup() says which folders to install.")
+
+
+def test_a_build_without_a_setup_py_is_shown_at_package_xml_if_there_is_one() -> None:
+    assert of("build", {"setup.py": None, "package.xml": None}).where is None
+
+
+@pytest.mark.parametrize(
+    ("files", "build", "diagnosis", "cause"),
+    [
+        ({INIT: None}, BARE, "missing-init", "find_packages in setup.py finds only such folders."),
+        ({INIT: None, **setup_py("find_packages(", "list_of(")}, BARE, "missing-init", ""),
+        ({INIT: None, **setup_py("find_packages(", "list_of(")}, LINKED, None, ""),
+        ({INIT: None, "other/__init__.py": "", "other/x.py": ""}, BARE, "nothing-installed", "The argument packages"),
+        ({INIT: None, "test/x.py": ""}, BARE, "missing-init", "find_packages in setup.py finds only such folders."),
+        ({}, LINKED, None, ""),
+        ({"deep/down/x.py": ""}, BUILD, None, ""),
+    ],
+)
+def test_folders_that_are_no_packages_explain_that_nothing_was_installed(
+    files: Files, build: Build, diagnosis: str | None, cause: str
+) -> None:
+    found = of("build", files, build)
+    assert found.diagnosis == diagnosis
+    assert found.cause.startswith(cause)

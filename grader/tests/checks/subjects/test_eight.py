@@ -1,0 +1,143 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.eight import EIGHT
+from grader.tests.checks.made import NODE_FILE, TICK_S, every, evidence, found, legs, recording
+from grader.trial.recording import Pose
+
+TICKS = 40
+TURN = 2.0 * math.pi / (TICKS * TICK_S)  # rad/s, a circle in so many ticks
+
+
+def lobe(side: float, radius_m: float = 1.0, degrees: float = 360.0) -> tuple[int, float, float]:
+    """A lobe to the left (+1) or right (-1)."""
+    return round(TICKS * degrees / 360.0), radius_m * TURN, side * TURN
+
+
+def eight(*parts: tuple[int, float, float], start: Pose | None = None, **values: str) -> Finding:
+    return found(EIGHT, evidence(recording(legs(*parts), start)), radius_m=1.0, **values)
+
+
+def test_an_eight_is_one_wherever_it_begins_and_however_it_is_turned() -> None:
+    for start in (None, Pose(4.0, 6.5, 2.2)):
+        assert eight(lobe(1), lobe(-1), start=start).seen == "The turtle drove an eight of radius 1.0 m."
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "clock", "diagnosis"),
+    [
+        (315.0, 360.0, "wall", "too-soon"),
+        (315.0, 360.0, "simulated", "lobe-angle"),
+        (315.0, 200.0, "wall", "lobe-angle"),
+        (396.0, 360.0, "wall", "lobe-angle"),
+        (360.0, 200.0, "wall", "lobe-angle"),
+    ],
+)
+def test_a_first_lobe_that_lacks_its_beginning_by_the_walls_clock_was_begun_before_anybody_listened(
+    first: float, second: float, clock: str, diagnosis: str
+) -> None:
+    seen = recording(legs(lobe(1, degrees=first), lobe(-1, degrees=second)), clock=clock)
+    assert found(EIGHT, evidence(seen), radius_m=1.0).diagnosis == diagnosis
+
+
+def test_a_rest_between_the_lobes_is_allowed_and_going_on_after_them_too() -> None:
+    assert eight(lobe(1), (5, 0.0, 0.0), lobe(-1)).status is Status.PASSED
+    assert eight(lobe(1), lobe(-1), (12, TURN, -TURN)).status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("parts", "diagnosis", "seen"),
+    [
+        (
+            (lobe(1), lobe(-1, radius_m=1.3)),
+            "lobe-radius",
+            "The second lobe, to the right, has a radius of 1.30 m: 0.30 m too large.",
+        ),
+        (
+            (lobe(1, radius_m=0.8), lobe(-1)),
+            "lobe-radius",
+            "The first lobe, to the left, has a radius of 0.80 m: 0.20 m too small.",
+        ),
+        (
+            (lobe(1, degrees=315.0), lobe(-1)),
+            "lobe-angle",
+            "The first lobe, to the left, is not closed: it ends 45 degrees early.",
+        ),
+        (
+            (lobe(1, degrees=396.0), lobe(-1)),
+            "lobe-angle",
+            "The first lobe, to the left, goes on for 36 degrees after it is closed.",
+        ),
+        (
+            (lobe(1), lobe(-1, degrees=180.0)),
+            "lobe-angle",
+            "The second lobe, to the right, is not closed: it ends 180 degrees early.",
+        ),
+        ((lobe(1),), "one-lobe", "The way has one lobe, to the left."),
+        ((lobe(1), lobe(1)), "one-lobe", "The way has one lobe, to the left."),
+        (((20, 1.0, 0.0),), "one-lobe", "The way has no lobe at all."),
+        ((lobe(-1), lobe(1)), "wrong-side-first", "The first lobe goes to the right."),
+        (
+            ((20, TURN, TURN), (20, 1.5 * TURN, TURN), lobe(-1)),
+            "lobe-not-round",
+            "The first lobe, to the left, is not round: it strays 0.20 m from the nearest circle.",
+        ),
+        (
+            ((5, 1.0, 0.0), lobe(1), lobe(-1)),
+            "lobe-gap",
+            "The first lobe, to the left, ends 0.48 m beside the turtle's start.",
+        ),
+        (((5, 0.0, 0.0),), "not-moving", "The turtle did not drive."),
+        ((lobe(1, radius_m=3.0), lobe(-1)), "wall", "The turtle ran into a wall."),
+    ],
+)
+def test_each_other_way_is_told_with_its_lobe_and_by_how_much(
+    parts: tuple[tuple[int, float, float], ...], diagnosis: str, seen: str
+) -> None:
+    finding = eight(*parts, first="left")
+    assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
+    assert str(finding.where) == f"{NODE_FILE}:{10 if diagnosis == 'lobe-angle' else 15}"
+
+
+def test_either_side_may_come_first_where_the_exercise_allows_it() -> None:
+    assert eight(lobe(-1), lobe(1), first="either").status is Status.PASSED
+
+
+def test_a_way_that_was_driven_by_other_means_is_none() -> None:
+    moved = recording(legs(lobe(1), lobe(-1)), interventions=("teleport_absolute",))
+    assert found(EIGHT, evidence(moved), radius_m=1.0).diagnosis == "intervention"
+    assert found(EIGHT, evidence(recording(every(0.5, math.nan, 1.0))), radius_m=1.0).status is Status.FAILED
+
+
+@pytest.mark.parametrize(
+    ("radius_m", "near", "status"),
+    [(1.0, False, "passed"), (1.09, True, "passed"), (1.11, True, "failed"), (1.2, False, "failed")],
+)
+def test_a_lobe_near_the_edge_of_its_size_is_for_wall_time_to_judge(radius_m: float, near: bool, status: str) -> None:
+    finding = eight(lobe(1), lobe(-1, radius_m=radius_m))
+    assert (finding.near_edge, finding.status.value) == (near, status)
+
+
+@pytest.mark.parametrize(
+    ("parts", "off", "per_s"),
+    [
+        ((lobe(1, degrees=315.0), lobe(-1)), 33.0, math.degrees(TURN)),
+        ((lobe(1, degrees=396.0), lobe(-1)), 24.0, math.degrees(TURN)),
+        (((5, 1.0, 0.0), lobe(1), lobe(-1)), 0.28, TURN),
+    ],
+)
+def test_what_stalls_of_the_machine_may_have_done_is_not_judged(
+    parts: tuple[tuple[int, float, float], ...], off: float, per_s: float
+) -> None:
+    for share, status in ((1.02, Status.ERROR), (0.98, Status.FAILED)):
+        stalled = recording(legs(*parts), clock="wall", stalls=((1.0, 1.0 + share * off / per_s),))
+        assert found(EIGHT, evidence(stalled), radius_m=1.0).status is status
+
+
+@pytest.mark.parametrize(("ticks", "diagnosis"), [(1, None), (3, "wrong-side-first")])
+def test_a_small_bend_is_no_lobe(ticks: int, diagnosis: str | None) -> None:
+    assert eight((ticks, TURN, -TURN), lobe(1), lobe(-1), first="left").diagnosis == diagnosis

@@ -1,0 +1,116 @@
+"""The check of the entry point, and what a text that is none is told by."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.outcome import Status
+from grader.tests.checks.changed import NOTHING, POINT, of, setup_py
+from grader.tests.checks.made import BUILD, NODE, NODE_FILE
+
+if TYPE_CHECKING:
+    from grader.build.build import Build
+    from grader.tests.checks.changed import Files
+
+
+@pytest.mark.parametrize(
+    ("text", "diagnosis"),
+    [
+        ("draw_circle", "entry-point-no-function"),
+        ("draw_circle = a b:main", "entry-point-format"),
+        ("draw_circle = a/b.py:main", "entry-point-slash"),
+        ("a = b:c d = e:f", "entry-point-comma"),
+    ],
+)
+def test_a_text_that_is_no_entry_point_is_explained_by_its_signs(text: str, diagnosis: str) -> None:
+    found = of("build", setup_py(POINT, text), replace(NOTHING, exit_code=1))
+    assert (found.diagnosis, str(found.where)) == (diagnosis, "setup.py:14")
+
+
+def test_a_node_under_another_file_name_that_no_entry_point_leads_to_is_shown() -> None:
+    files = {NODE_FILE: None, "my_robot_controller/circle.py": NODE, **setup_py(f'            "{POINT}",\n', "")}
+    found = of("entry-point", files, NOTHING)
+    assert found.cause.startswith("my_robot_controller/circle.py is there, but setup.py does not name it")
+
+
+def leads_to(target: str) -> Build:
+    return replace(BUILD, entry_points={"draw_circle": target})
+
+
+@pytest.mark.parametrize(
+    ("files", "build", "diagnosis", "where"),
+    [
+        (setup_py(f'            "{POINT}",\n', ""), NOTHING, "entry-point-missing", "setup.py:5"),
+        (setup_py("console_scripts", "console_script"), NOTHING, "entry-point-group", "setup.py:14"),
+        (
+            setup_py(f'"{POINT}",', f'"test_node = my_robot_controller.first:main"\n            "{POINT}",'),
+            replace(NOTHING, entry_points={"test_node": "x"}),
+            "entry-point-comma",
+            "setup.py:14",
+        ),
+        (
+            setup_py("draw_circle = ", "draw_cirle = "),
+            replace(
+                NOTHING,
+                entry_points={"draw_cirle": "my_robot_controller.draw_circle:main"},
+                executables=("draw_cirle",),
+            ),
+            "entry-point-name",
+            "setup.py:14",
+        ),
+        ({"setup.cfg": None}, replace(BUILD, executables=()), "setup-cfg", "setup.py"),
+        ({}, leads_to("my_robot_controller.drawcircle:main"), "entry-point-module", "setup.py:14"),
+        ({}, leads_to("draw_circle:main"), "entry-point-module", "setup.py:14"),
+        ({}, leads_to("my_robot_controller.draw_circle:man"), "entry-point-function", "setup.py:14"),
+        ({NODE_FILE: NODE + "\nmain = 7\n"}, BUILD, "entry-point-not-callable", f"{NODE_FILE}:23"),
+        ({NODE_FILE: NODE.replace("def send(self):", "def send(self)")}, BUILD, "colon-missing", f"{NODE_FILE}:12"),
+        ({NODE_FILE: b"name = '\xe4'\n"}, BUILD, "not-utf8", NODE_FILE),
+        ({NODE_FILE: NODE.encode() + b"\0"}, BUILD, "syntax-error", NODE_FILE),
+        (
+            {"my_robot_controller/more/node.py": NODE},
+            leads_to("my_robot_controller.more.node:main"),
+            "module-not-installed",
+            "setup.py:14",
+        ),
+    ],
+)
+def test_each_fault_of_the_entry_point(files: Files, build: Build, diagnosis: str, where: str) -> None:
+    found = of("entry-point", files, build)
+    assert (found.status, found.diagnosis) == (Status.FAILED, diagnosis), found.seen
+    assert str(found.where).startswith(where)
+
+
+def test_a_setup_cfg_that_is_there_is_a_place_to_look() -> None:
+    nowhere = replace(BUILD, executables=())
+    assert of("entry-point", {"setup.cfg": None}, nowhere).cause == "setup.cfg is missing."
+    assert str(of("entry-point", {}, nowhere).where) == "setup.cfg"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from my_robot_controller.other import main\n",
+        "from my_robot_controller.other import *\n",
+        "try:\n    import rclpy\nexcept ImportError:\n    def main():\n        pass\n",
+        "class main:\n    pass\n",
+        "main = lambda: None\n",
+        "main = 7\ndef main():\n    pass\n",
+        "if True:\n    def main():\n        pass\n",
+        "import other as main\n",
+    ],
+)
+def test_anything_that_may_be_called_will_do(text: str) -> None:
+    assert of("entry-point", {NODE_FILE: text}).status is Status.PASSED
+
+
+def test_a_function_inside_of_the_class_is_not_found() -> None:
+    found = of("entry-point", {NODE_FILE: "class A:\n    def main(self):\n        pass\n"})
+    assert found.cause == "main is indented, and so belongs to the class above it: move it to the left edge."
+
+
+@pytest.mark.parametrize("text", [b"x = " + b"(" * 5000, b"x = " + b"-" * 90_000 + b"1", b"a" * 500_000])
+def test_a_file_that_is_too_much_to_parse_is_left_to_the_trial(text: bytes) -> None:
+    assert of("entry-point", {NODE_FILE: text}).status in (Status.PASSED, Status.FAILED)

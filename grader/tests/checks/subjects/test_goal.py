@@ -1,0 +1,86 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.goal import GOAL
+from grader.tests.checks.made import NODE_FILE, TICK_S, evidence, found, legs, recording
+from grader.trial.recording import Pose
+
+Leg = tuple[int, float, float]
+START = Pose(3.0, 5.0, 0.0)
+"""The goal lies 4 m to the east of it."""
+QUARTER = math.pi / 2 / (10 * TICK_S)
+
+
+def ahead(way_m: float, ticks: int = 20) -> Leg:
+    return ticks, way_m / (ticks * TICK_S), 0.0
+
+
+def goal(*parts: Leg, start: Pose = START) -> Finding:
+    return found(GOAL, evidence(recording(legs(*parts), start)), x_m=7.0, y_m=5.0)
+
+
+@pytest.mark.parametrize("way_m", [4.0, 3.95, 4.05])
+def test_whoever_stops_near_enough_has_arrived(way_m: float) -> None:
+    finding = goal(ahead(way_m))
+    assert (finding.status, finding.seen) == (
+        Status.PASSED,
+        "The turtle drove to its goal, 4.0 m away, and stopped.",
+    )
+
+
+@pytest.mark.parametrize(
+    ("parts", "diagnosis", "seen"),
+    [
+        ((ahead(3.0),), "not-there", "The turtle ends at x=6.00 y=5.00, 1.00 m from the goal."),
+        (
+            (ahead(6.0, 30),),
+            "goes-on",
+            "The turtle ends at x=9.00 y=5.00, 2.00 m from the goal. It came as near as 0.00 m on the way.",
+        ),
+        ((ahead(-2.0),), "away-from-goal", "The turtle ends at x=1.00 y=5.00, 6.00 m from the goal."),
+        (
+            ((10, 0.0, QUARTER), ahead(7.0)),
+            "away-from-goal",
+            "The turtle ends at x=3.00 y=11.09, 7.29 m from the goal.",
+        ),
+        (((5, 0.0, 0.0),), "not-moving", "The turtle did not drive."),
+        (
+            (ahead(3.92, 90), (20, 0.05, 0.0)),
+            "still-moving",
+            "The turtle still drives at the end: 0.03 m in the last 0.5 s.",
+        ),
+    ],
+)
+def test_whoever_is_not_there_is_told_where_they_are(parts: tuple[Leg, ...], diagnosis: str, seen: str) -> None:
+    finding = goal(*parts)
+    assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
+    assert str(finding.where) == f"{NODE_FILE}:16"
+
+
+def test_whoever_is_no_nearer_in_the_end_has_driven_away_and_without_a_wall_none_is_told_of() -> None:
+    assert goal(ahead(1.0), ahead(-0.97)).diagnosis == "away-from-goal"
+    nearer = goal(ahead(1.0), ahead(-0.9))
+    assert (nearer.diagnosis, "wall" in nearer.cause) == ("not-there", False)
+
+
+def test_a_turtle_at_the_wall_learns_about_angles() -> None:
+    finding = goal((10, 0.0, -QUARTER / 3), ahead(6.0), start=Pose(1.0, 1.0, 0.0))
+    assert (finding.diagnosis, "atan2(sin(a), cos(a))" in finding.cause) == ("not-there", True)
+
+
+def test_a_turtle_that_was_put_there_has_not_driven() -> None:
+    moved = recording(legs(ahead(4.0)), START, interventions=("teleport_absolute",))
+    assert found(GOAL, evidence(moved), x_m=7.0, y_m=5.0).diagnosis == "intervention"
+
+
+@pytest.mark.parametrize(
+    ("way_m", "near", "status"),
+    [(4.0, False, "passed"), (4.09, True, "passed"), (3.89, True, "failed"), (3.0, False, "failed")],
+)
+def test_an_end_near_the_edge_is_for_wall_time_to_judge(way_m: float, near: bool, status: str) -> None:
+    finding = goal(ahead(way_m))
+    assert (finding.near_edge, finding.status.value) == (near, status)

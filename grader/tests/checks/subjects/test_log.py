@@ -1,0 +1,150 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.log import LOG_COUNTER, LOG_LINES, LOG_RATE
+from grader.tests.checks.made import DURATION_S, NODE, NODE_FILE, evidence, found, recording, submission
+from grader.tests.checks.shapes import TRACEBACK, crashed
+from grader.trial.recording import LogLine, Output
+
+HELLO = "Hello {counter}"
+POINTS = "x={x:.2f}"
+RATE = {"rate_hz": 1.0, "tolerance_percent": 5.0, "min_interval_s": 0.85, "max_interval_s": 1.2}
+OTHER_FORM = "The words are right; the numbers have another form, or are missing."
+LOGS = NODE.replace("self.publisher.publish(msg)", 'self.get_logger().info("...")')
+
+
+def lines(*texts: str, every_s: float = 1.0, logger: str = "my_first_node") -> tuple[LogLine, ...]:
+    return tuple(LogLine(every_s * (index + 1), "INFO", logger, text) for index, text in enumerate(texts))
+
+
+def hello(*numbers: int) -> tuple[LogLine, ...]:
+    return lines(*(f"Hello {number}" for number in numbers))
+
+
+def in_format(log: tuple[LogLine, ...], format_: str = HELLO, node: str = LOGS, stdout: str = "") -> Finding:
+    trial = recording([], log=log, stdout=Output(stdout))
+    return found(LOG_LINES, evidence(trial, submission({NODE_FILE: node})), format=format_)
+
+
+def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
+    assert in_format(lines("I begin", "Hello 0", "Hello 1")).seen == 'The log has lines such as "Hello 0".'
+
+
+@pytest.mark.parametrize(
+    ("log", "format_", "seen", "cause"),
+    [
+        ("hello 0", HELLO, 'The log says "hello 0".', "Capital and small letters differ."),
+        (
+            "Hello 0!",
+            HELLO,
+            'The log says "Hello 0!".',
+            "There is more on the line than what is asked for.",
+        ),
+        (
+            "Hello: 0",
+            HELLO,
+            'The log says "Hello: 0".',
+            "Compare it letter by letter: capitals, blanks and points count.",
+        ),
+        (
+            "Hello",
+            HELLO,
+            'The log says "Hello".',
+            OTHER_FORM,
+        ),
+        (
+            "x=1.234",
+            POINTS,
+            'The log says "x=1.234".',
+            f"{OTHER_FORM} In an f-string {{value:.2f}} writes two digits behind the point.",
+        ),
+        (
+            "Hello \u0663",  # a digit, but none of ASCII
+            HELLO,
+            'The log says "Hello \u0663".',
+            OTHER_FORM,
+        ),
+    ],
+)
+def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: str, seen: str, cause: str) -> None:
+    finding = in_format(lines(log), format_)
+    assert (finding.status, finding.seen, finding.cause) == (Status.FAILED, seen, cause)
+    assert finding.diagnosis in ("log-capitals", "log-more", "log-numbers", "log-format")
+
+
+@pytest.mark.parametrize(
+    ("node", "stdout", "diagnosis"),
+    [
+        (LOGS, "Hello 0\nHello 1\n", "print-instead"),
+        (NODE, "", "no-log"),
+        (LOGS.replace("rclpy.spin(", "str("), "", "no-spin"),
+        (LOGS.replace("create_timer(0.5, self.send)", "x"), "", "method-never-called"),
+        (LOGS.replace("create_timer(0.5", "create_timer(500"), "", "timer-milliseconds"),
+        (LOGS.replace("self.send)", "self.send())"), "", "callback-called"),
+    ],
+)
+def test_a_silent_log_is_explained_by_the_source(node: str, stdout: str, diagnosis: str) -> None:
+    finding = in_format((), node=node, stdout=stdout)
+    assert (finding.diagnosis, finding.where is not None) == (diagnosis, True)
+    assert finding.seen == ("The lines are printed, and not logged." if stdout else "The node logged nothing.")
+
+
+def test_a_crash_explains_a_silent_log() -> None:
+    trial = recording([], end=crashed(-0.2), graphs=(), stderr=Output(TRACEBACK))
+    finding = found(LOG_LINES, evidence(trial), format=HELLO)
+    assert (finding.diagnosis, str(finding.where)) == ("crash", f"{NODE_FILE}:14")
+
+
+@pytest.mark.parametrize("forged", ["turtlesim", "other"])
+def test_only_what_the_node_logged_before_ctrl_c_counts(forged: str) -> None:
+    late = tuple(replace(line, t_s=DURATION_S + 0.1) for line in hello(0))
+    ours = lines("Hello 0", logger="turtlesim") if forged == "turtlesim" else ()
+    assert in_format((*ours, *late)).status is Status.FAILED
+
+
+@pytest.mark.parametrize(
+    ("numbers", "diagnosis", "seen"),
+    [
+        ((0, 1, 2, 3), None, "The counter rises from 0, by one a line."),
+        ((1, 2, 3), "counter-start", "The first number is 1."),
+        ((5, 6, 7), "counter-start", "The first number is 5."),
+        ((0, 0, 0), "counter-stuck", "The number stays 0."),
+        ((0, 2, 4), "counter-step", "After 0 comes 2."),
+        ((0, 1, 1, 2), "counter-step", "After 1 comes 1."),
+        ((3, 2, 1), "counter-step", "After 3 comes 2."),
+    ],
+)
+def test_the_counter(numbers: tuple[int, ...], diagnosis: str | None, seen: str) -> None:
+    trial = recording([], log=hello(*numbers))
+    finding = found(LOG_COUNTER, evidence(trial), format=HELLO, counts="counter")
+    assert (finding.diagnosis, finding.seen) == (diagnosis, seen)
+    assert str(finding.where) == ("None" if diagnosis is None else NODE_FILE)
+    assert ("Log first, then count." in finding.cause) == (numbers[0] == 1)
+
+
+def test_one_line_counts_nothing_and_two_do() -> None:
+    for log, diagnosis in ((hello(0), "too-few-log-lines"), (hello(0, 1), None)):
+        trial = recording([], log=log)
+        finding = found(LOG_COUNTER, evidence(trial, submission({NODE_FILE: LOGS})), format=HELLO, counts="counter")
+        assert (finding.diagnosis, finding.where is not None) == (diagnosis, diagnosis is not None)
+        assert finding.expected in ('"Hello 0", then "Hello 1", and so on.', "")
+
+
+@pytest.mark.parametrize(("every_s", "status"), [(1.0, "passed"), (0.5, "failed"), (2.0, "failed")])
+def test_the_rate_is_that_of_the_lines_in_the_format(every_s: float, status: str) -> None:
+    count = int(9.5 / every_s)
+    said = lines(*(f"Hello {number}" for number in range(count)), every_s=every_s)
+    noise = tuple(LogLine(line.t_s + 0.3, "INFO", line.logger, "something else") for line in said)
+    trial = recording([], log=tuple(sorted((*said, *noise), key=lambda line: line.t_s)))
+    finding = found(LOG_RATE, evidence(trial), format=HELLO, **RATE)
+    assert finding.status.value == status
+    assert "log line" in finding.seen.lower()
+
+
+def test_a_submission_is_read_and_never_run() -> None:
+    package = submission({NODE_FILE: "raise SystemExit\n"})
+    assert found(LOG_LINES, evidence(recording([]), package), format=HELLO).status is Status.FAILED

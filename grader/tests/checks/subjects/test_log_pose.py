@@ -1,0 +1,190 @@
+"""The lines of step 06 against the way that the turtle drove: ahead to the left, a rest, backwards."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.log_pose import LOG_DISTANCE, LOG_POSITION
+from grader.tests.checks.made import NODE_FILE, evidence, found, frames, legs, node, recording
+from grader.trial.recording import LogLine
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from grader.trial.recording import Floats, Recording
+
+FORMAT = "x={x:.2f} y={y:.2f} distance={distance:.2f}"
+PACKAGE = node(
+    ("        msg = Twist()", "        way = math.hypot(1.0, 2.0)\n        self.get_logger().info(f'{way}')")
+)
+LOGS = {"position": 14, "distance": 13}
+"""The lines of that package that each kind of mistake leads to."""
+WAY = legs((40, 1.0, 0.7), (15, 0.0, 0.0), (30, -0.9, 0.5))
+DRIVE = recording(WAY)
+TIMES = np.arange(1.0, 10.0)
+
+Said = tuple["Floats", "Floats", "Floats"]
+"""x, y, distance, one a line."""
+
+
+def truth(lag_s: float = 0.0) -> Said:
+    """What a right node says at TIMES, by the pose that was true `lag_s` before."""
+    frames, start = DRIVE.frames, DRIVE.start
+    at = np.searchsorted(frames.t_s, TIMES - lag_s) - 1
+    x, y = np.append(start.x, frames.x), np.append(start.y, frames.y)
+    way = np.cumsum(np.hypot(np.diff(x), np.diff(y)))
+    return frames.x[at], frames.y[at], way[at]
+
+
+def logged(said: Said, stalls: tuple[tuple[float, float], ...] = ()) -> Recording:
+    log = tuple(
+        LogLine(float(t_s), "INFO", "pose_subscriber", f"x={x:.2f} y={y:.2f} distance={distance:.2f}")
+        for t_s, x, y, distance in zip(TIMES, *said, strict=True)
+    )
+    return recording(WAY, log=log, stalls=stalls)
+
+
+def position(said: Said) -> Finding:
+    return found(LOG_POSITION, evidence(logged(said), PACKAGE), format=FORMAT)
+
+
+def distance(said: Said) -> Finding:
+    return found(LOG_DISTANCE, evidence(logged(said), PACKAGE), format=FORMAT)
+
+
+@pytest.mark.parametrize("lag_s", [0.0, 0.016, 0.1])
+def test_the_truth_is_right_also_when_it_is_a_little_old(lag_s: float) -> None:
+    assert position(truth(lag_s)).seen == "Each line says where the turtle is."
+    assert distance(truth(lag_s)).seen == "Each line says how far the turtle has driven."
+
+
+def test_what_is_a_second_old_or_half_a_second_ahead_is_wrong() -> None:
+    assert position(truth(1.0)).diagnosis == "wrong-position"
+    assert position(truth(-0.5)).diagnosis == "wrong-position"
+
+
+def test_lines_after_the_last_frame_speak_of_that() -> None:
+    trial = logged(truth())
+    short = replace(trial, frames=frames(trial.commands, trial.start, 7.0))
+    x, y = short.frames.x[-1], short.frames.y[-1]
+    last = replace(trial.log[-1], text=f"x={x:.2f} y={y:.2f} distance=0.00")
+    for line, diagnosis in ((last, None), (trial.log[-1], "wrong-position")):
+        given = evidence(replace(short, log=(*trial.log[:6], line)))
+        assert found(LOG_POSITION, given, format=FORMAT).diagnosis == diagnosis
+
+
+WRONG: dict[str, tuple[Callable[[Said], Said], str, str]] = {
+    "swapped": (lambda t: (t[1], t[0], t[2]), "position", "x-y-swapped"),
+    "never renewed": (lambda t: (t[0] * 0 + 5.54, t[1] * 0 + 5.54, t[2]), "position", "stale-pose"),
+    "in other units": (lambda t: (100.0 * t[0], 100.0 * t[1], t[2]), "position", "wrong-position"),
+    "always 0": (lambda t: (t[0], t[1], t[2] * 0), "distance", "distance-zero"),
+    "straight back to the start": (
+        lambda t: (t[0], t[1], np.hypot(t[0] - DRIVE.start.x, t[1] - DRIVE.start.y)),
+        "distance",
+        "distance-from-start",
+    ),
+    "from place to place": (
+        lambda t: (
+            t[0],
+            t[1],
+            np.cumsum(np.hypot(np.diff(t[0], prepend=DRIVE.start.x), np.diff(t[1], prepend=DRIVE.start.y))),
+        ),
+        "distance",
+        "distance-by-chords",
+    ),
+    "from the corner of the window": (lambda t: (t[0], t[1], np.hypot(t[0], t[1])), "distance", "distance-from-zero"),
+    "with a first step from 0, 0": (
+        lambda t: (t[0], t[1], t[2] + np.hypot(DRIVE.start.x, DRIVE.start.y)),
+        "distance",
+        "distance-from-zero",
+    ),
+    "twice as much": (lambda t: (t[0], t[1], 2.0 * t[2]), "distance", "wrong-distance"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_each_other_number_fails_for_its_own_reason(name: str) -> None:
+    change, subject, diagnosis = WRONG[name]
+    finding = {"position": position, "distance": distance}[subject](change(truth()))
+    assert (finding.status, finding.diagnosis) == (Status.FAILED, diagnosis)
+    assert str(finding.where) == f"{NODE_FILE}:{LOGS[subject]}"
+    assert finding.cause
+
+
+def test_says_what_the_line_said_and_what_was_so() -> None:
+    x, y, way = truth()
+    finding = position((x + 1.0, y, way))
+    assert finding.seen == (
+        f"At 1 s the line says x={x[0] + 1.0:.2f} y={y[0]:.2f}, and the turtle was at x={x[0]:.2f} y={y[0]:.2f}."
+    )
+    finding = distance((x, y, way + np.arange(9.0)))
+    assert finding.seen == (
+        f"At 9 s the line says distance={way[-1] + 8.0:.2f}, and the turtle had driven {way[-1]:.2f} m."
+    )
+
+
+def test_one_wrong_line_is_enough() -> None:
+    x, y, way = truth()
+    x[4] += 0.5
+    assert position((x, y, way)).diagnosis == "wrong-position"
+
+
+def test_too_few_lines_are_not_compared() -> None:
+    trial = logged(truth())
+    for kind in (LOG_POSITION, LOG_DISTANCE):
+        few = found(kind, evidence(recording(WAY, log=trial.log[:2]), PACKAGE), format=FORMAT)
+        assert (few.diagnosis, str(few.where)) == ("too-few-log-lines", f"{NODE_FILE}:14")
+        enough = found(kind, evidence(recording(WAY, log=trial.log[:3]), PACKAGE), format=FORMAT)
+        assert enough.status is Status.PASSED
+
+
+def test_what_is_off_by_less_than_the_tolerance_is_right() -> None:
+    x, y, way = truth()
+    assert position((x + 0.01, y, way)).status is Status.PASSED
+    assert position((x + 0.08, y, way)).status is Status.FAILED
+    assert distance((x, y, way + 0.03)).status is Status.PASSED
+    assert distance((x, y, way + 0.12)).status is Status.FAILED
+
+
+def test_a_way_that_is_nearly_another_one_is_only_wrong() -> None:
+    x, y, way = truth()
+    chords = np.cumsum(np.hypot(np.diff(x, prepend=DRIVE.start.x), np.diff(y, prepend=DRIVE.start.y)))
+    assert distance((x, y, chords * 1.2)).diagnosis == "wrong-distance"
+    assert (
+        distance((x, y, way + np.hypot(DRIVE.start.x, DRIVE.start.y) + np.linspace(0.7, 1.3, 9))).diagnosis
+        == "wrong-distance"
+    )
+    assert distance((x, y, np.minimum(way, way[2]))).diagnosis == "wrong-distance"
+
+
+def test_the_worst_line_is_shown() -> None:
+    x, y, way = truth()
+    off = way.copy()
+    off[3] -= 0.5
+    off[6] += 0.4
+    assert distance((x, y, off)).seen.startswith("At 4 s the line says")
+
+
+def test_a_line_before_the_first_frame_speaks_of_the_start() -> None:
+    early = LogLine(-0.5, "INFO", "pose_subscriber", "x=9.00 y=9.00 distance=9.00")
+    trial = recording(WAY, log=(early, *logged(truth()).log))
+    start = trial.frames
+    finding = found(LOG_POSITION, evidence(trial), format=FORMAT)
+    assert finding.seen.endswith(f"the turtle was at x={start.x[0]:.2f} y={start.y[0]:.2f}.")
+    late = LogLine(99.0, "INFO", "pose_subscriber", "x=9.00 y=9.00 distance=9.00")
+    after = found(LOG_POSITION, evidence(recording(WAY, log=(*logged(truth()).log, late))), format=FORMAT)
+    assert (after.status, "At 99 s" in after.seen) in ((Status.FAILED, True), (Status.PASSED, False))
+
+
+def test_lines_that_a_stall_delayed_do_not_count_and_without_others_nobody_is_blamed() -> None:
+    x, y, way = truth()
+    x[4] += 0.5
+    stalled = logged((x, y, way), stalls=((4.9, 5.1),))
+    assert found(LOG_POSITION, evidence(stalled), format=FORMAT).status is Status.PASSED
+    all_of_it = logged((x, y, way), stalls=((0.0, 10.0),))
+    assert found(LOG_POSITION, evidence(all_of_it), format=FORMAT).status is Status.ERROR

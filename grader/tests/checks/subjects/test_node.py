@@ -1,0 +1,234 @@
+"""The checks of start, name, topic, type and stop."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.causes.crash import end_seen
+from grader.checks.outcome import Status
+from grader.tests.checks.made import (
+    NODE_FILE,
+    TOPIC,
+    every,
+    evidence,
+    finding,
+    good,
+    graph,
+    node,
+    recording,
+    submission,
+)
+from grader.tests.checks.shapes import SHAPES, crashed
+from grader.trial.recording import Endpoint, Message, Output, ProcessEnd
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.trial.recording import ClockName
+
+OTHER = "geometry_msgs/msg/TwistStamped"
+
+
+def of(shape: str, *changes: tuple[str, str]) -> Evidence:
+    return evidence(SHAPES[shape](), node(*changes))
+
+
+@pytest.mark.parametrize("check", ["start", "node-name", "topic", "type", "stop", "timer"])
+def test_a_good_run_passes(check: str) -> None:
+    found = finding(check, of("good"))
+    assert (found.status, found.near_edge) == (Status.PASSED, False)
+
+
+@pytest.mark.parametrize(
+    ("check", "shape", "diagnosis", "line"),
+    [
+        ("start", "crash at the start", "crash", ":14"),
+        ("start", "ends at once", "ends-at-once", ":21"),
+        ("start", "no node", "no-node", ":20"),
+        ("node-name", "other name", "node-name", ":8"),
+        ("node-name", "no node", "no-node", None),
+        ("topic", "other topic", "wrong-topic", ":9"),
+        ("topic", "other type", "wrong-type", ":9"),
+        ("topic", "no messages", "never-publishes", ":16"),
+        ("topic", "no publisher", "no-publisher", ":9"),
+        ("type", "other type", "second-type", ":9"),
+        ("stop", "ignores Ctrl-C", "ignores-ctrl-c", ":21"),
+        ("stop", "slow stop", "slow-stop", ":21"),
+        ("stop", "ends early", "ended-early", ":21"),
+        ("stop", "crash", "crash", ":14"),
+    ],
+)
+def test_each_fault_has_its_diagnosis_and_place(check: str, shape: str, diagnosis: str, line: str | None) -> None:
+    found = finding(check, of(shape))
+    assert (found.status, found.diagnosis) == (Status.FAILED, diagnosis)
+    assert (None if found.where is None else str(found.where)) == (None if line is None else NODE_FILE + line)
+
+
+def test_a_crash_is_told_with_its_meaning() -> None:
+    found = finding("start", of("crash at the start"))
+    assert found.seen == "draw_circle crashed at its start: ZeroDivisionError: division by zero."
+    assert found.cause == "A number was divided by zero."
+
+
+def test_a_program_that_crashed_while_its_node_was_waited_for_is_told_to_have_made_none() -> None:
+    late = replace(SHAPES["crash at the start"](), end=crashed(5.0), graphs=(graph((), topic=None),))
+    found = finding("start", evidence(late))
+    assert found.diagnosis == "crash"
+    assert found.seen == "draw_circle crashed before it had made a node: ZeroDivisionError: division by zero."
+
+
+def test_a_node_that_crashed_while_it_ran_did_start() -> None:
+    assert finding("start", of("crash")).status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("clock", "t_s", "diagnosis"),
+    [
+        ("wall", 0.2, "ends-at-once"),
+        ("wall", 0.21, None),
+        ("simulated", 0.0, "ends-at-once"),
+        ("simulated", 0.1, None),
+    ],
+)
+def test_by_the_walls_clock_an_end_in_the_first_moment_is_one_at_the_start(
+    clock: ClockName, t_s: float, diagnosis: str | None
+) -> None:
+    """There the clock starts when the node is in the graph, which may be before it has been made as a whole."""
+    end = ProcessEnd(by="itself", exit_code=0, t_s=t_s, stop_s=None)
+    seen = evidence(recording([], clock=clock, end=end))
+    assert finding("start", seen).diagnosis == diagnosis
+    assert end_seen(seen).endswith("at its start." if diagnosis else f"after {t_s:.1f} s.")
+
+
+def test_a_missing_spin_is_told_where_the_node_ends_at_once() -> None:
+    found = finding("start", of("ends at once", ("rclpy.spin(DrawCircleNode())", "DrawCircleNode()")))
+    assert found.cause == "rclpy.spin keeps a node running; it is called nowhere."
+
+
+@pytest.mark.parametrize(
+    ("names", "seen"),
+    [
+        (("/draw_cirle",), "The node is named /draw_cirle."),
+        (("/a", "/b"), "The nodes are named /a and /b."),
+        (("/robot/draw_circle",), "The node is named /robot/draw_circle."),
+    ],
+)
+def test_another_name_is_shown(names: tuple[str, ...], seen: str) -> None:
+    found = finding("node-name", evidence(recording([], graphs=(graph(names),))))
+    assert found.seen == seen
+
+
+def test_a_namespace_is_told_as_such() -> None:
+    found = finding("node-name", evidence(recording([], graphs=(graph(("/robot/draw_circle",)),))))
+    assert (found.diagnosis, str(found.where)) == ("node-namespace", f"{NODE_FILE}:8")
+
+
+def test_a_node_that_took_the_simulators_name_is_the_submissions() -> None:
+    found = finding("node-name", evidence(recording([], graphs=(graph(("/turtlesim",)),))))
+    assert found.seen == "The node is named /turtlesim."
+
+
+def test_a_node_seen_once_counts() -> None:
+    seen = recording([], graphs=(graph((), topic=None), graph(), graph((), topic=None)))
+    assert finding("start", evidence(seen)).status is Status.PASSED
+
+
+def test_the_topic_in_use_is_named() -> None:
+    assert finding("topic", of("other topic")).seen.startswith("The node publishes on /turtle1/cmd_val,")
+
+
+@pytest.mark.parametrize(
+    ("changes", "diagnosis", "line"),
+    [
+        ([("self.publisher.publish(msg)", "pass")], "no-publish", ""),
+        ([("create_timer(0.5,", "create_timer(500,")], "timer-milliseconds", ":10"),
+        ([("self.send)", "self.send())")], "callback-called", ":10"),
+        ([("rclpy.spin(", "print(")], "no-spin", ""),
+    ],
+)
+def test_silence_is_explained_by_the_source(changes: list[tuple[str, str]], diagnosis: str, line: str) -> None:
+    found = finding("topic", of("no messages", *changes))
+    assert (found.diagnosis, str(found.where)) == (diagnosis, NODE_FILE + line)
+
+
+def test_silence_after_a_crash_is_the_crash() -> None:
+    silent = replace(SHAPES["crash"](), commands=())
+    found = finding("topic", evidence(silent))
+    assert (found.diagnosis, str(found.where)) == ("crash", f"{NODE_FILE}:14")
+
+
+def test_a_subscription_in_place_of_a_publisher_is_told() -> None:
+    listening = Endpoint("subscription", "/draw_circle", TOPIC, "geometry_msgs/msg/Twist")
+    seen = graph(topic=None)
+    found = finding("topic", evidence(recording([], graphs=(replace(seen, endpoints=(*seen.endpoints, listening)),))))
+    assert (found.diagnosis, str(found.where)) == ("subscription-instead", NODE_FILE)
+
+
+def test_a_second_type_beside_twist_fails_the_type_alone() -> None:
+    both = graph()
+    second = Endpoint("publisher", "/draw_circle", TOPIC, OTHER)
+    given = evidence(replace(good(), graphs=(replace(both, endpoints=(*both.endpoints, second)),)))
+    assert finding("topic", given).status is Status.PASSED
+    assert finding("type", given).diagnosis == "second-type"
+
+
+def test_a_second_type_that_the_graph_missed_is_seen_by_its_messages() -> None:
+    made = good()
+    stray = Message(TOPIC, OTHER, b"", 3.0, 3.0)
+    assert finding("type", evidence(replace(made, messages=(*made.messages, stray)))).diagnosis == "second-type"
+
+
+def test_messages_forged_for_the_recorder_are_not_commands() -> None:
+    forged = replace(good(), commands=())
+    assert finding("topic", evidence(forged)).status is Status.FAILED
+
+
+@pytest.mark.parametrize("exit_code", [0, 1, -2, 130])
+def test_how_a_node_ends_after_ctrl_c_does_not_matter(exit_code: int) -> None:
+    text = "Traceback (most recent call last):\nrclpy._rclpy_pybind11.RCLError: failed to shutdown\n"
+    end = ProcessEnd(by="SIGINT", exit_code=exit_code, t_s=10.0, stop_s=0.3)
+    found = finding("stop", evidence(recording(every(0.5, 2.0, 1.0), end=end, stderr=Output(text))))
+    assert found.status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("stop_s", "near", "status"), [(0.5, False, "passed"), (2.5, True, "passed"), (3.4, True, "failed")]
+)
+def test_a_slow_stop_is_for_wall_time_to_judge(stop_s: float, near: bool, status: str) -> None:
+    end = ProcessEnd(by="SIGINT", exit_code=0, t_s=10.0, stop_s=stop_s)
+    found = finding("stop", evidence(recording([], end=end)))
+    assert (found.near_edge, found.status.value) == (near, status)
+
+
+def test_a_node_that_did_not_stop_is_for_wall_time_to_judge() -> None:
+    assert finding("stop", of("ignores Ctrl-C")).near_edge
+
+
+def test_what_it_took_to_stop_a_node_is_told() -> None:
+    killed = SHAPES["ignores Ctrl-C"]()
+    terminated = replace(killed, end=replace(killed.end, by="SIGTERM"))
+    assert finding("stop", evidence(killed)).seen == "The node ignored Ctrl-C: it had to be killed."
+    assert finding("stop", evidence(terminated)).seen == "The node ignored Ctrl-C: only SIGTERM ended it."
+
+
+def test_a_missing_spin_is_told_where_the_node_ends_early() -> None:
+    without = finding("stop", of("ends early", ("rclpy.spin(DrawCircleNode())", "DrawCircleNode()")))
+    assert without.cause == "rclpy.spin keeps a node running; it is called nowhere."
+    assert finding("stop", of("ends early")).cause == ""
+
+
+def test_a_signal_is_named() -> None:
+    end = replace(crashed(3.0), exit_code=-11)
+    assert "SIGSEGV" in finding("stop", evidence(recording([], end=end))).seen
+
+
+def test_no_timer_is_advice() -> None:
+    found = finding("timer", evidence(good(), node(("self.create_timer(0.5, self.send)", "None"))))
+    assert found.diagnosis == "no-timer"
+
+
+def test_what_setup_py_and_tests_call_is_not_the_nodes() -> None:
+    files = {NODE_FILE: "pass\n", "test/test_node.py": "node.create_timer(1, f)\n"}
+    assert finding("timer", evidence(good(), submission(files))).diagnosis == "no-timer"

@@ -1,0 +1,90 @@
+"""The circle with a student's own numbers: whose they are, and what the node made of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.outcome import Status
+from grader.checks.subjects.own import CIRCLE, NUMBERS, RATE
+from grader.exercise.own_numbers import FILE, draw_numbers, to_toml
+from grader.tests.checks.made import every, evidence, found, recording, submission
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.exercise.own_numbers import OwnNumbers
+
+ALICE = draw_numbers("alice")
+SIDE = {"counter-clockwise": 1.0, "clockwise": -1.0}
+
+
+def given(numbers: OwnNumbers | str | None, by: str | None = "alice") -> Evidence:
+    """A circle driven by the numbers drawn for alice, with these in the file."""
+    way = every(1.0 / ALICE.rate_hz, ALICE.radius_m, SIDE[ALICE.sense])
+    text = numbers if numbers is None or isinstance(numbers, str) else to_toml(numbers)
+    return evidence(recording(way), replace(submission({FILE: text}), student=by))
+
+
+@pytest.mark.parametrize("by", ["alice", " Alice", None])
+def test_the_own_numbers_pass_whoever_may_write_the_name_otherwise(by: str | None) -> None:
+    assert found(NUMBERS, given(ALICE, by)).status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("numbers", "by", "diagnosis", "seen"),
+    [
+        (
+            ALICE,
+            "bob",
+            "numbers-of-another",
+            f'The numbers in {FILE} were drawn for "alice"; this was handed in by "bob".',
+        ),
+        (
+            replace(ALICE, radius_m=ALICE.radius_m + 0.2),
+            "alice",
+            "numbers-changed",
+            f"The numbers in {FILE} are not those that were drawn for its student.",
+        ),
+        (None, "alice", "no-numbers", f"There is no {FILE}."),
+        ("student = 3", "alice", "numbers-unreadable", f"{FILE}: student or sense is missing, or no text."),
+    ],
+)
+def test_other_numbers_are_told_from_the_own(
+    numbers: OwnNumbers | str | None, by: str, diagnosis: str, seen: str
+) -> None:
+    finding = found(NUMBERS, given(numbers, by))
+    assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
+    assert str(finding.where) == ("None" if numbers is None else FILE)
+
+
+def test_the_way_is_judged_by_the_numbers_drawn_whatever_the_file_says() -> None:
+    changed = given(replace(ALICE, radius_m=ALICE.radius_m + 0.4, rate_hz=10.0))
+    assert [found(kind, changed).status for kind in (CIRCLE, RATE)] == [Status.PASSED] * 2
+
+
+@pytest.mark.parametrize(("student", "way"), [("bob", "wrong-sense"), ("carol", "wrong-radius")])
+def test_a_way_by_somebody_elses_numbers_is_wrong(student: str, way: str) -> None:
+    other = given(draw_numbers(student), by=None)
+    assert [found(kind, other).diagnosis for kind in (CIRCLE, RATE)] == [way, "wrong-rate"]
+
+
+@pytest.mark.parametrize(
+    ("share", "status"), [(1.2, Status.PASSED), (1.4, Status.FAILED), (0.85, Status.PASSED), (0.75, Status.FAILED)]
+)
+def test_one_interval_may_be_a_little_longer_or_shorter_than_the_own_period(share: float, status: Status) -> None:
+    period_s = 1.0 / ALICE.rate_hz
+    way = every(period_s, ALICE.radius_m, 1.0)
+    moved = [(t_s + (share - 1.0) * period_s * (index >= 20), v, w) for index, (t_s, v, w) in enumerate(way)]
+    assert found(RATE, replace(given(ALICE), recording=recording(moved))).status is status
+
+
+@pytest.mark.parametrize(("first_s", "diagnosis"), [(2.9, None), (3.5, "late-start")])
+def test_the_first_command_may_come_three_seconds_late(first_s: float, diagnosis: str | None) -> None:
+    way = every(1.0 / ALICE.rate_hz, ALICE.radius_m, 1.0, first_s=first_s)
+    assert found(RATE, replace(given(ALICE), recording=recording(way))).diagnosis == diagnosis
+
+
+def test_without_numbers_there_is_nothing_to_judge_the_way_by() -> None:
+    assert [found(kind, given(None)).diagnosis for kind in (CIRCLE, RATE)] == ["no-numbers"] * 2

@@ -1,0 +1,141 @@
+"""The checks of the package's files, of package.xml, of its name and dependencies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.outcome import Status
+from grader.tests.checks.changed import INIT, LINKED, of, setup_py, xml
+from grader.tests.checks.made import BUILD, NODE_FILE, PACKAGE_XML, evidence, finding, submission
+
+if TYPE_CHECKING:
+    from grader.build.build import Build
+    from grader.tests.checks.changed import Files
+
+
+@pytest.mark.parametrize(
+    "check", ["files", "package-xml", "dependencies", "package-name", "build", "installed", "entry-point"]
+)
+@pytest.mark.parametrize("build", [BUILD, LINKED], ids=["copied", "linked"])
+def test_a_good_package_passes(check: str, build: Build) -> None:
+    found = of(check, build=build)
+    assert (found.status, found.diagnosis) == (Status.PASSED, None), found.seen
+
+
+@pytest.mark.parametrize(
+    ("check", "files", "diagnosis", "where"),
+    [
+        ("package-xml", {"package.xml": None}, "package-xml-missing", "setup.py"),
+        ("package-xml", xml("</package>"), "xml-malformed", "package.xml:15"),
+        ("package-xml", xml("  <license>MIT</license>\n"), "package-xml-invalid", "package.xml:2"),
+        ("package-xml", xml('format="3"', 'format="9"'), "package-xml-invalid", "package.xml:2"),
+        ("package-xml", xml('format="3"', 'format="x"'), "package-xml-invalid", "package.xml:2"),
+        ("package-xml", {"package.xml": b"\xff\xfe\x00"}, "xml-malformed", "package.xml:1"),
+        ("package-xml", {"package.xml": b"<a>" * 100_000}, "package-xml-invalid", "package.xml"),
+        ("package-xml", xml("    <build_type>ament_python</build_type>\n"), "build-type", "package.xml:11"),
+        ("package-xml", xml("ament_python", "ament_cmake"), "build-type", "package.xml:12"),
+        ("dependencies", xml("  <depend>geometry_msgs</depend>\n"), "missing-depend", "package.xml:8"),
+        (
+            "dependencies",
+            xml("depend>rclpy</depend", "build_depend>rclpy</build_depend"),
+            "depend-kind",
+            "package.xml:8",
+        ),
+        ("package-name", xml("my_robot_controller", "my_robot"), "package-name", "package.xml:3"),
+        ("package-name", setup_py('"my_robot_controller"', '"my-robot-controller"'), "package-name", "setup.py:3"),
+        ("package-name", {INIT: None, NODE_FILE: None, "my_robot/x.py": ""}, "package-folder", "setup.py"),
+    ],
+)
+def test_each_fault_of_the_files(check: str, files: Files, diagnosis: str, where: str) -> None:
+    found = of(check, files)
+    assert (found.status, found.diagnosis, str(found.where)) == (Status.FAILED, diagnosis, where)
+
+
+def test_format_2_is_valid_and_a_byte_order_mark_does_no_harm() -> None:
+    assert of("package-xml", xml('format="3"', 'format="2"')).status is Status.PASSED
+    assert of("package-xml", {"package.xml": b"\xef\xbb\xbf" + PACKAGE_XML.encode()}).status is Status.PASSED
+
+
+def test_a_misspelt_dependency_is_shown() -> None:
+    found = of("dependencies", xml("geometry_msgs", "geometry_msg"))
+    assert found.seen == "package.xml does not declare geometry_msgs."
+    assert found.cause == 'It has "geometry_msg": is that a typing error?'
+
+
+@pytest.mark.parametrize(
+    ("more", "seen"),
+    [
+        ((), "Left out: data: a link that leaves the package."),
+        (("x",), "Left out: data: a link that leaves the package (and 1 more)."),
+        (("x", "y"), "Left out: data: a link that leaves the package (and 2 more)."),
+    ],
+)
+def test_what_was_left_out_of_the_submission_is_told(more: tuple[str, ...], seen: str) -> None:
+    given = evidence(package=submission(rejected=("data: a link that leaves the package.", *more)))
+    found = finding("files", given)
+    assert (found.diagnosis, found.seen) == ("rejected-file", seen)
+
+
+@pytest.mark.parametrize(
+    ("files", "diagnosis", "where", "cause"),
+    [
+        (
+            {"package.xml": f"{PACKAGE_XML}<more/>"},
+            "xml-malformed",
+            "package.xml:15",
+            "After the last tag, </package>, nothing may follow.",
+        ),
+        (
+            xml("</depend>\n  <depend>turtle", "</depends>\n  <depend>turtle"),
+            "xml-malformed",
+            "package.xml:9",
+            "<depend> in line 9 is not closed by a tag of the same name with a slash.",
+        ),
+        (
+            xml("MIT", "M & T"),
+            "xml-malformed",
+            "package.xml:7",
+            "Each <tag> ends with a </tag> of the same name, the inner one before the outer one.",
+        ),
+        (
+            xml("<depend>rclpy</depend>", "<run_depend>rclpy</run_depend>"),
+            "package-xml-old-tag",
+            "package.xml:8",
+            "<run_depend> is of format 1, that of ROS 1; format 3 has <exec_depend>, and <depend> for all.",
+        ),
+    ],
+)
+def test_a_package_xml_that_cannot_be_read_is_explained(files: Files, diagnosis: str, where: str, cause: str) -> None:
+    found = of("package-xml", files)
+    assert (found.diagnosis, str(found.where), found.cause) == (diagnosis, where, cause)
+
+
+@pytest.mark.parametrize("files", [{"package.xml": None}, {"package.xml": "<package>"}])
+def test_without_a_package_xml_nothing_is_declared(files: Files) -> None:
+    found = of("dependencies", files)
+    assert (found.diagnosis, str(found.where)) == ("package-xml-invalid", "package.xml")
+
+
+@pytest.mark.parametrize(
+    ("files", "cause"),
+    [
+        (xml("my_robot_controller", "my-robot"), "A ROS 2 package's name has underscores, not dashes."),
+        (xml("my_robot_controller", "my_robot"), ""),
+        (setup_py('"my_robot_controller"', '"my-robot"'), "A ROS 2 package's name has underscores, not dashes."),
+        (
+            {INIT: None, NODE_FILE: None, "my_robot_control/x.py": "", "my_robot_controllers/a/b.py": "", "x.py": ""},
+            "There is a folder my_robot_control.",
+        ),
+        ({INIT: None, NODE_FILE: None, "quaff/x.py": ""}, ""),
+    ],
+)
+def test_another_name_is_explained(files: Files, cause: str) -> None:
+    found = of("package-name", files)
+    assert (found.status, found.cause) == (Status.FAILED, cause)
+
+
+def test_a_setup_py_that_says_no_name_contradicts_nobody() -> None:
+    for text in (None, "setup()\n", "setup(\n"):
+        assert of("package-name", {"setup.py": text}).status is Status.PASSED

@@ -1,0 +1,209 @@
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.path import CIRCLE, CircleParams, expected_centre
+from grader.tests.checks.made import NODE_FILE, Timed, every, evidence, finding, legs, node, recording
+from grader.tests.checks.made import found as found_by
+from grader.tests.checks.shapes import SHAPES
+from grader.trial.recording import Pose
+
+
+def circle(shape: str) -> Finding:
+    return finding("circle", evidence(SHAPES[shape]()))
+
+
+@pytest.mark.parametrize(
+    "shape", ["good", "good elsewhere", "late", "uneven", "one hertz", "four hertz", "more after Ctrl-C"]
+)
+def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
+    found = circle(shape)
+    assert (found.status, found.diagnosis) == (Status.PASSED, None)
+    assert found.seen == "The turtle drove a circle of radius 2.0 m, counter-clockwise, at least 1 turn."
+
+
+@pytest.mark.parametrize(
+    ("shape", "diagnosis", "seen"),
+    [
+        ("clockwise", "wrong-sense", "The turtle drove its circle clockwise."),
+        ("radius 2.2", "wrong-radius", "The circle's radius is 2.2 m."),
+        ("swapped", "wrong-radius", "The circle's radius is 0.5 m."),
+        ("three quarters", "stopped-early", "The turtle drove 0.72 of a turn; the last command came at 4.0 s."),
+        ("half speed", "too-short", "The turtle drove 0.76 of a turn."),
+        ("stops and goes", "stops-and-goes", "The turtle drove 0.64 of a turn, with 3 stops on the way."),
+        ("crash", "ended-early", "The turtle drove 0.72 of a turn."),
+        (
+            "square",
+            "polygon",
+            "The way is 5 straight sides with corners; it strays 0.13 m (RMS) from the nearest circle.",
+        ),
+        ("straight on", "straight-line", "The turtle drove straight on."),
+        ("turns on the spot", "turns-on-the-spot", "The turtle turned on the spot."),
+        ("all zero", "not-moving", "The turtle did not move."),
+        ("no messages", "not-moving", "The turtle did not move."),
+        ("wall", "wall", "The turtle ran into a wall after 1.7 s."),
+        ("straight into the wall", "wall", "The turtle ran into a wall after 3.3 s."),
+        ("spiral", "not-round", "The way is not round: it strays 0.28 m (RMS) from the nearest circle."),
+        ("beside its place", "wrong-centre", "The circle is right in size, but lies 0.78 m beside its place."),
+        ("nan", "not-a-number", "The turtle's position became NaN (not a number)."),
+        ("infinity", "not-a-number", "The turtle's position became NaN (not a number)."),
+        ("teleported", "intervention", "Something moved the turtle by other means: teleport_absolute."),
+    ],
+)
+def test_each_other_way_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:
+    found = circle(shape)
+    assert (found.status, found.diagnosis, found.seen) == (Status.FAILED, diagnosis, seen)
+    publishes = diagnosis in ("stopped-early", "stops-and-goes", "ended-early")
+    line = "" if diagnosis == "intervention" else ":16" if publishes else ":15"
+    assert str(found.where) == f"{NODE_FILE}{line}"
+
+
+@pytest.mark.parametrize(
+    ("way", "diagnosis"),
+    [
+        (legs((60, 0.6, 0.0), (15, 0.6, 2.0)), "straight-line"),
+        (legs((20, 0.6, 0.0), (55, 0.6, 0.6)), "not-round"),
+        (legs((30, 0.6, 0.0), (8, 0.0, 2.0), (30, 0.6, 0.0)), "polygon"),
+    ],
+)
+def test_a_way_with_straight_parts_is_told_by_their_number(way: list[Timed], diagnosis: str) -> None:
+    found = finding("circle", evidence(recording(way)))
+    assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:15")
+
+
+def test_a_way_that_is_not_round_is_explained_by_the_commands_or_by_the_end() -> None:
+    assert circle("spiral").cause == "The commands change on the way; a circle needs the same command all the time."
+    two = [(t_s, 1.0 + (t_s > 5.0), 1.0) for t_s, _, _ in every(0.5, 0.0, 0.0)]
+    assert finding("circle", evidence(recording(two))).cause == circle("spiral").cause
+    frames = SHAPES["spiral"]().frames
+    steady = replace(SHAPES["crash"](), frames=frames)
+    assert finding("circle", evidence(steady)).cause == f"The node crashed: ZeroDivisionError at {NODE_FILE}:14."
+
+
+def test_two_turns_may_be_asked_for() -> None:
+    short = found_by(CIRCLE, evidence(SHAPES["good"]()), radius_m=2.0, turns=2.0)
+    assert (short.diagnosis, short.seen) == ("too-short", "The turtle drove 1.51 of a turn.")
+    assert short.expected == "A circle of radius 2.0 m, counter-clockwise, at least 2 turns."
+
+
+def test_commands_that_differ_ask_for_no_size() -> None:
+    way = [(t_s, 5.0 + t_s, 1.0) for t_s, _, _ in every(0.5, 0.0, 0.0)]
+    found = finding("circle", evidence(recording(way)))
+    assert (found.diagnosis, found.cause) == ("wall", "")
+    unsteady = [(t_s, 1.0, 0.5 + 0.0001 * t_s) for t_s, _, _ in every(0.5, 0.0, 0.0)]
+    short = finding("circle", evidence(recording(unsteady)))
+    assert (short.diagnosis, short.cause) == ("too-short", "")
+
+
+def test_a_large_circle_is_one_and_a_huge_one_is_straight() -> None:
+    for radius_m, diagnosis in ((45.0, "wrong-radius"), (60.0, "straight-line")):
+        found = finding("circle", evidence(recording(every(0.5, 0.5, 0.5 / radius_m), start=Pose(1.0, 5.0, 0.0))))
+        assert found.diagnosis == diagnosis
+
+
+@pytest.mark.parametrize(
+    ("linear", "angular", "diagnosis"),
+    [
+        (0.006, 0.0, "straight-line"),
+        (0.004, 0.0, "not-moving"),
+        (0.0, 0.012, "turns-on-the-spot"),
+        (0.0, 0.009, "not-moving"),
+    ],
+)
+def test_how_little_is_nothing(linear: float, angular: float, diagnosis: str) -> None:
+    found = finding("circle", evidence(recording(every(0.5, linear, angular))))
+    assert found.diagnosis == diagnosis
+
+
+def test_zeros_in_one_field_are_not_all() -> None:
+    only_turning = [(0.5, 0.0, 0.005), (1.0, 0.0, 0.0)]
+    assert finding("circle", evidence(recording(only_turning))).cause == ""
+    only_driving = [(0.5, 0.002, 0.0), (1.0, 0.0, 0.0)]
+    assert finding("circle", evidence(recording(only_driving))).cause == ""
+
+
+def test_a_polygon_with_sides_nearly_as_short_as_steps_fails_too() -> None:
+    assert circle("many sides").diagnosis == "polygon"
+
+
+def test_the_reason_for_the_size_is_what_was_commanded() -> None:
+    found = circle("radius 2.2")
+    assert found.cause == "The radius is linear.x divided by angular.z: 2.2 / 1.0 = 2.2 m."
+    tight = finding("circle", evidence(recording(every(0.5, 1.0, 0.8))))
+    assert tight.cause == "The radius is linear.x divided by angular.z: 1.0 / 0.8 = 1.25 m."
+    assert circle("wall").cause == "The radius is linear.x divided by angular.z: 6.0 / 1.0 = 6.0 m."
+    assert circle("straight into the wall").cause == "angular.z is 0, so the turtle drives straight on."
+
+
+def test_the_reason_for_the_length_is_what_was_commanded_or_when_it_ended() -> None:
+    assert circle("half speed").cause == "At angular.z 0.5 rad/s a turn takes 12.6 s."
+    slow = recording(every(0.5, 1.0, 0.5, until_s=8.7))
+    assert finding("circle", evidence(slow)).diagnosis == "stopped-early"
+
+
+def test_a_turtle_that_crawls_does_move() -> None:
+    assert finding("circle", evidence(recording(every(0.5, 0.02, 0.0)))).diagnosis == "straight-line"
+
+
+def test_a_turtle_that_hardly_turns_stands_still_though_not_every_command_is_zero() -> None:
+    found = finding("circle", evidence(recording(every(0.5, 0.0, 0.001))))
+    assert (found.diagnosis, found.cause) == ("not-moving", "")
+    assert circle("all zero").cause == "In every command linear.x and angular.z are 0."
+
+
+def test_points_at_the_line_that_turns() -> None:
+    assert str(circle("clockwise").where) == "my_robot_controller/draw_circle.py:15"
+    keywords = node(("msg = Twist()", "msg = Twist(angular=Vector3(z=-1.0))"), ("        msg.angular.z = 1.0\n", ""))
+    found = finding("circle", evidence(SHAPES["clockwise"](), keywords))
+    assert str(found.where) == "my_robot_controller/draw_circle.py:13"
+
+
+@pytest.mark.parametrize(
+    ("linear", "near", "status"),
+    [
+        (2.0, False, "passed"),
+        (2.045, True, "passed"),
+        (2.055, True, "failed"),
+        (2.2, False, "failed"),
+        (1.955, True, "passed"),
+    ],
+)
+def test_a_radius_near_the_edge_is_for_wall_time_to_judge(linear: float, near: bool, status: str) -> None:
+    found = finding("circle", evidence(recording(every(0.5, linear, 1.0))))
+    assert (found.near_edge, found.status.value) == (near, status)
+
+
+@pytest.mark.parametrize(
+    ("until_s", "near", "status"), [(5.5, True, "failed"), (6.5, True, "passed"), (8.0, False, "passed")]
+)
+def test_a_way_that_is_just_long_enough_is_for_wall_time_to_judge(until_s: float, near: bool, status: str) -> None:
+    found = finding("circle", evidence(recording(every(0.5, 2.0, 1.0, until_s=until_s))))
+    assert (found.near_edge, found.status.value) == (near, status)
+
+
+def test_the_centre_lies_to_the_left_of_the_start_and_clockwise_to_the_right() -> None:
+    start = Pose(3.0, 4.0, math.pi / 2)
+    assert expected_centre(start, CircleParams(radius_m=2.0)) == pytest.approx((1.0, 4.0))
+    assert expected_centre(start, CircleParams(radius_m=2.0, sense="clockwise")) == pytest.approx((5.0, 4.0))
+
+
+def test_driving_backwards_round_the_same_centre_is_clockwise() -> None:
+    found = finding("circle", evidence(recording(every(0.5, -2.0, -1.0))))
+    assert found.diagnosis == "wrong-sense"
+
+
+def test_what_the_turtle_does_after_ctrl_c_does_not_count() -> None:
+    late = recording([*every(0.5, 2.0, 1.0), (9.9, 6.0, 0.0)], sigint_t_s=9.8)
+    assert finding("circle", evidence(late)).status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("shape", "status"),
+    [("good", "passed"), ("wall", "failed"), ("radius 2.2", "passed"), ("all zero", "skipped"), ("nan", "skipped")],
+)
+def test_the_walls(shape: str, status: str) -> None:
+    assert finding("wall", evidence(SHAPES[shape]())).status.value == status

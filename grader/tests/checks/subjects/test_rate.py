@@ -1,0 +1,337 @@
+from __future__ import annotations
+
+from itertools import accumulate
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.log import LOG_RATE
+from grader.checks.subjects.rate import RATE
+from grader.tests.checks.made import NODE_FILE, every, evidence, finding, node, recording
+from grader.tests.checks.made import found as found_by
+from grader.tests.checks.shapes import SHAPES
+from grader.trial.recording import LogLine
+
+TIMER = "self.create_timer(0.5, self.send)"
+
+
+def rate(shape: str, *changes: tuple[str, str]) -> Finding:
+    return finding("rate", evidence(SHAPES[shape](), node(*changes)))
+
+
+@pytest.mark.parametrize(
+    ("shape", "diagnosis", "seen"),
+    [
+        ("one hertz", "wrong-rate", "Commands arrived every 1.00 s (1.0 Hz)."),
+        ("four hertz", "wrong-rate", "Commands arrived every 0.25 s (4.0 Hz)."),
+        ("ten kilohertz", "wrong-rate", "98999 commands arrived, one every 0.10 ms."),
+        ("once", "published-once", "1 command arrived in 10 s."),
+        ("twice", "too-few-commands", "2 commands arrived in 10 s."),
+        ("late", "late-start", "The first command came 3.7 s after the start."),
+        ("three quarters", "stopped-early", "The last command came at 4.0 s, 6.0 s before the end."),
+        (
+            "crash",
+            "crash",
+            (
+                "The last command came at 4.0 s, 6.0 s before the end. "
+                "The node crashed after 4.5 s: ZeroDivisionError: division by zero."
+            ),
+        ),
+    ],
+)
+def test_each_wrong_rhythm_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:
+    found = rate(shape)
+    assert (found.status, found.diagnosis, found.seen) == (Status.FAILED, diagnosis, seen)
+    lines = {"wrong-rate": 10, "crash": 14}
+    assert str(found.where) == f"{NODE_FILE}:{lines.get(diagnosis, 16)}"
+
+
+def test_the_right_rate_is_told_as_the_nominal_one() -> None:
+    found = rate("good")
+    assert (found.status, found.seen) == (Status.PASSED, "Commands arrive every 0.50 s (2.0 Hz).")
+    assert not found.near_edge
+
+
+def test_an_uneven_rhythm_names_the_worst_interval() -> None:
+    found = rate("uneven")
+    assert found.diagnosis == "uneven-rate"
+    assert found.seen.startswith("Commands came unevenly: 0.71 s passed between two of them")
+
+
+def test_three_commands_are_a_rate() -> None:
+    three = finding("rate", evidence(recording(every(0.5, 2.0, 1.0, until_s=1.7))))
+    assert (three.diagnosis, three.seen) == (
+        "stopped-early",
+        "The last command came at 1.5 s, 8.5 s before the end.",
+    )
+
+
+def test_commands_that_all_come_at_once_have_no_rate() -> None:
+    found = finding("rate", evidence(recording([(0.5, 2.0, 1.0)] * 4)))
+    assert (found.status, found.seen) == (Status.FAILED, "4 commands arrived, one every 0.00 ms.")
+
+
+@pytest.mark.parametrize(
+    ("moved_s", "diagnosis"), [(0.14, None), (0.16, "uneven-rate"), (-0.09, None), (-0.11, "uneven-rate")]
+)
+def test_each_interval_has_limits_of_its_own(moved_s: float, diagnosis: str | None) -> None:
+    times = [0.5 * index + (moved_s if index >= 10 else 0.0) for index in range(1, 20)]
+    made = recording([(t_s, 2.0, 1.0) for t_s in times])
+    limits = {"rate_hz": 2.0, "min_interval_s": 0.4, "max_interval_s": 0.65}
+    found = found_by(RATE, evidence(made), **limits)
+    assert found.diagnosis == diagnosis
+    if diagnosis:
+        assert (
+            found.seen
+            == f"Commands came unevenly: {0.5 + moved_s:.2f} s passed between two of them, 4.5 s after the start."
+        )
+
+
+def test_the_interval_that_is_worst_either_way_is_shown() -> None:
+    times = [0.5, 1.0, 1.1, 1.6, 2.1, 2.9, *(3.4 + 0.5 * index for index in range(13))]
+    found = finding("rate", evidence(recording([(t_s, 2.0, 1.0) for t_s in times])))
+    assert (found.diagnosis, found.seen.split(":")[1].split(" s ")[0]) == ("uneven-rate", " 0.10")
+
+
+@pytest.mark.parametrize(
+    ("changes", "diagnosis", "line", "cause"),
+    [
+        ((), "uneven-rate", 16, ""),
+        (
+            (("        msg = Twist()", "        time.sleep(0.1); msg = Twist()"),),
+            "uneven-rate",
+            16,
+            "The method that calls publish sometimes takes longer than the period.",
+        ),
+        (
+            (("publish(msg)", "publish(msg); self.publisher.publish(msg)"),),
+            "uneven-rate",
+            16,
+            "More than one line calls publish, or more than one timer runs.",
+        ),
+        (
+            ((TIMER, f"{TIMER}; {TIMER}"),),
+            "uneven-rate",
+            16,
+            "More than one line calls publish, or more than one timer runs.",
+        ),
+        (
+            (("        msg = Twist()", f"        {TIMER}; msg = Twist()"),),
+            "timer-in-callback",
+            13,
+            "send makes one more timer",
+        ),
+    ],
+)
+def test_an_uneven_rhythm_is_explained_by_the_source(
+    changes: tuple[tuple[str, str], ...], diagnosis: str, line: int, cause: str
+) -> None:
+    found = rate("uneven", *changes)
+    assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:{line}")
+    assert found.cause.startswith(cause)
+    assert bool(found.cause) == bool(cause)
+
+
+@pytest.mark.parametrize(
+    ("first", "line", "cause"),
+    [
+        ("self.count = 0", 17, ""),
+        ("time.sleep(3)", 9, "The node sleeps before it begins."),
+        ("self.client.wait_for_service()", 17, "Something before it waits, such as wait_for_service."),
+    ],
+)
+def test_a_late_start_is_explained_by_the_source(first: str, line: int, cause: str) -> None:
+    found = rate("late", ('super().__init__("draw_circle")\n', f'super().__init__("draw_circle")\n        {first}\n'))
+    assert (found.diagnosis, str(found.where), found.cause) == ("late-start", f"{NODE_FILE}:{line}", cause)
+
+
+@pytest.mark.parametrize(
+    ("period", "diagnosis"),
+    [
+        ("1.0", "timer-period"),
+        ("1.08", "timer-period"),
+        ("0.92", "timer-period"),
+        ("1.2", "wrong-rate"),
+        ("0.8", "wrong-rate"),
+    ],
+)
+def test_a_timer_explains_a_rate_that_is_nearly_its_own(period: str, diagnosis: str) -> None:
+    found = rate("one hertz", (TIMER, f"self.create_timer({period}, self.send)"))
+    assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:10")
+
+
+@pytest.mark.parametrize(
+    ("length", "diagnosis"),
+    [("1.08", "sleep-period"), ("0.92", "sleep-period"), ("1.2", "wrong-rate"), ("LENGTH", "wrong-rate")],
+)
+def test_a_sleep_explains_a_rate_that_is_nearly_its_own(length: str, diagnosis: str) -> None:
+    found = rate("one hertz", (f"self.timer = {TIMER}", f"time.sleep({length})"))
+    assert (found.diagnosis, str(found.where)) == (
+        diagnosis,
+        f"{NODE_FILE}:{10 if diagnosis == 'sleep-period' else 16}",
+    )
+
+
+def test_a_sleep_of_which_nothing_is_known_explains_nothing() -> None:
+    found = rate("one hertz", ("        msg = Twist()", "        time.sleep(LENGTH); msg = Twist()"))
+    assert (found.diagnosis, str(found.where)) == ("wrong-rate", f"{NODE_FILE}:10")
+
+
+def test_several_timers_with_other_periods_are_told() -> None:
+    found = rate("four hertz", (TIMER, f"{TIMER}\n        self.other = {TIMER}"))
+    assert (found.diagnosis, str(found.where)) == ("several-timers", f"{NODE_FILE}:11")
+
+
+@pytest.mark.parametrize(
+    ("period_s", "diagnosis"), [(2.15, "rate-for-period"), (1.85, "rate-for-period"), (2.25, "timer-period")]
+)
+def test_the_rate_as_a_period_is_told_when_it_is_nearly_that(period_s: float, diagnosis: str) -> None:
+    made = recording(every(period_s, 2.0, 1.0))
+    found = finding("rate", evidence(made, node((TIMER, f"self.create_timer({period_s}, self.send)"))))
+    assert found.diagnosis == diagnosis
+
+
+def test_a_loop_without_a_pause_is_told_with_its_line() -> None:
+    loop = (f"self.timer = {TIMER}", "while True: self.publisher.publish(Twist())")
+    assert (rate("ten kilohertz", loop).diagnosis, str(rate("ten kilohertz", loop).where)) == (
+        "loop-without-pause",
+        f"{NODE_FILE}:10",
+    )
+    slow = recording([(index / 3.9, 2.0, 1.0) for index in range(1, 39)])
+    assert finding("rate", evidence(slow, node(loop))).diagnosis == "wrong-rate"
+    quick = recording([(index / 4.3, 2.0, 1.0) for index in range(1, 43)])
+    assert finding("rate", evidence(quick, node(loop))).diagnosis == "loop-without-pause"
+
+
+@pytest.mark.parametrize(
+    ("shape", "diagnosis", "seen"),
+    [
+        ("ends at once", "ends-at-once", "0 commands arrived in 10 s. The node ended by itself at its start."),
+        (
+            "crash at the start",
+            "crash",
+            "0 commands arrived in 10 s. The node crashed at its start: ZeroDivisionError: division by zero.",
+        ),
+    ],
+)
+def test_too_few_commands_are_explained_by_the_end(shape: str, diagnosis: str, seen: str) -> None:
+    found = rate(shape)
+    assert (found.diagnosis, found.seen) == (diagnosis, seen)
+
+
+def test_log_lines_have_names_of_their_own() -> None:
+    nothing = LogLine(1.0, "INFO", "draw_circle", "Hello 1")
+    limits = {"rate_hz": 1.0, "min_interval_s": 0.8, "max_interval_s": 1.2}
+    some = [evidence(recording([], log=(nothing,) * amount)) for amount in (1, 2)]
+    assert [found_by(LOG_RATE, given, format="Hello {counter}", **limits).diagnosis for given in some] == [
+        "logged-once",
+        "too-few-log-lines",
+    ]
+
+
+def test_a_timer_with_that_period_is_pointed_at() -> None:
+    found = rate("one hertz", (TIMER, "self.create_timer(1.0, self.send)"))
+    assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:10")
+
+
+def test_a_period_by_a_name_is_found() -> None:
+    found = rate(
+        "one hertz",
+        (TIMER, "self.create_timer(self.period, self.send)"),
+        ("def send", "period = 1 / 1\n\n    def send"),
+    )
+    assert found.diagnosis == "wrong-rate"
+    found = rate(
+        "one hertz", (f"self.timer = {TIMER}", f"period = 2 / 2\n        self.timer = {TIMER.replace('0.5', 'period')}")
+    )
+    assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:11")
+
+
+def test_the_rate_given_as_the_period_is_told() -> None:
+    found = rate("two seconds", (TIMER, "self.create_timer(2.0, self.send)"))
+    assert found.diagnosis == "rate-for-period"
+
+
+def test_a_sleep_in_the_timers_method_is_told() -> None:
+    found = rate("one hertz", ("        msg = Twist()", "        time.sleep(0.6)\n        msg = Twist()"))
+    assert (found.diagnosis, str(found.where)) == ("sleep-in-callback", f"{NODE_FILE}:13")
+
+
+def test_a_sleep_without_a_timer_is_told() -> None:
+    found = rate("one hertz", (f"self.timer = {TIMER}", "time.sleep(1.0)"))
+    assert (found.diagnosis, found.cause) == ("sleep-period", "Between two commands the node sleeps 1 s.")
+
+
+@pytest.mark.parametrize(
+    ("period_s", "near", "status"),
+    [
+        (0.5, False, "passed"),
+        (0.478, True, "passed"),
+        (0.472, True, "failed"),
+        (0.46, False, "failed"),
+        (0.54, False, "failed"),
+    ],
+)
+def test_a_mean_near_the_edge_is_for_wall_time_to_judge(period_s: float, near: bool, status: str) -> None:
+    found = finding("rate", evidence(recording(every(period_s, 2.0, 1.0))))
+    assert (found.near_edge, found.status.value) == (near, status)
+
+
+@given(st.lists(st.floats(0.42, 0.62), min_size=15, max_size=20))
+def test_the_mean_from_first_to_last_arrival_decides_where_each_interval_is_allowed(intervals: list[float]) -> None:
+    times = list(accumulate(intervals, initial=0.5))
+    made = recording([(t_s, 2.0, 1.0) for t_s in times], sigint_t_s=times[-1] + 0.5)
+    mean_hz = len(intervals) / (times[-1] - times[0])
+    found = finding("rate", evidence(made))
+    assert (found.status is Status.PASSED) == (1.9 <= mean_hz <= 2.1)
+
+
+@given(st.one_of(st.floats(0.05, 1.89), st.floats(2.11, 40.0)))
+def test_every_rate_outside_the_tolerance_fails(rate_hz: float) -> None:
+    times = [index / rate_hz for index in range(1, int(9.99 * rate_hz) + 1)]
+    found = finding("rate", evidence(recording([(t_s, 2.0, 1.0) for t_s in times])))
+    assert found.status is Status.FAILED
+
+
+def test_what_a_stall_of_the_machine_delayed_is_not_held_against_the_node() -> None:
+    times = [(0.5 * index + (0.18 if index == 9 else 0.0), 2.0, 1.0) for index in range(1, 20)]
+    attentive = recording(times, clock="wall")
+    stalled = recording(times, clock="wall", stalls=((4.4, 4.67),))
+    elsewhere = recording(times, clock="wall", stalls=((7.1, 7.4),))
+    assert finding("rate", evidence(attentive)).diagnosis == "uneven-rate"
+    assert finding("rate", evidence(stalled)).status is Status.PASSED
+    assert finding("rate", evidence(elsewhere)).diagnosis == "uneven-rate"
+
+
+def test_a_machine_that_stalls_all_the_time_judges_no_rate() -> None:
+    times = [(0.5 * index, 2.0, 1.0) for index in range(1, 20)]
+    found = finding("rate", evidence(recording(times, clock="wall", stalls=((0.0, 8.0),))))
+    assert found.status is Status.ERROR
+
+
+def test_half_of_the_intervals_are_enough_to_judge() -> None:
+    way = every(0.5, 2.0, 1.0, until_s=2.6)
+    found = finding("rate", evidence(recording(way, clock="wall", stalls=((0.95, 1.02),))))
+    assert found.diagnosis == "stopped-early"
+
+
+def test_a_command_after_ctrl_c_is_not_counted() -> None:
+    assert rate("more after Ctrl-C").status is Status.PASSED
+
+
+@pytest.mark.parametrize("arrives_s", [0.0, 0.1])
+def test_what_was_sent_before_the_clock_started_is_in_no_interval(arrives_s: float) -> None:
+    """It arrives when the two sides have found each other, which takes a while."""
+    late = [(arrives_s, 2.0, 1.0), *every(0.5, 2.0, 1.0, first_s=0.3)]
+    found = finding("rate", evidence(recording(late)))
+    assert (found.status, found.near_edge) == (Status.PASSED, False)
+
+
+def test_what_was_only_sent_before_the_two_sides_found_each_other_is_as_if_it_had_been_lost() -> None:
+    heard, lost = evidence(recording([(0.0, 2.0, 1.0)] * 3)), evidence(recording([]))
+    assert finding("topic", heard) == finding("topic", lost)
+    assert finding("topic", heard).diagnosis == "never-publishes"
+    assert heard.commands == ()
+    assert finding("topic", evidence(recording([(0.0, 2.0, 1.0), (0.5, 2.0, 1.0)]))).status is Status.PASSED

@@ -1,0 +1,149 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.square import SQUARE
+from grader.tests.checks.made import NODE_FILE, TICK_S, evidence, found, legs, recording, submission
+from grader.trial.recording import Pose
+
+TICKS = 10
+Leg = tuple[int, float, float]
+
+
+def side(length_m: float = 2.0) -> Leg:
+    return TICKS, length_m / (TICKS * TICK_S), 0.0
+
+
+def corner(degrees: float = 90.0) -> Leg:
+    return TICKS, 0.0, math.radians(degrees) / (TICKS * TICK_S)
+
+
+def round_(sides: tuple[float, ...] = (2.0,) * 4, corners: tuple[float, ...] = (90.0,) * 4) -> list[Leg]:
+    """Side, corner, side, ..."""
+    return [leg for length, turn in zip(sides, corners, strict=True) for leg in (side(length), corner(turn))]
+
+
+GAP = round_((2.1, 2.1, 1.9, 1.9), (96.0, 96.0, 96.0, 90.0))
+"""Each side and corner is right, and together they are not: it ends 0.62 m beside the start."""
+
+
+def square(parts: list[Leg], start: Pose | None = None, **values: str) -> Finding:
+    return found(SQUARE, evidence(recording(legs(*parts), start)), side_m=2.0, **values)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        round_(),
+        round_()[:-1],
+        [*round_()[1:], side()],  # begins with a corner
+        [leg for part in round_() for leg in (part, (3, 0.0, 0.0))],  # rests in between
+    ],
+)
+@pytest.mark.parametrize("start", [None, Pose(6.0, 5.0, 1.2)])
+def test_a_square_is_one(parts: list[Leg], start: Pose | None) -> None:
+    assert square(parts, start).seen == "The turtle drove a square of 2.0 m."
+
+
+@pytest.mark.parametrize(
+    ("parts", "diagnosis", "seen"),
+    [
+        (round_((2.0, 2.0, 2.3, 2.0)), "side-length", "The third side is 2.30 m long: 0.30 m too long."),
+        (round_((2.0, 1.5, 2.0, 2.0)), "side-length", "The second side is 1.50 m long: 0.50 m too short."),
+        (round_(corners=(90.0, 60.0, 90.0, 90.0)), "corner-angle", "The second corner turns by 60 degrees."),
+        (round_(corners=(90.0, 90.0, 60.0, 90.0)), "corner-angle", "The third corner turns by 60 degrees."),
+        (round_(corners=(90.0, 90.0, 98.0, 90.0)), "corner-angle", "The third corner turns by 98 degrees."),
+        (round_(corners=(105.0,) * 4), "corner-angle", "The first corner turns by 105 degrees."),
+        (round_(corners=(90.0, -90.0, 90.0, 90.0)), "corner-angle", "The second corner turns by -90 degrees."),
+        (round_(corners=(-90.0,) * 4), "wrong-sense", "The turtle turns to the wrong side at its corners."),
+        (round_()[:5], "too-few-sides", "The way has 3 sides."),
+        ([side()], "too-few-sides", "The way has 1 side."),
+        (
+            [leg for _ in range(4) for leg in (side(), (TICKS, 0.5, math.pi / 2 / (TICKS * TICK_S)))],
+            "curves",
+            "19 % of the way are curves.",
+        ),
+        ([(5, 0.0, 0.0)], "not-moving", "The turtle did not drive."),
+        (round_((7.5, 2.0, 2.0, 2.0)), "wall", "The turtle ran into a wall."),
+        (
+            GAP,
+            "square-gap",
+            "The fourth side ends 0.62 m beside the start.",
+        ),
+    ],
+)
+def test_each_other_way_is_told_with_its_side_or_corner_and_by_how_much(
+    parts: list[Leg], diagnosis: str, seen: str
+) -> None:
+    finding = square(parts, Pose(4.0, 4.0, 0.0))
+    assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
+    assert str(finding.where) == f"{NODE_FILE}:16"
+
+
+def test_a_corner_may_be_off_by_seven_degrees_and_a_square_small() -> None:
+    assert square(round_(corners=(90.0, 83.5, 90.0, 90.0))).status is Status.PASSED
+    small = recording(legs(*round_((0.8,) * 4)))
+    assert found(SQUARE, evidence(small), side_m=0.8).status is Status.PASSED
+
+
+def test_clockwise_is_right_where_the_exercise_allows_it() -> None:
+    left, right = round_(), round_(corners=(-90.0,) * 4)
+    assert square(right, sense="either").status is Status.PASSED
+    assert square(right, sense="clockwise").status is Status.PASSED
+    assert square(left, sense="clockwise").diagnosis == "wrong-sense"
+
+
+def test_a_way_that_was_driven_by_other_means_is_none() -> None:
+    moved = recording(legs(*round_()), interventions=("teleport_relative",))
+    assert found(SQUARE, evidence(moved), side_m=2.0).diagnosis == "intervention"
+
+
+@pytest.mark.parametrize(
+    ("length", "near", "status"),
+    [(2.0, False, "passed"), (2.13, True, "passed"), (2.17, True, "failed"), (2.5, False, "failed")],
+)
+def test_a_side_near_the_edge_is_for_wall_time_to_judge(length: float, near: bool, status: str) -> None:
+    finding = square(round_((2.0, length, 2.0, 2.0)))
+    assert (finding.near_edge, finding.status.value) == (near, status)
+
+
+@pytest.mark.parametrize(
+    ("parts", "off", "per_s"),
+    [
+        (round_((2.0, 2.0, 2.3, 2.0)), 0.15, 2.3 / (TICKS * TICK_S)),
+        (round_(corners=(90.0, 60.0, 90.0, 90.0)), 23.0, 90.0 / (TICKS * TICK_S)),
+        (GAP, 0.22, 4.0 * 2.1 / (TICKS * TICK_S)),
+    ],
+)
+def test_what_stalls_of_the_machine_may_have_done_is_not_judged(parts: list[Leg], off: float, per_s: float) -> None:
+    for share, status in ((1.02, Status.ERROR), (0.98, Status.FAILED)):
+        stalled = recording(legs(*parts), Pose(4.0, 4.0, 0.0), clock="wall", stalls=((1.0, 1.0 + share * off / per_s),))
+        assert found(SQUARE, evidence(stalled), side_m=2.0).status is status
+
+
+def too_soon(sides: tuple[float, ...], clock: str = "wall", publish: str = "publish(Twist())") -> str | None:
+    asks = submission({NODE_FILE: f"class Square:\n    def tick(self):\n        self.publisher.{publish}\n"})
+    seen = evidence(recording(legs(*round_(sides)), clock=clock), asks)
+    return found(SQUARE, seen, side_m=2.0).diagnosis
+
+
+def test_a_first_side_that_lacks_its_beginning_by_the_walls_clock_was_begun_before_anybody_listened() -> None:
+    assert too_soon((1.7, 2.0, 2.0, 2.0)) == "too-soon"
+    for others in ((2.3, 2.0, 2.0, 2.0), (1.7, 2.0, 2.0, 1.6), (2.0, 1.7, 2.0, 2.0)):
+        assert too_soon(others) == "side-length"
+    assert too_soon((1.7, 2.0, 2.0, 2.0), clock="simulated") == "side-length"
+    assert too_soon((1.7, 2.0, 2.0, 2.0), publish="get_subscription_count()") == "side-length"
+
+
+def test_the_corner_after_the_last_side_is_nobodys_business() -> None:
+    parts = [*round_()[:-1], corner(40.0), side(1.0), corner(), side(1.0)]
+    assert square(parts).status is Status.PASSED
+
+
+def test_curves_are_a_share_of_the_whole_way() -> None:
+    curve = (2, 2.0, 0.4)
+    few = [leg for _ in range(4) for leg in (side(1.9), curve, corner(90.0 - math.degrees(0.8 * TICK_S)))]
+    assert square(few, Pose(4.0, 4.0, 0.0)).diagnosis == "curves"

@@ -1,0 +1,207 @@
+"""The topic: who publishes and subscribes what, and what arrived."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Literal
+
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.topic import ONLY_TYPE, PUBLISHES, SUBSCRIBES
+from grader.tests.checks.made import DURATION_S, NODE_FILE, TOPIC, TWIST, evidence, found, node, recording
+from grader.tests.checks.shapes import TRACEBACK, crashed
+from grader.trial.recording import Endpoint, Graph, Message, Output, ProcessEnd, Recording
+
+TEXT = "std_msgs/msg/String"
+COLOR = "turtlesim/msg/Color"
+CRASHED = crashed(3.0)
+ENDED = ProcessEnd(by="itself", exit_code=0, t_s=3.0, stop_s=None)
+
+
+def seen(*ends: tuple[Literal["publisher", "subscription"], str, str], **changes: Any) -> Recording:  # noqa: ANN401
+    """A trial in which the node had these ends of topics (kind, topic, type)."""
+    endpoints = tuple(Endpoint(kind, "/draw_circle", topic, type_) for kind, topic, type_ in ends)
+    ours = Endpoint("subscription", "/turtlesim", TOPIC, TWIST)
+    graph = Graph(0.0, ("/turtlesim", "/draw_circle"), (ours, *endpoints))
+    return recording([], graphs=(graph,), **changes)
+
+
+def publishes(trial: Recording, *changes: tuple[str, str], topic: str = TOPIC, type_: str = TWIST) -> Finding:
+    return found(PUBLISHES, evidence(trial, node(*changes)), topic=topic, type=type_)
+
+
+def told(finding: Finding) -> tuple[str | None, str | None]:
+    return finding.diagnosis, None if finding.where is None else str(finding.where).removeprefix(NODE_FILE)
+
+
+@pytest.mark.parametrize(
+    ("topic", "type_", "t_s", "status"),
+    [
+        ("/chatter", TEXT, 3.0, Status.PASSED),
+        ("/chatter", COLOR, 3.0, Status.FAILED),
+        ("/other", TEXT, 3.0, Status.FAILED),
+        ("/chatter", TEXT, DURATION_S, Status.FAILED),
+    ],
+)
+def test_on_any_topic_a_message_of_the_type_before_ctrl_c_is_enough(
+    topic: str, type_: str, t_s: float, status: Status
+) -> None:
+    trial = recording([], messages=(Message(topic, type_, b"", t_s, t_s),))
+    assert publishes(trial, topic="/chatter", type_=TEXT).status is status
+
+
+def test_on_the_turtles_topic_what_the_simulator_saw_counts() -> None:
+    forged = (Message(TOPIC, TWIST, b"", 3.0, 3.0),)
+    assert publishes(recording([], messages=forged)).status is Status.FAILED
+    assert publishes(recording([(3.0, 2.0, 1.0)], messages=())).status is Status.PASSED
+    other = (Message(TOPIC, TEXT, b"", 3.0, 3.0),)
+    assert publishes(recording([], messages=other), type_=TEXT).status is Status.PASSED
+    assert publishes(recording([], messages=forged), topic="/chatter", type_=TWIST).status is Status.FAILED
+
+
+@pytest.mark.parametrize(
+    ("topic", "diagnosis"),
+    [
+        ("/cmd_vel", "topic-without-turtle"),
+        ("/turtle1/CMD_vel", "topic-capitals"),
+        ("/robot/turtle1/cmd_vel", "topic-namespace"),
+        ("/turtle2/cmd_vel", "topic-other-turtle"),
+        ("/a_node_of_quite_another_kind/cmd_vel", "wrong-topic"),
+        ("/a/turtle2/cmd_vel", "wrong-topic"),
+        ("/turtle1/cmd_val", "wrong-topic"),
+    ],
+)
+def test_another_topic_is_explained_by_the_two_names(topic: str, diagnosis: str) -> None:
+    finding = publishes(seen(("publisher", topic, TWIST)))
+    assert told(finding) == (diagnosis, ":9")
+    assert finding.seen == f"The node publishes on {topic}, where no turtle listens."
+
+
+def test_of_several_topics_those_of_the_type_and_the_nearest_are_named() -> None:
+    both = seen(("publisher", "/turtle1/cmd_vol", TEXT), ("publisher", "/quaff", TWIST))
+    assert publishes(both).seen == "The node publishes on /quaff, where no turtle listens."
+    near = seen(("publisher", "/a", TWIST), ("publisher", "/turtle1/cmd_val", TWIST))
+    assert publishes(near).seen == "The node publishes on /turtle1/cmd_val, where no turtle listens."
+    far = seen(("publisher", "/quaff", TWIST), ("publisher", "/a", TWIST))
+    assert publishes(far).seen == "The node publishes on /a and /quaff, where no turtle listens."
+    other = seen(("publisher", "/a", TEXT), ("publisher", "/quaff", COLOR))
+    assert publishes(other).seen == "The node publishes on /a and /quaff, where no turtle listens."
+
+
+@pytest.mark.parametrize(
+    ("first", "line"),
+    [
+        ('self.create_publisher(String, "chatter", 10)', ":10"),
+        ('self.create_publisher(String, "/turtle1/cmd_vel/", 10)', ":9"),
+        ("self.create_publisher(String, NAME, 10)", ":10"),
+        ("self.create_publisher(String, 3, 10)", ":10"),
+    ],
+)
+def test_the_line_is_that_of_the_publisher_of_this_topic(first: str, line: str) -> None:
+    trial = seen(("publisher", TOPIC, TEXT))
+    finding = publishes(trial, ("        self.publisher =", f"        self.other = {first}\n        self.publisher ="))
+    assert told(finding) == ("wrong-type", line)
+
+
+def test_a_publisher_whose_topic_is_not_known_is_better_than_none() -> None:
+    trial = seen(("publisher", TOPIC, TEXT))
+    assert told(publishes(trial, ('"/turtle1/cmd_vel"', "NAME"))) == ("wrong-type", ":9")
+    assert told(publishes(trial, ("create_publisher", "make"))) == ("wrong-type", "")
+
+
+@pytest.mark.parametrize(
+    ("end", "stderr", "changes", "diagnosis", "line", "words"),
+    [
+        (CRASHED, TRACEBACK, (), "crash", ":14", "The node crashed after 3.0 s: ZeroDivisionError"),
+        (ENDED, "", (), "no-publisher", ":9", "The node ended by itself after 3.0 s."),
+        (None, "", (), "no-publisher", ":9", "The node has no publisher."),
+        (None, "", (("create_publisher", "make"),), "no-publisher", "", "The node has no publisher."),
+        (None, "", (("create_timer(0.5", "create_timer(500"),), "timer-milliseconds", ":10", "The node has no"),
+        (
+            None,
+            "",
+            (("create_publisher", "make"), ("create_timer(0.5", "create_timer(500")),
+            "no-publisher",
+            "",
+            "The node has no publisher.",
+        ),
+    ],
+)
+def test_a_node_without_a_publisher_is_explained(
+    end: ProcessEnd | None, stderr: str, changes: tuple[tuple[str, str], ...], diagnosis: str, line: str, words: str
+) -> None:
+    more = {"end": end} if end is not None else {}
+    finding = publishes(seen(stderr=Output(stderr), **more), *changes)
+    assert told(finding) == (diagnosis, line)
+    assert finding.seen.startswith(words)
+    if diagnosis == "no-publisher":
+        assert finding.cause == ("create_publisher is called nowhere." if changes else "")
+
+
+@pytest.mark.parametrize(
+    ("end", "stderr", "changes", "diagnosis", "line"),
+    [
+        (CRASHED, TRACEBACK, (), "crash", ":14"),
+        (ENDED, "", (), "ended-early", ":21"),
+        (ENDED, "", (("rclpy.spin(", "print("),), "no-spin", ":20"),
+        (None, "", (("self.publisher.publish(msg)", "pass"),), "no-publish", ""),
+        (None, "incompatible QoS", (), "qos-mismatch", ":9"),
+        (None, "", (("rclpy.spin(", "print("),), "no-spin", ""),
+        (None, "", (), "never-publishes", ":16"),
+    ],
+)
+def test_a_silent_publisher_is_explained(
+    end: ProcessEnd | None, stderr: str, changes: tuple[tuple[str, str], ...], diagnosis: str, line: str
+) -> None:
+    more = {"end": end} if end is not None else {}
+    finding = publishes(seen(("publisher", TOPIC, TWIST), stderr=Output(stderr), **more), *changes)
+    assert told(finding) == (diagnosis, line)
+    if end is None:
+        assert finding.seen == f"The publisher on {TOPIC} is there, but after the start no message came."
+    elif diagnosis != "crash":
+        assert finding.seen.endswith("no message came. The node ended by itself after 3.0 s.")
+
+
+def test_a_second_type_is_told_whoever_shows_it() -> None:
+    by_graph = seen(("publisher", TOPIC, TWIST), ("publisher", TOPIC, TEXT), ("publisher", "/other", COLOR))
+    messages = tuple(Message(topic, type_, b"", 3.0, 3.0) for topic, type_ in ((TOPIC, TEXT), ("/other", COLOR)))
+    by_message = replace(seen(("publisher", TOPIC, TWIST)), messages=messages)
+    for trial in (by_graph, by_message):
+        finding = found(ONLY_TYPE, evidence(trial), topic=TOPIC, type=TWIST)
+        assert told(finding) == ("second-type", ":9")
+        assert finding.seen == f"{TOPIC} also gets messages of the type {TEXT}."
+    one = seen(("publisher", TOPIC, TWIST), ("publisher", "/other", COLOR))
+    assert found(ONLY_TYPE, evidence(one), topic=TOPIC, type=TWIST).status is Status.PASSED
+
+
+POSE = "/turtle1/pose"
+
+
+@pytest.mark.parametrize(
+    ("trial", "diagnosis", "line", "words"),
+    [
+        (seen(("subscription", POSE, TEXT)), None, None, "The node subscribes"),
+        (seen(("subscription", "/a", TEXT), ("subscription", POSE, TEXT)), None, None, "The node subscribes"),
+        (
+            seen(("subscription", POSE, COLOR)),
+            "wrong-type",
+            ":10",
+            f"The node subscribes to {POSE} with the type {COLOR},",
+        ),
+        (seen(("subscription", "/a", TEXT)), "wrong-topic", ":10", "The node subscribes to /a."),
+        (seen(), "no-subscription", ":10", "The node has no subscription."),
+        (seen(end=CRASHED, stderr=Output(TRACEBACK)), "crash", ":14", "The node crashed after 3.0 s:"),
+    ],
+)
+def test_a_subscription_is_looked_for(trial: Recording, diagnosis: str | None, line: str | None, words: str) -> None:
+    package = node(
+        ("self.timer = self.create_timer(0.5, self.send)", "self.create_subscription(Pose, NAME, self.send, 10)")
+    )
+    finding = found(SUBSCRIBES, evidence(trial, package), topic=POSE, type=TEXT)
+    assert told(finding) == (diagnosis, line)
+    assert finding.seen.startswith(words)
+    if diagnosis == "no-subscription":
+        assert finding.cause == ""
+        nowhere = found(SUBSCRIBES, evidence(trial), topic=POSE, type=TEXT)
+        assert (told(nowhere), nowhere.cause) == ((diagnosis, ""), "create_subscription is called nowhere.")

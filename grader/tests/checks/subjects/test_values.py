@@ -1,0 +1,130 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.checks.subjects.values import VALUES
+from grader.tests.checks.made import NODE_FILE, every, evidence, finding, recording
+from grader.tests.checks.made import found as found_by
+from grader.tests.checks.shapes import SHAPES, fields
+
+
+def values(shape: str) -> Finding:
+    return finding("values", evidence(SHAPES[shape]()))
+
+
+def test_the_right_values_pass_and_what_comes_after_ctrl_c_does_not_count() -> None:
+    assert values("good").seen == "Every command says linear.x 2.0 m/s and angular.z 1.0 rad/s, all other fields 0."
+    assert values("more after Ctrl-C").status is Status.PASSED
+
+
+@pytest.mark.parametrize(
+    ("shape", "diagnosis", "seen", "line"),
+    [
+        ("radius 2.2", "wrong-value", "All 19 commands were wrong: linear.x 2.2 m/s.", 14),
+        ("clockwise", "wrong-sign", "All 19 commands were wrong: angular.z -1.0 rad/s.", 15),
+        ("degrees", "degrees", "All 19 commands were wrong: angular.z 57.3 rad/s.", 15),
+        ("swapped", "values-swapped", "All 19 commands were wrong: linear.x 1.0 m/s and angular.z 2.0 rad/s.", 14),
+        ("angular.x", "wrong-field", "All 19 commands were wrong: angular.x 1.0 rad/s and angular.z 0.0 rad/s.", 13),
+        ("linear.y", "wrong-field", "All 19 commands were wrong: linear.x 0.0 m/s and linear.y 2.0 m/s.", 13),
+        ("all zero", "empty-twist", "All 19 commands were wrong: linear.x 0.0 m/s and angular.z 0.0 rad/s.", 14),
+        ("nan", "not-a-number", "All 19 commands were wrong: linear.x NaN (not a number) m/s.", 14),
+        ("infinity", "not-a-number", "All 19 commands were wrong: angular.z infinity rad/s.", 15),
+        ("one wrong", "values-change", "1 of 19 commands was wrong: angular.z 1.001 rad/s.", 15),
+        ("spiral", "wrong-value", "All 19 commands were wrong: linear.x 1.05 m/s in the first of them.", 14),
+    ],
+)
+def test_each_wrong_value_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str, line: int) -> None:
+    found = values(shape)
+    assert (found.status, found.diagnosis, found.seen) == (Status.FAILED, diagnosis, seen)
+    assert str(found.where) == f"{NODE_FILE}:{line}"
+
+
+def test_where_nothing_arrives_no_value_is_called_wrong() -> None:
+    found = values("no messages")
+    assert (found.diagnosis, found.seen) == ("no-commands", "No command arrived.")
+    assert found.expected == "linear.x 2.0 m/s and angular.z 1.0 rad/s, all other fields 0."
+
+
+@pytest.mark.parametrize(
+    ("linear", "angular", "diagnosis", "line"),
+    [
+        ((2.0, 0.0, 0.0), (0.0, 0.0, 0.0), "wrong-value", 15),
+        ((2.0, 0.0, 0.0), (0.0, 1.0, 0.0), "wrong-field", 13),
+        ((2.0, 0.0, 3.0), (0.0, 0.0, 1.0), "wrong-value", 13),
+        ((3.0, 2.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
+        ((0.0, 3.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
+        ((-2.0, 0.0, 0.0), (0.0, 0.0, 1.0), "wrong-sign", 14),
+        ((2.0, 0.0, 0.0), (0.0, 0.0, math.radians(1.0)), "degrees", 15),
+        ((math.degrees(2.0), 0.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
+        ((2.0, 0.0, 0.0), (math.inf, 0.0, -1.0), "not-a-number", 13),
+        ((1.0, 0.0, 0.0), (0.0, 0.0, 2.01), "wrong-value", 14),
+        ((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
+        ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
+        ((1.0, 2.0, 0.0), (0.0, 0.0, 1.0), "wrong-value", 14),
+    ],
+)
+def test_a_command_tells_which_mistake_it_is(
+    linear: tuple[float, float, float], angular: tuple[float, float, float], diagnosis: str, line: int
+) -> None:
+    found = finding("values", evidence(fields(linear, angular)))
+    assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:{line}")
+
+
+def test_where_turning_is_as_fast_as_driving_nothing_can_be_swapped() -> None:
+    given = evidence(recording(every(0.5, 1.0, 1.0)))
+    assert found_by(VALUES, given, linear_x_m_s=1.0, angular_z_rad_s=1.0).status is Status.PASSED
+    aside = evidence(fields((1.0, 3.0, 0.0), (0.0, 0.0, 1.0)))
+    assert found_by(VALUES, aside, linear_x_m_s=1.0, angular_z_rad_s=1.0).diagnosis == "wrong-value"
+    other = evidence(recording(every(0.5, 1.0, 0.5)))
+    assert found_by(VALUES, other, linear_x_m_s=1.0, angular_z_rad_s=1.0).diagnosis == "wrong-value"
+
+
+def test_a_turtle_that_should_stand_still_and_drives_is_wrong() -> None:
+    still = found_by(VALUES, evidence(recording(every(0.5, 0.0, 0.0))))
+    assert (still.status, still.seen) == (Status.PASSED, "Every command says All fields 0.")
+    moving = found_by(VALUES, evidence(recording(every(0.5, 1.0, 0.0))))
+    assert (moving.diagnosis, moving.expected) == ("wrong-value", "All fields 0.")
+
+
+def test_a_field_in_the_wrong_place_is_told_with_what_it_does() -> None:
+    assert values("linear.y").cause.endswith("the turtle drives along linear.x only.")
+    assert values("angular.x").cause.endswith("on a plane a robot turns about the axis that points up.")
+
+
+def test_some_wrong_commands_of_a_known_kind_keep_their_name() -> None:
+    some = [*every(0.5, 2.0, 1.0)[:-1], (9.504, 2.0, -1.0)]
+    found = finding("values", evidence(recording(some)))
+    assert (found.diagnosis, found.seen) == ("wrong-sign", "1 of 19 commands was wrong: angular.z -1.0 rad/s.")
+    two = [*every(0.5, 2.0, 1.0)[:-2], (9.0, 2.0, 1.5), (9.504, 2.0, 1.25)]
+    found = finding("values", evidence(recording(two)))
+    assert (found.diagnosis, found.seen) == (
+        "values-change",
+        "2 of 19 commands were wrong: angular.z 1.5 rad/s in the first of them.",
+    )
+
+
+@pytest.mark.parametrize("field", range(6))
+@pytest.mark.parametrize("wrong", [math.nan, math.inf, -math.inf, 2e-6, -2e-6])
+def test_every_field_counts(field: int, wrong: float) -> None:
+    six = [2.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+    six[field] += wrong
+    found = finding("values", evidence(fields((six[0], six[1], six[2]), (six[3], six[4], six[5]))))
+    assert found.status is Status.FAILED
+    assert ("linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z")[field] in found.seen
+
+
+def test_rounding_never_hides_the_difference() -> None:
+    found = finding("values", evidence(recording(every(0.5, 2.00001, 1.0))))
+    assert "linear.x 2.00001 m/s" in found.seen
+
+
+@pytest.mark.parametrize(
+    ("off", "near", "status"),
+    [(0.0, False, "passed"), (0.9e-6, True, "passed"), (1.1e-6, True, "failed"), (1.3e-6, False, "failed")],
+)
+def test_near_the_edge(off: float, near: bool, status: str) -> None:
+    found = finding("values", evidence(recording(every(0.5, 2.0 + off, 1.0))))
+    assert (found.near_edge, found.status.value) == (near, status)

@@ -1,0 +1,239 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from grader.errors import UsageError
+from grader.exercise.model import Exercise, catalogue, course_folder, exercise_of_folder, find_exercise, load_exercise
+
+GOOD = """\
+schema = 1
+
+[exercise]
+id = "99-test"
+title = "A test"
+package = "my_package"
+executable = "my_node"
+node = "my_node"
+
+[scenario]
+duration_s = 5
+
+[[check]]
+id = "rate"
+kind = "rate"
+points = 10
+rate_hz = 2
+min_interval_s = 0.4
+max_interval_s = 0.65
+
+[[check]]
+id = "values"
+kind = "values"
+title = "The values"
+points = 5
+needs = ["rate"]
+hidden = true
+linear_x_m_s = 2.0
+
+[[hint]]
+text = "Think."
+"""
+
+
+def load(folder: Path, text: str | bytes) -> Exercise:
+    file = folder / "exercise.toml"
+    file.write_bytes(text.encode() if isinstance(text, str) else text)
+    return load_exercise(file)
+
+
+def problems(folder: Path, text: str | bytes) -> list[str]:
+    with pytest.raises(UsageError) as raised:
+        load(folder, text)
+    prefix = f"{folder / 'exercise.toml'}: "
+    lines = str(raised.value).splitlines()
+    assert all(line.startswith(prefix) for line in lines)
+    return [line.removeprefix(prefix) for line in lines]
+
+
+def test_what_stands_in_the_file_is_what_the_exercise_says(tmp_path: Path) -> None:
+    exercise = load(tmp_path, GOOD)
+    assert (exercise.id, exercise.package, exercise.executable, exercise.node) == (
+        "99-test",
+        "my_package",
+        "my_node",
+        "my_node",
+    )
+    assert exercise.scenario.duration_s == 5.0
+    assert exercise.hints == ("Think.",)
+    assert exercise.folder == tmp_path
+    rate, values = exercise.checks
+    assert (values.title, values.points, values.needs, values.hidden) == ("The values", 5.0, ("rate",), True)
+    assert (rate.title, rate.needs, rate.hidden) == ("Commands arrive at the right rate", (), False)
+
+
+def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path) -> None:
+    rate, values = load(tmp_path, GOOD).checks
+    assert rate.params["tolerance_percent"] == 5.0
+    assert values.params["angular_z_rad_s"] == 0.0
+    assert values.params["linear_x_m_s"] == 2.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("schema = 1", "schema = 2", '"schema" is 2; it must be 1, the version of this format.'),
+        ("schema = 1", "", 'the key "schema" is missing; it must be 1, the version of this format.'),
+        (
+            'id = "99-test"',
+            'id = "99 Test"',
+            '[exercise]: "id" is "99 Test"; it must be small letters, digits and single dashes, as in 03-circle-publisher.',  # noqa: E501
+        ),
+        ('title = "A test"\n', "", '[exercise]: the key "title" is missing; it must be a text.'),
+        (
+            'title = "A test"',
+            'titel = "A test"',
+            '[exercise]: unknown key "titel". Did you mean "title"? Allowed: id, title, package, executable, node',
+        ),
+        (
+            'package = "my_package"',
+            'package = "my-package"',
+            '[exercise]: "package" is "my-package"; it must be letters, digits and _, beginning with a letter.',
+        ),
+        ("duration_s = 5", "duration_s = -5", '[scenario]: "duration_s" is -5; it must be from 0.1 to 600 (s).'),
+        ("duration_s = 5", "duration_s = nan", '[scenario]: "duration_s" is nan; it must be from 0.1 to 600 (s).'),
+        ("duration_s = 5", "duration_s = true", '[scenario]: "duration_s" is true; it must be from 0.1 to 600 (s).'),
+        ("[scenario]", "[scenery]", 'the key "scenario" is missing; it must be a table [scenario].'),
+        ('kind = "rate"', 'kind = "rates"', '[[check]] 1 (rate): unknown kind "rates". Did you mean "rate"?'),
+        ("points = 10", 'points = "10"', '[[check]] 1 (rate): "points" is "10"; it must be a number from 0 to 1000.'),
+        (
+            "rate_hz = 2",
+            "rate_hz = 0",
+            '[[check]] 1 (rate): "rate_hz" is 0; it must be a number above 0 and at most 1000.',
+        ),
+        (
+            "rate_hz = 2",
+            "rate_hz = inf",
+            '[[check]] 1 (rate): "rate_hz" is inf; it must be a number above 0 and at most 1000.',
+        ),
+        (
+            "rate_hz = 2",
+            "",
+            '[[check]] 1 (rate): the key "rate_hz" is missing; the kind "rate" needs it: a number above 0 and at most 1000.',  # noqa: E501
+        ),
+        (
+            "rate_hz = 2",
+            "rate_hz = 2\nrate_khz = 1",
+            '[[check]] 1 (rate): unknown key "rate_khz". Did you mean "rate_hz"?',
+        ),
+        (
+            'needs = ["rate"]',
+            'needs = ["rat"]',
+            '[[check]] 2 (values): "needs" names "rat", which is no check. Did you mean "rate"? Allowed: rate, values.',
+        ),
+        ('needs = ["rate"]', 'needs = "rate"', '[[check]] 2 (values): "needs" is "rate"; it must be a list of texts.'),
+        ('needs = ["rate"]', 'needs = ["values"]', '"needs" goes in a circle: values -> values. Take one of them out.'),
+        (
+            'id = "values"',
+            'id = "rate"',
+            '[[check]] 1 (rate): the id "rate" is used 2 times; each check needs one of its own.',
+        ),
+        ("hidden = true", 'hidden = "yes"', '[[check]] 2 (values): "hidden" is "yes"; it must be true or false.'),
+        ('text = "Think."', 'text = " "', '[[hint]] 1: "text" is " "; it must be a text.'),
+        ('text = "Think."', 'text = "Think."\nfor = "rate"', '[[hint]] 1: unknown key "for". Allowed: text.'),
+        ("[[hint]]", "[hint]", '"hint" is a table; it must be tables [[hint]].'),
+    ],
+)
+def test_each_mistake_of_an_author_is_named(tmp_path: Path, old: str, new: str, expected: str) -> None:
+    assert old in GOOD
+    told = problems(tmp_path, GOOD.replace(old, new, 1))
+    assert [line for line in told if line.startswith(expected)], told
+
+
+def test_a_circle_of_needs_is_shown(tmp_path: Path) -> None:
+    told = problems(tmp_path, GOOD.replace('kind = "rate"', 'kind = "rate"\nneeds = ["values"]'))
+    assert told == ['"needs" goes in a circle: rate -> values -> rate. Take one of them out.']
+
+
+def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
+    text = (
+        GOOD.replace("rate_hz = 2", "rate_hz = 0").replace("duration_s = 5", "").replace('node = "my_node"', "node = 3")
+    )
+    assert len(problems(tmp_path, text)) == 3
+
+
+def test_advice_is_worth_nothing(tmp_path: Path) -> None:
+    text = GOOD + '\n[[check]]\nid = "timer"\nkind = "uses_timer"\npoints = 1\n'
+    assert problems(tmp_path, text) == [
+        '[[check]] 3 (timer): "points" is 1; the kind "uses_timer" is advice, which is worth 0.'
+    ]
+
+
+def test_an_exercise_without_checks_is_a_mistake(tmp_path: Path) -> None:
+    told = problems(tmp_path, GOOD[: GOOD.index("[[check]]")])
+    assert told == ["there is no [[check]], so nothing would be judged."]
+
+
+@pytest.mark.parametrize("data", [b"schema = ", b"\xff\xfe", b'schema = 1\n[exercise]\nid = "a"\nid = "b"'])
+def test_what_is_not_toml_is_told(tmp_path: Path, data: bytes) -> None:
+    (told,) = problems(tmp_path, data)
+    assert told.startswith("not TOML: ")
+
+
+def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="cannot be read"):
+        load_exercise(tmp_path)
+
+
+def test_the_digest_changes_with_the_file(tmp_path: Path) -> None:
+    before = load(tmp_path, GOOD).digest
+    assert load(tmp_path, GOOD).digest == before
+    assert load(tmp_path, GOOD.replace("rate_hz = 2", "rate_hz = 3")).digest != before
+
+
+def test_every_exercise_of_the_course_is_valid_and_named_as_its_folder() -> None:
+    files = catalogue()
+    assert "03-circle-publisher" in files
+    for id_, file in files.items():
+        exercise = load_exercise(file)
+        assert exercise.id == id_
+        assert sum(check.points for check in exercise.checks) == 100
+
+
+def test_an_exercise_is_found_by_its_id_or_its_beginning() -> None:
+    assert find_exercise("03-circle-publisher") == find_exercise("03")
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [
+        ("03-circle-publsher", "did you mean 03-circle-publisher?"),
+        ("99", "there is no exercise '99'"),
+        ("", "there is no exercise ''"),
+    ],
+)
+def test_an_unknown_exercise_names_those_that_there_are(name: str, hint: str) -> None:
+    with pytest.raises(UsageError) as raised:
+        find_exercise(name)
+    assert hint in str(raised.value)
+    assert "03-circle-publisher" in str(raised.value)
+
+
+def test_several_exercises_that_begin_alike_are_named(tmp_path: Path) -> None:
+    for name in ("03-a", "03-b"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "exercise.toml").write_text(GOOD)
+    with pytest.raises(UsageError, match=r"several exercises begin with '03'.*03-a and 03-b"):
+        find_exercise("03", tmp_path)
+
+
+def test_the_exercise_follows_from_a_folder_below_solutions_and_exercises() -> None:
+    root = course_folder().parent
+    inside = root / "solutions" / "03-circle-publisher" / "my_robot_controller"
+    found = exercise_of_folder(inside)
+    assert found is not None
+    assert found.id == "03-circle-publisher"
+    assert exercise_of_folder(root / "exercises" / "03-circle-publisher") == found
+    assert exercise_of_folder(root / "grader") is None
+    assert exercise_of_folder(Path("/tmp/03-circle-publisher")) is None

@@ -1,0 +1,41 @@
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.exercise.own_numbers import RADII_M, RATES_HZ, SENSES, draw_numbers, from_toml, to_toml
+
+
+def test_the_same_student_gets_the_same_numbers() -> None:
+    assert draw_numbers("ada") == draw_numbers("ada")
+
+
+def test_students_get_different_numbers() -> None:
+    drawn = [draw_numbers(f"student {number}") for number in range(200)]
+    assert {each.radius_m for each in drawn} == set(RADII_M)
+    assert {each.rate_hz for each in drawn} == set(RATES_HZ)
+    assert {each.sense for each in drawn} == set(SENSES)
+
+
+@given(st.text())
+def test_any_id_survives_the_file(student: str) -> None:
+    try:
+        student.encode()
+    except UnicodeEncodeError:
+        return  # (no file can hold it, nor can a terminal give it)
+    numbers = draw_numbers(student)
+    assert from_toml(to_toml(numbers).encode()) == numbers
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("radius_m = ", "cannot be read"),
+        ("radius_m = 1.0", "student or sense"),
+        ('student = "a"\nsense = "b"', "radius_m"),
+    ],
+)
+def test_a_broken_file_says_what_is_wrong(text: str, why: str) -> None:
+    with pytest.raises(ValueError, match=why):
+        from_toml(text.encode())

@@ -1,0 +1,132 @@
+"""An instructor's private checks: laid over the course's, and hidden from students."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.errors import UsageError
+from grader.exercise.model import catalogue, load_exercise
+from grader.exercise.private_checks import Sources, sources_of
+from grader.sandbox import bubblewrap
+from grader.tests.case import copy_solution
+from grader.tests.classroom.a_class import STEP, grade, reports, rows
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from grader.exercise.model import Exercise
+
+PUBLIC = catalogue()[STEP]
+SECRET = "The circle is driven exactly twice"
+PRIVATE = f"""
+schema = 1
+
+[scenario]
+duration_s = 9.5
+
+[[check]]
+id = "rate"
+points = 30
+rate_hz = 3.0
+
+[[check]]
+id = "secret-radius"
+kind = "circle"
+title = "{SECRET}"
+points = 7
+needs = ["topic"]
+radius_m = 3.217
+turns = 1.0
+
+[[check]]
+id = "open"
+kind = "builds"
+title = "It builds, seen by all"
+points = 1
+hidden = false
+"""
+
+
+def merged(private: str) -> Exercise:
+    return Sources(STEP, PUBLIC.read_bytes(), private.encode(), "mine/exercise.toml").exercise(PUBLIC.parent)
+
+
+def test_the_same_id_replaces_and_a_new_one_is_added() -> None:
+    public, both = load_exercise(PUBLIC), merged(PRIVATE)
+    before = {check.id: check for check in public.checks}
+    after = {check.id: check for check in both.checks}
+    assert after.keys() - before.keys() == {"secret-radius", "open"}
+    assert (after["rate"].points, after["rate"].params["rate_hz"]) == (30.0, 3.0)
+    assert after["rate"].params["tolerance_percent"] == before["rate"].params["tolerance_percent"]
+    assert (after["rate"].title, after["rate"].needs) == (before["rate"].title, before["rate"].needs)
+    assert {id_: after[id_] for id_ in before if id_ != "rate"} == {id_: before[id_] for id_ in before if id_ != "rate"}
+    assert (public.scenario.duration_s, both.scenario.duration_s) == (10.0, 9.5)
+
+
+def test_what_is_private_is_hidden_unless_it_says_not() -> None:
+    hidden = {check.id for check in merged(PRIVATE).checks if check.hidden}
+    assert hidden == {"rate", "secret-radius"}
+
+
+def test_both_files_are_part_of_the_digest() -> None:
+    digests = {load_exercise(PUBLIC).digest, merged(PRIVATE).digest, merged(PRIVATE + "\n").digest}
+    assert len(digests) == 3
+
+
+@pytest.mark.parametrize(
+    ("private", "said"),
+    [
+        ("schema = 2", "schema is 2"),
+        ("schema = 1\n[exercise]\nid = 'x'", 'unknown key "exercise"'),
+        ("schema = 1\n[[check]]\nid = 'x'\nkind = 'circel'\npoints = 1", 'Did you mean "circle"'),
+        ("schema = 1\n[[check]]\nid = 'rate'\nrate_hz = 'fast'", '"rate_hz" is "fast"'),
+        ("schema = 1\ncheck = 3", "must be tables"),
+        ("schema = ", "not TOML"),
+    ],
+)
+def test_a_mistake_is_told_with_the_file(private: str, said: str) -> None:
+    with pytest.raises(UsageError) as error:
+        merged(private)
+    assert said in str(error.value)
+    assert "mine/exercise.toml" in str(error.value)
+
+
+def test_a_folder_for_no_exercise_of_ours_is_told(tmp_path: Path) -> None:
+    (tmp_path / "03-circle-publish").mkdir()
+    (tmp_path / "03-circle-publish" / "exercise.toml").write_text(PRIVATE)
+    with pytest.raises(UsageError, match="Did you mean 03-circle-publisher"):
+        sources_of({STEP}, tmp_path)
+
+
+def test_students_see_of_a_hidden_check_whether_it_passed_and_no_more(tmp_path: Path) -> None:
+    if not bubblewrap.usable():
+        pytest.skip("there is no sandbox here")
+    copy_solution(STEP, tmp_path / "class" / "anna")
+    (tmp_path / "mine" / STEP).mkdir(parents=True)
+    (tmp_path / "mine" / STEP / "exercise.toml").write_text(PRIVATE)
+    out = tmp_path / "grades"
+    done = grade(tmp_path / "class", "--exercise", STEP, "--out", out, "--checks", tmp_path / "mine", CI="true")
+    assert done.returncode == 0, done.stderr
+    report = reports(out)["anna"]
+    found = {outcome["id"]: (outcome["status"], outcome["hidden"]) for outcome in report["outcomes"]}
+    # The instructor sees it all: the solution drives at 2 Hz, in a circle of 2 m.
+    assert found["secret-radius"] == ("failed", True)
+    assert found["rate"] == ("failed", True)
+    assert found["open"] == ("passed", False)
+    assert rows(out)[0]["failed"].split() == ["rate", "secret-radius"]
+    seen = {
+        "page": next((out / "reports").glob("*.html")).read_text("utf-8"),
+        "gradescope": next((out / "gradescope").glob("*.json")).read_text("utf-8"),
+        **{name: (out / name).read_text("utf-8") for name in ("junit.xml", "github-summary.md")},
+        "annotations": (out / "github-annotations.txt").read_text("utf-8"),
+        "printed": done.stdout + done.stderr,
+    }
+    for name, text in seen.items():
+        for secret in (SECRET, "secret-radius", "3.217", "3.0 Hz", "wrong-radius"):
+            assert secret not in text, f"{secret} is in {name}"
+    tests = {test["name"]: test["output"] for test in json.loads(seen["gradescope"])["tests"]}
+    assert tests["Hidden check"] == "Hidden check: failed."
+    assert "Hidden check" in seen["page"]

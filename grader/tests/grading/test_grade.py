@@ -1,0 +1,178 @@
+"""Whole gradings of the solution by the real command: judged again, on a broken machine, under load, many at once."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(__file__).resolve().parents[3]
+SOLUTION = ROOT / "solutions" / "03-circle-publisher"
+COMPARED = ("id", "status", "points", "diagnosis", "cause")
+
+
+def grader(*arguments: object, env: dict[str, str] | None = None) -> subprocess.CompletedProcess[str]:
+    command = [str(Path(sys.executable).with_name("grader")), *map(str, arguments)]
+    return subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        check=False,
+        stdin=subprocess.DEVNULL,
+        timeout=600,
+        env={**os.environ, **(env or {})},
+    )
+
+
+def outcomes(report: Path) -> list[tuple[Any, ...]]:
+    return [tuple(outcome[key] for key in COMPARED) for outcome in json.loads(report.read_text())["outcomes"]]
+
+
+def graded(folder: Path, *options: object) -> list[tuple[Any, ...]]:
+    report = folder / "report.json"
+    done = grader("check", SOLUTION, "--json", report, *options)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return outcomes(report)
+
+
+@contextmanager
+def busy(loops: int) -> Iterator[None]:
+    children = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(loops)]
+    try:
+        yield
+    finally:
+        for child in children:
+            child.kill()
+            child.wait()
+
+
+def test_a_recording_is_judged_again_without_running_anything(tmp_path: Path) -> None:
+    kept = tmp_path / "kept"
+    first = graded(tmp_path, "--recording", kept, "--seed", "5")
+    again = grader("regrade", kept, "--json", tmp_path / "again.json", env={"PATH": "/nowhere"})
+    assert again.returncode == 0, again.stdout + again.stderr
+    assert outcomes(tmp_path / "again.json") == first
+    report, regraded = (json.loads((tmp_path / name).read_text()) for name in ("report.json", "again.json"))
+    for key in ("exercise", "submission", "clock", "seed", "points", "max", "ros"):
+        assert regraded[key] == report[key], key
+
+
+def test_a_recording_never_overwrites(tmp_path: Path) -> None:
+    (tmp_path / "mine").write_text("mine")
+    done = grader("check", SOLUTION, "--recording", tmp_path)
+    assert done.returncode == 2
+    assert "not an empty folder" in done.stderr
+    assert [file.name for file in tmp_path.iterdir()] == ["mine"]
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        ("trial.json", "cannot be read as a recording"),
+        ("submission.json", "cannot be read as a recording"),
+        ("exercise/exercise.toml", "exercise.toml"),
+        ("bag/bag.mcap", "cannot be read as a recording"),
+    ],
+)
+def test_a_damaged_recording_is_a_sentence(tmp_path: Path, recorded: Path, damage: str, said: str) -> None:
+    copy = tmp_path / "copy"
+    subprocess.run(["cp", "-r", recorded, copy], check=True)
+    file = next(copy.glob(damage))
+    file.write_bytes(file.read_bytes()[:40])
+    done = grader("regrade", copy)
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("recorded") / "kept"
+    assert grader("check", SOLUTION, "--recording", folder).returncode == 0
+    return folder
+
+
+def broken(tmp_path: Path, sitecustomize: str) -> subprocess.CompletedProcess[str]:
+    """Grade on a machine with a fault, which a sitecustomize of the grader's own process brings about."""
+    (tmp_path / "sitecustomize.py").write_text(sitecustomize)
+    return grader("check", SOLUTION, "--json", tmp_path / "report.json", env={"PYTHONPATH": str(tmp_path)})
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        (
+            "import grader.ros.installation\ngrader.ros._wheels = lambda _: None\n",
+            "No ROS 2 Jazzy was found",
+        ),
+        (
+            """
+import grader.errors, grader.ros.underlay
+def fail(*_): raise grader.errors.MachineError('There is no C++ compiler: install g++.')
+grader.ros.underlay.ensure = fail
+""",
+            "There is no C++ compiler",
+        ),
+        (
+            """
+import grader.sandbox.bubblewrap
+grader.sandbox.bubblewrap.usable = lambda: True
+grader.sandbox.bubblewrap.cell = lambda *_, **__: ['sh', '-c', 'echo no namespaces >&2; exit 1']
+""",
+            "could not be started",
+        ),
+        (
+            """
+import grader.sandbox.bubblewrap
+grader.sandbox.bubblewrap.usable = lambda: True
+grader.sandbox.bubblewrap.room = lambda *_, **__: ['sh', '-c', 'echo no namespaces >&2; exit 1']
+""",
+            "grader doctor",
+        ),
+    ],
+    ids=["no ROS", "no compiler", "no cell", "no room"],
+)
+def test_a_fault_of_the_machine_is_an_error_that_costs_no_points(tmp_path: Path, fault: str, said: str) -> None:
+    done = broken(tmp_path, fault)
+    assert done.returncode == 3, done.stdout + done.stderr
+    assert said in done.stdout
+    assert "Traceback" not in done.stdout + done.stderr
+    report = json.loads((tmp_path / "report.json").read_text())
+    statuses = {outcome["status"] for outcome in report["outcomes"]}
+    assert "error" in statuses
+    assert "failed" not in statuses
+    assert report["points"] == report["max"]
+
+
+@pytest.mark.exhaustive
+def test_fifty_gradings_under_load_are_one(tmp_path: Path) -> None:
+    with busy(4):
+        reports = [graded(tmp_path) for _ in range(50)]
+    assert all(report == reports[0] for report in reports)
+
+
+@pytest.mark.exhaustive
+def test_ten_trials_at_once_discover_as_surely_as_one(tmp_path: Path) -> None:
+    folders = [tmp_path / str(number) for number in range(10)]
+    for folder in folders:
+        folder.mkdir()
+    with ThreadPoolExecutor(10) as pool:
+        reports = list(pool.map(graded, folders))
+    assert all(report == reports[0] for report in reports)
+    clocks = {json.loads((folder / "report.json").read_text())["clock"]["used"] for folder in folders}
+    assert clocks == {"simulated"}
+
+
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.exhaustive)])
+def test_the_solution_passes_from_another_start(tmp_path: Path, seed: int) -> None:
+    assert {status for _, status, *_ in graded(tmp_path, "--seed", seed)} == {"passed"}

@@ -1,0 +1,71 @@
+"""What an exercise asks for is drawn where the turtle was to drive it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.exercise.model import CheckSpec, find_exercise
+from grader.report.requested import asked_shapes
+from grader.report.shapes import Line, Ring
+from grader.tests.checks.made import every, evidence, legs, recording
+from grader.trial.recording import Pose
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.tests.checks.made import Timed
+
+NORTH = Pose(4.0, 5.0, math.pi / 2)
+AHEAD = legs((20, 1.0, 0.0))
+
+
+def in_challenge(trial: str, way: list[Timed], start: Pose = NORTH) -> Evidence:
+    """What a learner drove in one of the trials of step 07."""
+    return evidence(recording(way, start), exercise=find_exercise("07-challenges").of_trial(trial))
+
+
+def points(shape: Line | Ring) -> list[tuple[float, float]]:
+    assert isinstance(shape, Line)
+    return [(round(x, 6), round(y, 6)) for x, y in shape.points]
+
+
+def test_the_lobes_of_an_eight_lie_left_and_right_of_the_start() -> None:
+    shapes, told = asked_shapes(in_challenge("eight", AHEAD))
+    centres = [number for ring in shapes if isinstance(ring, Ring) for number in ring.centre]
+    assert centres == pytest.approx([3.0, 5.0, 5.0, 5.0])
+    assert told == "asked for: two lobes of 1.00 m"
+
+
+def test_a_square_lies_on_the_side_that_the_turtle_took() -> None:
+    left, right = ((20, 1.0, 0.0), (10, 0.0, 1.6)), ((20, 1.0, 0.0), (10, 0.0, -1.6))
+    corners = points(asked_shapes(in_challenge("square", legs(*left)))[0][0])
+    assert corners == [(4.0, 5.0), (4.0, 7.0), (2.0, 7.0), (2.0, 5.0), (4.0, 5.0)]
+    corners = points(asked_shapes(in_challenge("square", legs(*right)))[0][0])
+    assert corners == [(4.0, 5.0), (4.0, 7.0), (6.0, 7.0), (6.0, 5.0), (4.0, 5.0)]
+
+
+def test_whoever_turns_first_is_asked_for_a_square_that_is_turned_too() -> None:
+    quarter = math.pi / 2 / (10 * 0.096)
+    corners = points(asked_shapes(in_challenge("square", legs((10, 0.0, quarter), (20, 1.0, 0.0))))[0][0])
+    assert corners[:2] == [(4.0, 5.0), (2.0, 5.0)]
+
+
+def test_a_goal_is_a_ring_as_large_as_its_tolerance() -> None:
+    shapes, told = asked_shapes(in_challenge("goal", AHEAD))
+    assert shapes[0] == Ring("expected", (8.5, 2.5), 0.1)
+    assert told == "asked for: x=8.5 y=2.5"
+
+
+@pytest.mark.parametrize("trial", ["eight", "square", "goal"])
+@pytest.mark.parametrize("way", [[], every(0.5, math.nan, 1.0)], ids=["none", "nan"])
+def test_a_way_that_leads_nowhere_changes_nothing(trial: str, way: list[Timed]) -> None:
+    assert asked_shapes(in_challenge(trial, way))[0]
+
+
+def test_nothing_is_drawn_of_a_hidden_check() -> None:
+    given = in_challenge("goal", AHEAD)
+    checks: tuple[CheckSpec, ...] = tuple(replace(check, hidden=True) for check in given.exercise.checks)
+    assert asked_shapes(replace(given, exercise=replace(given.exercise, checks=checks))) == ((), "")

@@ -1,0 +1,117 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.errors import UsageError
+from grader.ros import installation, shell
+
+HERE = installation.find_ros()
+BIN = str(Path(sys.prefix, "bin"))
+
+
+def users(env: dict[str, str], domain: int | None = None, underlay: Path | None = None) -> dict[str, str]:
+    return installation.users_environment(HERE, underlay, {"HOME": "/tmp", **env}, domain)
+
+
+def sourced(code: str, what: str, **env: str) -> str:
+    done = subprocess.run(
+        ["bash", "-c", f'eval "$CODE"; unset CODE; {what}'],
+        env={"PATH": "/usr/bin:/bin", "HOME": "/tmp", "CODE": code, **env},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stderr == ""
+    return done.stdout
+
+
+def test_a_domain_of_the_users_own_unless_they_chose_one() -> None:
+    assert users({})["ROS_DOMAIN_ID"] == str(installation.domain_of(os.getuid()))
+    assert users({"ROS_DOMAIN_ID": "7"})["ROS_DOMAIN_ID"] == "7"
+    assert users({"ROS_DOMAIN_ID": "7"}, domain=9)["ROS_DOMAIN_ID"] == "9"
+
+
+@pytest.mark.parametrize("domain", [-1, 102])
+def test_there_is_no_such_domain(domain: int) -> None:
+    with pytest.raises(UsageError, match="from 0 to 101"):
+        shell.users_environment(domain, lambda _: None)
+
+
+def test_what_every_node_needs_is_in_it() -> None:
+    env = users({})
+    assert env["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
+    assert env["ROS_PYTHON_CHECK_FIELDS"] == "1"
+    assert Path(env["FASTRTPS_DEFAULT_PROFILES_FILE"]).is_file()
+    assert "ROS_LOG_DIR" not in env
+
+
+def test_a_home_that_cannot_be_written_gets_a_log_folder(tmp_path: Path) -> None:
+    assert "ros-log" in users({"HOME": str(tmp_path / "nowhere")})["ROS_LOG_DIR"]
+    assert "ROS_LOG_DIR" not in users({"HOME": str(tmp_path / "nowhere"), "ROS_HOME": "/x"})
+
+
+def test_a_workspace_that_was_sourced_stays_in_front(tmp_path: Path) -> None:
+    overlay = tmp_path / "install/my_robot_controller"
+    overlay.mkdir(parents=True)
+    first = users({})
+    again = users({**first, "AMENT_PREFIX_PATH": f"{overlay}:{first['AMENT_PREFIX_PATH']}"})
+    assert again["AMENT_PREFIX_PATH"] == f"{overlay}:{first['AMENT_PREFIX_PATH']}"
+    assert users(again) == again
+
+
+@pytest.mark.skipif(HERE.kind == "sourced", reason="here a ROS 2 is sourced")
+def test_another_ros_2_and_an_older_turtlesim_do_not_mix_with_ours(tmp_path: Path) -> None:
+    humble = tmp_path / "opt/ros/humble"
+    marker = humble / "share/ament_index/resource_index/packages/rclpy"
+    marker.parent.mkdir(parents=True)
+    marker.touch()
+    stale = tmp_path / "turtlesim-0123"
+    before = {
+        "ROS_DISTRO": "humble",
+        "AMENT_PREFIX_PATH": f"{stale}:{humble}",
+        "LD_LIBRARY_PATH": f"/usr/local/cuda:{humble}/lib",
+        "PYTHONPATH": f"{humble}/lib/python3/site-packages",
+    }
+    env = users(before)
+    assert env["ROS_DISTRO"] == "jazzy"
+    assert str(tmp_path) not in " ".join(env.values())
+    assert env["LD_LIBRARY_PATH"].startswith("/usr/local/cuda:")
+
+
+def test_our_commands_come_first_unless_a_ros_2_is_sourced() -> None:
+    assert users({"PATH": "/usr/bin"})["PATH"].split(":")[0 if HERE.kind == "wheels" else -1] == BIN
+    assert users({"PATH": f"/usr/bin:{BIN}"})["PATH"] == f"/usr/bin:{BIN}"
+
+
+def test_the_code_does_in_a_shell_what_it_says() -> None:
+    code = shell.code({"ROS_DOMAIN_ID": "5", "STRANGE": "a 'b' \"c\" $HOME `d`", "SAME": "x"}, {"SAME": "x"})
+    assert sourced(code, 'echo "$STRANGE|$ROS_DOMAIN_ID|$SAME"', SAME="x") == "a 'b' \"c\" $HOME `d`|5|x\n"
+    assert "SAME" not in code
+    assert "_python_argcomplete ros2" in sourced(code, "complete -p ros2")
+
+
+def test_the_completion_of_a_sourced_ros_2_is_left_alone() -> None:
+    code = "complete -F theirs ros2\n" + shell.code({"ROS_DOMAIN_ID": "5"}, {})
+    assert sourced(code, "complete -p ros2") == "complete -F theirs ros2\n"
+
+
+def test_the_code_is_read_by_a_plain_sh() -> None:
+    code = shell.code({"ROS_DOMAIN_ID": "5"}, {})
+    done = subprocess.run(["sh", "-euc", f"{code}\necho $ROS_DOMAIN_ID"], capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("5\n", "")
+
+
+def test_an_error_reaches_whoever_sources_it() -> None:
+    done = subprocess.run(
+        ["bash", "-c", f"source <({BIN}/grader env --domain 500) || echo not sourced"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout == "not sourced\n"
+    assert done.stderr.startswith("grader: A domain id is a whole number")

@@ -1,0 +1,174 @@
+"""The turtlesim interfaces are built once, whole or not at all, and found again without starting anything."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import stat
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.errors import MachineError
+from grader.ros import installation, underlay
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+INDEX = "share/ament_index/resource_index/packages"
+
+
+@pytest.fixture
+def here() -> installation.Ros:
+    return installation.find_ros()
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    return tmp_path / "grader"
+
+
+@pytest.fixture
+def builds(monkeypatch: pytest.MonkeyPatch) -> list[Sequence[str]]:
+    """Let cmake only pretend: the commands that were run; its install makes one file."""
+    ran: list[Sequence[str]] = []
+
+    def run(command: Sequence[str], env: dict[str, str], _: object) -> None:
+        ran.append(command)
+        if command[1] == "--install":
+            words = [word for words in ran for word in words if word.startswith("-DCMAKE_INSTALL_PREFIX=")]
+            prefix = words[-1].partition("=")[2]
+            made = Path(env["DESTDIR"] + prefix, "lib", "made")
+            made.parent.mkdir(parents=True)
+            made.touch(mode=0o600)
+
+    monkeypatch.setattr(underlay, "_run", run)
+    return ran
+
+
+def without(monkeypatch: pytest.MonkeyPatch, *programs: str) -> None:
+    found = shutil.which
+    monkeypatch.setattr(shutil, "which", lambda name, path=None: None if name in programs else found(name, path=path))
+
+
+def test_two_at_once_build_it_once_and_both_get_it(here: installation.Ros, tmp_path: Path) -> None:
+    code = "from grader import ros, underlay; print(underlay.ensure(ros.find_ros(), print))"
+    env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    both = [
+        subprocess.Popen([sys.executable, "-c", code], env=env, stdout=subprocess.PIPE, text=True) for _ in range(2)
+    ]
+    lines = [process.communicate()[0].splitlines() for process in both]
+    prefixes = {Path(told[-1]) for told in lines}
+    assert len(prefixes) == 1
+    prefix = prefixes.pop()
+    assert sum("once; this takes" in line for told in lines for line in told) == 1
+    assert (prefix / INDEX / "turtlesim").is_file()
+    assert sorted(path.name for path in prefix.parent.iterdir()) == [prefix.name, "turtlesim.lock"]
+
+    # Usable where it stands, by whoever may only read it.
+    closed = [path for path in prefix.rglob("*") if not path.stat().st_mode & stat.S_IROTH]
+    assert closed == []
+    script = "from turtlesim.srv import Spawn; print(Spawn.Request(x=1.0).x)"
+    done = subprocess.run(
+        [here.python, "-c", script],
+        env=installation.environment(here, home=tmp_path, underlay=prefix),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.stdout, done.stderr) == ("1.0\n", "")
+
+
+def test_what_is_built_is_found_without_starting_a_process(
+    here: installation.Ros, cache: Path, builds: list[Sequence[str]]
+) -> None:
+    prefix = underlay.ensure(here)
+    assert prefix is not None
+    assert prefix.parent == cache
+    builds.clear()
+    assert underlay.ensure(here) == prefix
+    assert builds == []
+
+
+def test_other_sources_are_built_anew(
+    here: installation.Ros,
+    cache: Path,  # noqa: ARG001
+    builds: list[Sequence[str]],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    prefix = underlay.ensure(here)
+    sources = tmp_path / "sources"
+    sources.mkdir()
+    monkeypatch.setattr(underlay, "SOURCES", sources)
+    builds.clear()
+    assert underlay.ensure(here) != prefix
+    assert builds
+
+
+def test_another_ros_is_built_for_anew(here: installation.Ros, cache: Path, builds: list[Sequence[str]]) -> None:  # noqa: ARG001
+    assert underlay.ensure(here) != underlay.ensure(replace(here, version="7.1.999"))
+
+
+def test_a_build_that_fails_leaves_nothing_and_says_why(
+    here: installation.Ros, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sources = tmp_path / "sources"
+    sources.mkdir()
+    (sources / "CMakeLists.txt").write_text('cmake_minimum_required(VERSION 3.20)\nmessage(FATAL_ERROR "so it goes")\n')
+    monkeypatch.setattr(underlay, "SOURCES", sources)
+    with pytest.raises(MachineError, match="so it goes"):
+        underlay.ensure(here)
+    assert [path.name for path in cache.iterdir()] == ["turtlesim.lock"]
+
+
+def test_what_a_killed_build_left_is_removed(here: installation.Ros, cache: Path, builds: list[Sequence[str]]) -> None:  # noqa: ARG001
+    left = cache / ".building-dead"
+    left.mkdir(parents=True)
+    underlay.ensure(here)
+    assert not left.exists()
+
+
+def test_missing_tools_are_named_with_what_installs_them(
+    here: installation.Ros,
+    cache: Path,  # noqa: ARG001
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    without(monkeypatch, "c++", "cmake")
+    with pytest.raises(MachineError, match=r"lacks a C\+\+ compiler and cmake .*apt-get install -y g\+\+ cmake"):
+        underlay.ensure(here)
+
+
+def test_what_was_built_before_the_compiler_went_is_still_used(
+    here: installation.Ros,
+    cache: Path,  # noqa: ARG001
+    builds: list[Sequence[str]],  # noqa: ARG001
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    prefix = underlay.ensure(here)
+    without(monkeypatch, "c++")
+    assert underlay.ensure(here) == prefix
+
+
+def test_a_cache_that_cannot_be_written_is_the_machines_fault(
+    here: installation.Ros, cache: Path, builds: list[Sequence[str]]
+) -> None:
+    cache.write_text("a file where a folder should be")
+    with pytest.raises(MachineError, match="XDG_CACHE_HOME"):
+        underlay.ensure(here)
+    assert builds == []
+
+
+def test_nothing_is_built_where_ros_has_its_own_turtlesim(
+    here: installation.Ros, tmp_path: Path, cache: Path, builds: list[Sequence[str]]
+) -> None:
+    (tmp_path / INDEX).mkdir(parents=True)
+    (tmp_path / INDEX / "turtlesim").touch()
+    assert underlay.ensure(replace(here, prefixes=(tmp_path, *here.prefixes))) is None
+    assert builds == []
+    assert not cache.exists()

@@ -1,0 +1,156 @@
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.errors import MachineError
+from grader.sandbox import bubblewrap, process
+from grader.sandbox.system_calls import DENIED, call_filter, program
+
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
+ENV = {"PATH": "/usr/bin:/bin", "HOME": str(bubblewrap.HOME)}
+
+
+SEEN = bubblewrap.View((Path(sys.base_prefix), Path(sys.prefix)))
+
+
+def run(
+    code: str,
+    limits: bubblewrap.Limits = bubblewrap.Limits(),  # noqa: B008
+    view: bubblewrap.View = SEEN,
+) -> process.Finished:
+    """Python code in a cell of its own."""
+    with call_filter() as filter_fd:
+        command = bubblewrap.lone_cell([sys.executable, "-c", code], view, env=ENV, limits=limits, filter_fd=filter_fd)
+        return process.run(
+            command,
+            env=ENV,
+            timeout_s=60.0,
+            most_stdout=10**6,
+            most_stderr=10**5,
+            pass_fds=() if filter_fd is None else (filter_fd,),
+            watch=limits,
+        )
+
+
+def test_a_cell_is_nobody_with_no_rights() -> None:
+    code = """
+import json, os
+status = dict(line.split(":\\t", 1) for line in open("/proc/self/status").read().splitlines() if ":\\t" in line)
+print(json.dumps([os.getuid(), os.getgroups(), *map(status.get, ("CapEff", "CapBnd", "NoNewPrivs", "Seccomp"))]))
+"""
+    assert json.loads(run(code).stdout) == [1000, [], "0" * 16, "0" * 16, "1", "2"]
+
+
+def test_a_cell_sees_its_own_processes_and_nothing_of_the_disk() -> None:
+    code = """
+import json, os
+print(json.dumps([sorted(name for name in os.listdir("/proc") if name.isdigit()), sorted(os.listdir("/"))]))
+"""
+    processes, top = json.loads(run(code).stdout)
+    assert processes == ["1", "2"]
+    expected = {"bin", "dev", "etc", "lib", "lib32", "lib64", "proc", "sbin", "tmp", "usr", "ws"}
+    assert set(top) <= expected | {Path(path).parts[1] for path in (sys.prefix, sys.base_prefix)}
+
+
+def test_a_room_has_shared_memory_since_lttng_else_waits_for_other_threads_children() -> None:
+    argv = ["sh", "-c", "touch /dev/shm/lttng-ust-wait-6 && mount | grep -c ' /dev/shm .*size=262144k'"]
+    done = subprocess.run(bubblewrap.room(argv, SEEN, env=ENV), capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
+
+
+def test_of_a_hidden_folder_a_cell_sees_only_what_is_named(tmp_path: Path) -> None:
+    """An installed grader lies beside the libraries that a node needs, and of it a cell needs the launcher."""
+    package = tmp_path / "site-packages" / "grader"
+    for name in ("trial/launcher.py", "trial/rest.py", "solutions/a.py", "fastdds.xml"):
+        (package / name).parent.mkdir(parents=True, exist_ok=True)
+        (package / name).write_text(name)
+    seen = (*SEEN.read_only, tmp_path / "site-packages", package / "trial/launcher.py", package / "fastdds.xml")
+    code = f"""
+import pathlib
+below = pathlib.Path({str(package)!r})
+print(sorted(str(path.relative_to(below)) for path in below.rglob("*")), (below / "fastdds.xml").read_text())
+(below / "more").mkdir()
+"""
+    done = run(code, view=bubblewrap.View(seen, hidden=(package,)))
+    assert done.stdout.decode() == "['fastdds.xml', 'trial', 'trial/launcher.py'] fastdds.xml\n"
+    assert b"Read-only file system" in done.stderr
+
+
+def test_a_cell_inherits_no_descriptor() -> None:
+    done = run("import os; print(len([fd for fd in os.listdir('/proc/self/fd') if int(fd) > 2]))")
+    assert int(done.stdout) == 1  # the one that lists
+
+
+@pytest.mark.parametrize("place", ["/", "/usr", "/etc", "/dev", sys.prefix])
+def test_a_cell_writes_nowhere_but_where_it_may(place: str) -> None:
+    done = run(f"open({place + '/hostile'!r}, 'w')")
+    assert b"Read-only file system" in done.stderr
+
+
+def test_a_cell_that_holds_too_much_in_all_is_ended() -> None:
+    code = "blocks = [bytearray(60 << 20) for _ in range(4)]; import time; time.sleep(20)"
+    done = run(code, bubblewrap.Limits(total_memory=128 * bubblewrap.MIB))
+    assert (done.out_of, done.timed_out) == ("memory", False)
+
+
+def test_a_cell_with_too_many_files_is_ended() -> None:
+    code = "[open(f'/tmp/{n}', 'w').close() for n in range(2000)]; import time; time.sleep(20)"
+    done = run(code, bubblewrap.Limits(files=1000))
+    assert (done.out_of, done.timed_out) == ("files", False)
+
+
+def test_every_denied_call_is_refused_and_no_other() -> None:
+    numbers = sorted(number for group in DENIED.values() for number in group.values())
+    code = f"""
+import ctypes, errno
+libc = ctypes.CDLL(None, use_errno=True)
+for number in {numbers}:
+    libc.syscall(number, -1, 0, 0, 0, 0, 0)
+    assert ctypes.get_errno() == errno.EPERM, number
+assert libc.syscall(435, 0, 0) == -1 and ctypes.get_errno() == errno.ENOSYS
+assert libc.syscall(39) > 0
+import socket, threading, subprocess
+threading.Thread(target=int).start()
+subprocess.run(["true"], check=True)
+socket.socket(); socket.socket(socket.AF_UNIX)
+try:
+    socket.socket(socket.AF_VSOCK, socket.SOCK_STREAM)
+except OSError as error:
+    assert error.errno == errno.EAFNOSUPPORT
+else:
+    raise AssertionError
+print("held")
+"""
+    done = run(code)
+    assert done.stdout == b"held\n", done.stderr
+
+
+def test_the_filter_is_small() -> None:
+    assert len(program()) < 4096
+
+
+def test_grading_for_marks_refuses_without_a_sandbox(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bubblewrap, "program", lambda: None)
+    with pytest.raises(MachineError, match=r"install bubblewrap.*--trust-submissions"):
+        bubblewrap.require()
+    assert bubblewrap.require(trusted=True) is False
+
+
+def test_with_a_sandbox_it_confines_even_the_trusted() -> None:
+    assert bubblewrap.require(trusted=True) is True
+
+
+def test_it_says_what_to_do_where_namespaces_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    refused = tmp_path / "bwrap"
+    refused.write_text("#!/bin/sh\necho 'bwrap: setting up uid map: Permission denied' >&2\nexit 1\n")
+    refused.chmod(0o755)
+    monkeypatch.setattr(bubblewrap, "program", lambda: str(refused))
+    why = bubblewrap.why_unavailable()
+    assert why is not None
+    assert "setting up uid map" in why
+    assert "AppArmor" in why

@@ -1,0 +1,121 @@
+"""The kernel counts for a cell what it holds in all, where it lets us; where not, the cell runs all the same."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.sandbox import control_group as module
+from grader.sandbox.bubblewrap import MIB, Limits
+from grader.sandbox.control_group import ControlGroup, control_group
+
+SMALL = Limits(total_memory=64 * MIB)
+HOARD = "x = bytearray({mib} * 1024 * 1024); print(len(x) // 1024 // 1024)"
+
+
+@pytest.fixture
+def group() -> ControlGroup:
+    with control_group(SMALL) as made:
+        if not made:
+            pytest.skip("the kernel lets us make no control group here")
+    return made
+
+
+def hoard(group: ControlGroup, mib: int) -> subprocess.CompletedProcess[str]:
+    argv = group.joined([sys.executable, "-c", HOARD.format(mib=mib)])
+    return subprocess.run(argv, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.usefixtures("group")
+def test_what_a_group_holds_beyond_its_limit_ends_it_and_is_told() -> None:
+    with control_group(SMALL) as group:
+        assert hoard(group, 100).stdout == "100\n"
+        assert not group.out_of_memory()
+        assert hoard(group, 64 + 512 + 100).returncode == -9
+        assert group.out_of_memory()
+
+
+@pytest.mark.usefixtures("group")
+def test_what_several_processes_hold_together_counts() -> None:
+    # Each half of what is too much, at the same time.
+    half = f"{sys.executable} -c 'x = bytearray({340 * MIB}); import time; time.sleep(60)'"
+    with control_group(SMALL) as group:
+        script = f"{half} & {half} & wait -n; kill $(jobs -p) 2>/dev/null; wait"
+        subprocess.run(group.joined(["bash", "-c", script]), check=False, capture_output=True)
+        assert group.out_of_memory()
+
+
+@pytest.mark.usefixtures("group")
+def test_a_group_is_gone_afterwards() -> None:
+    with control_group(SMALL) as group:
+        assert all(folder.is_dir() for folder in group.folders)
+        assert subprocess.run(group.joined(["true"]), check=False).returncode == 0
+    assert not any(folder.exists() for folder in group.folders)
+
+
+@pytest.mark.usefixtures("group")
+def test_what_a_killed_grader_left_is_removed_by_the_next() -> None:
+    script = """
+from grader.control_group import control_group
+from grader.sandbox import Limits
+import os, signal
+with control_group(Limits()) as group:
+    print(*group.folders, flush=True)
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+    left = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False).stdout.split()
+    assert left
+    assert all(Path(folder).is_dir() for folder in left)
+    with control_group(SMALL):
+        assert not any(Path(folder).exists() for folder in left)
+
+
+def test_where_none_can_be_made_the_command_runs_as_it_is(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(module, "OWN", tmp_path / "no such file")
+    monkeypatch.setattr(module, "TREE", tmp_path / "nor this")
+    with control_group(SMALL) as group:
+        assert not group
+        assert group.joined(["true", "-x"]) == ["true", "-x"]
+        assert not group.out_of_memory()
+
+
+# Version 2 with systemd's tree cannot be had on every machine: its files are laid out in a folder.
+
+
+def version_2(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The tree of a user's terminal: the slice above it passes the controllers on."""
+    slice_ = folder / "user.slice/user-1000.slice/user@1000.service/app.slice"
+    scope = slice_ / "terminal.scope"
+    scope.mkdir(parents=True)
+    for place in (slice_, scope):
+        (place / "cgroup.procs").write_text("")
+        (place / "cgroup.subtree_control").write_text("cpu memory pids\n" if place == slice_ else "\n")
+    (folder / "own").write_text(f"0::/{scope.relative_to(folder)}\n")
+    monkeypatch.setattr(module, "OWN", folder / "own")
+    monkeypatch.setattr(module, "TREE", folder)
+    return slice_
+
+
+def test_in_version_2_the_group_lies_where_the_controllers_are_passed_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    slice_ = version_2(tmp_path, monkeypatch)
+    with control_group(SMALL) as group:
+        assert [folder.parent for folder in group.folders] == [slice_]
+        (group.folders[0] / "memory.events").write_text("low 0\noom 3\noom_kill 2\n")
+        assert group.out_of_memory()
+        (group.folders[0] / "memory.events").unlink()
+    assert not any(group.folders[0].parent.glob("grader-*"))
+
+
+def test_in_version_2_a_slice_that_is_not_ours_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    if os.getuid() == 0:
+        monkeypatch.setattr(os, "access", lambda *_: False)  # root may write everywhere
+    slice_ = version_2(tmp_path, monkeypatch)
+    (slice_ / "cgroup.procs").chmod(0o400)
+    with control_group(SMALL) as group:
+        assert not group

@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+import sys
+
+from grader.sandbox.process import Finished, run
+
+
+def python(code: str, *, stdin: bytes = b"", timeout_s: float = 60.0, most: int = 1_000_000) -> Finished:
+    return run([sys.executable, "-c", code], stdin=stdin, timeout_s=timeout_s, most_stdout=most, most_stderr=2_000)
+
+
+def test_output_input_and_exit_code_are_told() -> None:
+    done = python("import sys; sys.stderr.write('e'); print(sys.stdin.read()[::-1]); sys.exit(3)", stdin=b"abc")
+    assert (done.exit_code, done.stdout, done.stderr) == (3, b"cba\n", b"e")
+
+
+def test_megabytes_in_and_out_at_once_do_not_block() -> None:
+    data = bytes(range(256)) * 20_000
+    done = python("import sys; sys.stdout.buffer.write(sys.stdin.buffer.read())", stdin=data, most=10_000_000)
+    assert done.stdout == data
+
+
+def test_a_child_that_reads_nothing_is_no_error() -> None:
+    assert python("pass", stdin=b"x" * 1_000_000).exit_code == 0
+
+
+def test_a_child_that_never_ends_is_ended_with_its_children() -> None:
+    code = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'while True: pass'])"
+    done = python(code, timeout_s=1.0)
+    assert done.timed_out
+
+
+def test_a_child_that_closes_its_output_and_stays_is_ended_too() -> None:
+    done = python("import os, time; os.close(1); os.close(2); time.sleep(1000)", timeout_s=1.0)
+    assert done.timed_out
+
+
+def test_too_much_output_ends_the_child() -> None:
+    done = python("while True: print('x' * 1000)")
+    assert done.too_much
+    assert not done.timed_out
+
+
+def test_of_a_long_log_beginning_and_end_are_kept() -> None:
+    done = python("import sys; sys.stderr.write('begin' + 'x' * 1_000_000 + 'end')")
+    assert done.stderr.startswith(b"begin")
+    assert done.stderr.endswith(b"end")
+    assert b"998008 bytes left out" in done.stderr
+    assert len(done.stderr) < 3_000

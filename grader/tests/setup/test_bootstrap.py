@@ -1,0 +1,322 @@
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from grader.setup import bootstrap, machine
+from grader.setup.bootstrap import Stamp
+from grader.setup.machine import Need, Python, SourcedRos
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+SYSTEMS = Python("/usr/bin/python3.11", (3, 11, 2), cpython=True, venv=True, headers=True)
+ROOT = Path(bootstrap.__file__).parents[2]
+LEARNER, TESTS = bootstrap.PARTS["learner"], bootstrap.PARTS["tests"]
+
+
+class Course:
+    """A folder to set up, with the commands that were run instead of being carried out."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self.stamp = root / ".venv/course-setup.json"
+        self.commands: list[list[str]] = []
+        self.python = SYSTEMS
+        self.needs: list[Need] = []
+        self.of_tests: list[Need] = []
+
+    def call(self, command: list[str], **_options: object) -> int:
+        self.commands.append(list(map(str, command)))
+        if "venv" in command:
+            assert not self.stamp.exists()
+            self.stamp.parent.mkdir(exist_ok=True)
+        if "grader.setup.install" in command:
+            assert not self.stamp.exists()
+            bootstrap.write_stamp(Stamp(**json.loads(command[-1])), self.stamp)
+        if command[0] == "apt-get" and "install" in command:
+            self.needs = [need for need in self.needs if need.package not in command]
+            self.of_tests = [need for need in self.of_tests if need.package not in command]
+        return 0
+
+    @property
+    def programs(self) -> list[str]:
+        """What was run: venv, grader.setup.install or apt-get's verb."""
+        known = ("venv", "grader.setup.install")
+        return [
+            command[1] if command[0] == "apt-get" else next(word for word in command if word in known)
+            for command in self.commands
+        ]
+
+    def set_up(self, parts: list[str] = LEARNER, ros: SourcedRos | None = None) -> int:
+        self.commands = []
+        return bootstrap.set_up(parts, ros, None)
+
+
+@pytest.fixture
+def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Course:
+    course = Course(tmp_path)
+    (tmp_path / "requirements.lock").write_text("one")
+    (tmp_path / "pyproject.toml").write_text("two")
+    for name, value in {
+        "ROOT": tmp_path,
+        "VENV": tmp_path / ".venv",
+        "PYTHON": tmp_path / ".venv/bin/python3",
+        "STAMP": course.stamp,
+    }.items():
+        monkeypatch.setattr(bootstrap, name, value)
+    monkeypatch.setattr(bootstrap, "read_stamp", _bind(bootstrap.read_stamp, course.stamp))
+    monkeypatch.setattr(subprocess, "call", course.call)
+    monkeypatch.setattr(subprocess, "check_output", course.call)
+    monkeypatch.setattr(os, "getuid", lambda: 1000)
+    monkeypatch.delenv("CI", raising=False)
+    monkeypatch.setattr(machine, "probe", lambda _path: course.python)
+    monkeypatch.setattr(machine, "find_pythons", lambda _path: iter([course.python]))
+    monkeypatch.setattr(machine, "missing_tools", lambda _path, _ros: list(course.needs))
+    monkeypatch.setattr(machine, "missing_of_tests", lambda _path: list(course.of_tests))
+    return course
+
+
+def _bind(function: Callable[[Path], Any], path: Path) -> Callable[[], Any]:
+    return lambda: function(path)
+
+
+def test_first_set_up_makes_the_environment_and_fills_it(course: Course) -> None:
+    assert course.set_up() == 0
+    assert course.programs == ["venv", "grader.setup.install"]
+    stamp = bootstrap.read_stamp()
+    assert stamp is not None
+    assert (stamp.parts, stamp.ros, stamp.version) == (LEARNER, "wheels", [3, 11, 2])
+
+
+def test_second_set_up_does_nothing(course: Course) -> None:
+    course.set_up()
+    assert course.set_up() == 0
+    assert course.commands == []
+
+
+def test_tests_are_added_to_what_is_there_and_stay(course: Course) -> None:
+    course.set_up()
+    course.set_up(TESTS)
+    assert course.programs == ["grader.setup.install"]
+    course.set_up(LEARNER)
+    assert course.commands == []
+    (course.root / "requirements.lock").write_text("newer")
+    course.set_up(LEARNER)
+    stamp = bootstrap.read_stamp()
+    assert stamp is not None
+    assert stamp.parts == TESTS
+
+
+@pytest.mark.parametrize("name", ["requirements.lock", "pyproject.toml"])
+def test_a_changed_list_of_packages_is_installed_into_the_same_environment(course: Course, name: str) -> None:
+    course.set_up()
+    (course.root / name).write_text("changed")
+    course.set_up()
+    assert course.programs == ["grader.setup.install"]
+
+
+def test_an_interrupted_set_up_begins_anew(course: Course) -> None:
+    course.set_up()
+    course.stamp.unlink()
+    course.set_up()
+    assert course.programs == ["venv", "grader.setup.install"]
+    course.stamp.write_text('{"root": ')
+    course.set_up()
+    assert course.programs == ["venv", "grader.setup.install"]
+
+
+def test_another_python_behind_the_environment_makes_it_anew(course: Course) -> None:
+    course.set_up()
+    course.python = SYSTEMS._replace(version=(3, 11, 9))
+    course.set_up()
+    assert course.programs == ["venv", "grader.setup.install"]
+
+
+def test_a_moved_folder_makes_the_environment_anew(course: Course, monkeypatch: pytest.MonkeyPatch) -> None:
+    course.set_up()
+    monkeypatch.setattr(bootstrap, "ROOT", Path("/elsewhere"))
+    assert not bootstrap.stands(Stamp(**json.loads(course.stamp.read_text())), "wheels", None)
+
+
+def test_a_sourced_ros_sees_the_systems_packages(course: Course) -> None:
+    course.set_up()
+    course.python = SYSTEMS._replace(path="/usr/bin/python3.12", version=(3, 12, 3))
+    course.set_up(ros=SourcedRos("/opt/ros/jazzy", (3, 12), turtlesim=True))
+    assert course.programs == ["venv", "grader.setup.install"]
+    assert "--system-site-packages" in course.commands[0]
+    assert json.loads(course.commands[1][-1])["ros"] == "/opt/ros/jazzy"
+
+
+def test_what_is_missing_is_told_and_nothing_is_done(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
+    course.needs = [Need("cmake", "cmake")]
+    course.python = SYSTEMS._replace(headers=False)
+    assert course.set_up() == bootstrap.MACHINE_BROKEN
+    assert course.commands == []
+    message = capsys.readouterr().err
+    assert "Python.h" in message
+    assert message.count("apt-get install") == 1
+
+
+def test_a_learner_goes_on_without_a_sandbox_and_is_told(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
+    course.needs = [Need("bubblewrap, the sandbox", "bubblewrap", "no marks")]
+    assert course.set_up() == 0
+    assert course.programs == ["venv", "grader.setup.install"]
+    (told,) = [line for line in capsys.readouterr().out.splitlines() if "bubblewrap" in line]
+    assert told.startswith("Without bubblewrap: no marks.")
+
+
+def test_the_tests_need_a_sandbox(course: Course) -> None:
+    course.needs = [Need("bubblewrap, the sandbox", "bubblewrap", "no marks")]
+    assert course.set_up(TESTS) == bootstrap.MACHINE_BROKEN
+    assert course.commands == []
+
+
+@pytest.mark.parametrize(("ci", "user", "installs"), [("true", 0, True), ("true", 1000, False), ("", 0, False)])
+def test_root_in_ci_installs_what_is_missing(
+    course: Course, monkeypatch: pytest.MonkeyPatch, ci: str, user: int, *, installs: bool
+) -> None:
+    monkeypatch.setenv("CI", ci)
+    monkeypatch.setattr(os, "getuid", lambda: user)
+    monkeypatch.setattr(shutil, "which", lambda _name: "/usr/bin/apt-get")
+    course.needs = [Need("cmake", "cmake")]
+    assert course.set_up() == (0 if installs else bootstrap.MACHINE_BROKEN)
+    assert course.programs == (["update", "install", "venv", "grader.setup.install"] if installs else [])
+
+
+@pytest.mark.parametrize(("ci", "user", "installs"), [("true", 0, True), ("", 0, False), ("true", 1000, False)])
+def test_root_in_ci_gets_what_only_tests_need(
+    course: Course,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    ci: str,
+    user: int,
+    *,
+    installs: bool,
+) -> None:
+    monkeypatch.setenv("CI", ci)
+    monkeypatch.setattr(os, "getuid", lambda: user)
+    monkeypatch.setattr(shutil, "which", lambda _name: "/usr/bin/apt-get")
+    course.of_tests = [Need("a browser", "chromium"), Need("shellcheck", "shellcheck")]
+    assert course.set_up(TESTS) == 0
+    assert course.programs.count("install") == (2 if installs else 0)
+    assert ("without these: a browser; shellcheck" in capsys.readouterr().out) == (not installs)
+
+
+def test_a_learner_needs_nothing_that_only_tests_need(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
+    course.of_tests = [Need("a browser", "chromium")]
+    assert course.set_up(LEARNER) == 0
+    assert "chromium" not in capsys.readouterr().out
+
+
+def test_what_root_in_ci_cannot_install_is_told(course: Course, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CI", "true")
+    monkeypatch.setattr(os, "getuid", lambda: 0)
+    monkeypatch.setattr(shutil, "which", lambda _name: "/usr/bin/apt-get")
+    monkeypatch.setattr(subprocess, "call", lambda _command, **_options: 100)
+    course.needs = [Need("cmake", "cmake")]
+    assert course.set_up() == bootstrap.MACHINE_BROKEN
+
+
+def test_a_python_that_cannot_make_an_environment_is_told(
+    course: Course, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fails(command: list[str], **_options: object) -> bytes:
+        raise subprocess.CalledProcessError(1, command, b"Error: no space left on device\n")
+
+    monkeypatch.setattr(subprocess, "check_output", fails)
+    assert course.set_up() == bootstrap.MACHINE_BROKEN
+    assert "no space left on device" in capsys.readouterr().err
+    assert course.commands == []
+
+
+def test_installers_do_not_see_a_sourced_ros_or_an_active_environment() -> None:
+    env = bootstrap.clean_environment({"PYTHONPATH": "/opt/ros/humble", "VIRTUAL_ENV": "/x", "HTTPS_PROXY": "proxy"})
+    assert env == {"HTTPS_PROXY": "proxy", "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
+
+
+# --- its command line ---
+
+
+def bootstrapped(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run by the standard library alone (-S), as where nothing is installed yet."""
+    command = [sys.executable, "-S", "-m", "grader.setup.bootstrap", *arguments]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+def test_help_names_every_target() -> None:
+    done = bootstrapped("--help")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert all(target in done.stdout for target in bootstrap.PARTS)
+    assert all(target in (bootstrap.__doc__ or "") for target in bootstrap.PARTS)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], "the following arguments are required: parts"),
+        (["learners"], "invalid choice: 'learners'"),
+        (["learner", "tests"], "unrecognized arguments: tests"),
+        (["learner", "--verbose"], "unrecognized arguments: --verbose"),
+        (["learner", "--python"], "argument --python: expected one argument"),
+        (["learner", "--python", "python9"], "argument --python: python9 is no Python that runs here"),
+    ],
+)
+def test_a_wrong_argument_is_told_with_the_usage(arguments: list[str], said: str) -> None:
+    done = bootstrapped(*arguments)
+    assert done.returncode == 2
+    assert done.stderr.startswith("usage: python3 -m grader.setup.bootstrap ")
+    assert done.stderr.endswith(f"{said}\n") or f"{said} (choose from" in done.stderr
+
+
+@pytest.mark.parametrize("arguments", [["tests"], ["tests", "--python", "python3"], ["--python=python3", "tests"]])
+def test_the_target_and_the_python_asked_for_are_set_up(
+    course: Course, monkeypatch: pytest.MonkeyPatch, arguments: list[str]
+) -> None:
+    asked: list[object] = []
+
+    def set_up(*given: object) -> int:
+        asked.extend(given)
+        return 7
+
+    monkeypatch.setattr(bootstrap, "set_up", set_up)
+    assert bootstrap.main(arguments) == 7
+    assert asked == [TESTS, machine.sourced_ros(os.environ, ROOT), course.python if len(arguments) > 1 else None]
+
+
+# --- make ---
+
+
+def make(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = ["env", "-i", "HOME=/nowhere", "make", "--no-print-directory", *arguments]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+def test_make_exports_a_path_where_there_is_none() -> None:
+    shown = make("--eval", "show: ; @env", "show").stdout
+    path = next(line for line in shown.splitlines() if line.startswith("PATH="))
+    assert {"/usr/bin", "/bin", "/usr/sbin"} <= set(path[len("PATH=") :].split(":"))
+
+
+def test_make_help_lists_every_target() -> None:
+    text = (ROOT / "Makefile").read_text(encoding="utf-8")
+    targets = text.split(".PHONY: ")[1].splitlines()[0].split()
+    assert [line.split()[1] for line in make("help").stdout.splitlines()] == sorted(targets, key=targets.index)
+
+
+def test_make_hands_on_the_python_asked_for_and_no_other() -> None:
+    assert "--python python3.12" in make("-n", "demo", "PYTHON=python3.12").stdout
+    assert "--python" not in make("-n", "demo").stdout
+
+
+def test_ci_runs_the_readmes_command() -> None:
+    script = ROOT / ".ci/run"
+    assert os.access(script, os.X_OK)
+    assert "make test" in script.read_text(encoding="utf-8")

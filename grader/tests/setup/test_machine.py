@@ -1,0 +1,247 @@
+from __future__ import annotations
+
+import ast
+import json
+import os
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.setup import machine
+from grader.setup.machine import Need, Python, SourcedRos
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+SYSTEMS = Python("/usr/bin/python3.11", (3, 11, 2), cpython=True, venv=True, headers=True)
+JAZZY = SourcedRos("/opt/ros/jazzy", (3, 12), turtlesim=False)
+
+
+@pytest.fixture
+def closed() -> Iterator[Path]:
+    """A folder below /tmp that only its owner can enter, with a folder in it."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name, "home")
+        (folder / "bin").mkdir(parents=True)
+        Path(name).chmod(0o755)
+        folder.chmod(0o700)
+        yield folder
+
+
+def fake_python(folder: Path, name: str, version: tuple[int, int, int], path: str | None = None) -> None:
+    """A program that answers the probe as an interpreter would."""
+    folder.mkdir(parents=True, exist_ok=True)
+    answer = {"path": path or str(folder / name), "version": version, "cpython": True, "venv": True, "headers": True}
+    (folder / name).write_text(f"#!/bin/sh\necho '{json.dumps(answer)}'\n")
+    (folder / name).chmod(0o755)
+
+
+def fake_ros(prefix: Path, *packages: str, python: str = "python3.12") -> None:
+    for package in packages:
+        index = prefix / "share/ament_index/resource_index/packages"
+        index.mkdir(parents=True, exist_ok=True)
+        (index / package).touch()
+    (prefix / f"lib/{python}/site-packages/rclpy").mkdir(parents=True)
+
+
+@pytest.mark.parametrize("name", ["__init__.py", "machine.py", "bootstrap.py"])
+def test_what_runs_first_reads_under_an_old_python(name: str) -> None:
+    tree = ast.parse((Path(machine.__file__).parent / name).read_text(encoding="utf-8"), feature_version=(3, 6))
+    future = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    assert "__future__" not in future
+
+
+# --- Python ---
+
+
+def test_finds_pythons_in_the_order_of_path_then_the_newest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine, "SYSTEM_PATH", (str(tmp_path / "system"),))
+    fake_python(tmp_path / "a", "python3", (3, 9, 1))
+    fake_python(tmp_path / "a", "python3.12", (3, 12, 1))
+    fake_python(tmp_path / "system", "python3", (3, 11, 2))
+    fake_python(tmp_path / "system", "python3.14", (3, 14, 0))
+    found = machine.find_pythons(str(tmp_path / "a"))
+    assert [python.version[1] for python in found] == [9, 11, 14, 12]
+
+
+def test_one_interpreter_of_two_names_is_found_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine, "SYSTEM_PATH", ())
+    fake_python(tmp_path, "python3", (3, 12, 1), "/x/python3.12")
+    fake_python(tmp_path, "python3.12", (3, 12, 1), "/x/python3.12")
+    assert len(list(machine.find_pythons(str(tmp_path)))) == 1
+
+
+def test_a_shim_that_only_complains_is_no_python(tmp_path: Path) -> None:
+    shim = tmp_path / "python3"
+    shim.write_text("#!/bin/sh\necho 'python3: command not found' >&2\nexit 127\n")
+    shim.chmod(0o755)
+    assert machine.probe(str(shim)) is None
+
+
+def test_probe_names_the_interpreter_behind_a_virtual_environment() -> None:
+    python = machine.probe(str(Path(sys.prefix, "bin/python3")))
+    assert python is not None
+    assert not Path(python.path).is_relative_to(sys.prefix)
+    assert python.cpython
+
+
+def test_takes_the_first_python_that_will_do() -> None:
+    old = SYSTEMS._replace(path="/a/python3.9", version=(3, 9, 9))
+    new = SYSTEMS._replace(path="/a/python3.15", version=(3, 15, 0))
+    pypy = SYSTEMS._replace(path="/a/pypy", cpython=False)
+    other = SYSTEMS._replace(path="/b/python3.12", version=(3, 12, 0))
+    assert machine.choose_python([old, new, pypy, SYSTEMS, other], root=False) == SYSTEMS
+    assert machine.choose_python([old, new, pypy], root=False) is None
+
+
+def test_prefers_a_python_that_lacks_nothing() -> None:
+    lacking = SYSTEMS._replace(headers=False)
+    whole = SYSTEMS._replace(path="/opt/python3.12", version=(3, 12, 0))
+    assert machine.choose_python([lacking, whole], root=False) == whole
+    assert machine.choose_python([lacking], root=False) == lacking
+
+
+def test_a_python_that_no_package_manager_can_complete_will_not_do() -> None:
+    assert machine.choose_python([SYSTEMS._replace(path="/opt/python3.12", venv=False)], root=False) is None
+
+
+def test_root_prefers_a_python_that_others_can_run(closed: Path) -> None:
+    roots = SYSTEMS._replace(path=str(closed / "bin/python3.12"))
+    assert machine.choose_python([roots, SYSTEMS], root=True) == SYSTEMS
+    assert machine.choose_python([roots, SYSTEMS], root=False) == roots
+    assert machine.choose_python([roots], root=True) == roots
+
+
+def test_a_sourced_ros_decides_the_version() -> None:
+    other = SYSTEMS._replace(path="/usr/bin/python3.12", version=(3, 12, 3))
+    assert machine.choose_python([SYSTEMS, other], root=False, wanted=(3, 12)) == other
+    assert machine.choose_python([SYSTEMS], root=False, wanted=(3, 12)) is None
+
+
+def test_closed_folder_is_the_topmost_one(closed: Path) -> None:
+    (closed / "bin").chmod(0o700)
+    assert machine.closed_folder(str(closed / "bin/python3")) == closed.resolve()
+    assert machine.closed_folder("/usr/bin/python3") is None
+
+
+# --- ROS 2 ---
+
+
+def test_a_sourced_jazzy_is_found_with_its_python_and_turtlesim(tmp_path: Path) -> None:
+    fake_ros(tmp_path / "jazzy", "rclpy", "turtlesim")
+    env = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": f"{tmp_path}/mine:{tmp_path}/jazzy"}
+    assert machine.sourced_ros(env, tmp_path / ".venv") == SourcedRos(f"{tmp_path}/jazzy", (3, 12), turtlesim=True)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"ROS_DISTRO": "humble"}, {"ROS_DISTRO": ""}, {"AMENT_PREFIX_PATH": ""}, {"AMENT_PREFIX_PATH": "/nowhere"}],
+)
+def test_another_or_half_a_ros_is_not_a_sourced_jazzy(tmp_path: Path, change: dict[str, str]) -> None:
+    fake_ros(tmp_path, "rclpy")
+    env = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": str(tmp_path), **change}
+    assert machine.sourced_ros(env, tmp_path / ".venv") is None
+
+
+def test_our_own_wheels_are_not_a_sourced_ros(tmp_path: Path) -> None:
+    fake_ros(tmp_path, "rclpy")
+    env = {"ROS_DISTRO": "jazzy", "AMENT_PREFIX_PATH": str(tmp_path)}
+    assert machine.sourced_ros(env, tmp_path) is None
+
+
+# --- the platform ---
+
+
+@pytest.mark.parametrize(
+    ("system", "architecture", "libc", "seen"),
+    [
+        ("Darwin", "arm64", ("", ""), "This is macOS on arm64."),
+        ("Windows", "AMD64", ("", ""), "This is Windows on AMD64."),
+        ("Linux", "aarch64", ("glibc", "2.36"), "This is Linux on aarch64."),
+        ("Linux", "x86_64", ("", ""), "another C library than glibc"),
+        ("Linux", "x86_64", ("glibc", "2.17"), "a Linux with glibc 2.17."),
+    ],
+)
+def test_other_platforms_are_told_two_ways(system: str, architecture: str, libc: tuple[str, str], seen: str) -> None:
+    problem = machine.platform_problem(system, architecture, libc, None)
+    assert seen in problem
+    assert "docker run" in problem
+    assert "source /opt/ros/jazzy/setup.bash" in problem
+
+
+def test_platforms_that_will_do() -> None:
+    assert machine.platform_problem("Linux", "x86_64", ("glibc", "2.28"), None) == ""
+    assert machine.platform_problem("Linux", "aarch64", ("glibc", "2.39"), JAZZY) == ""
+    assert machine.platform_problem("Darwin", "arm64", ("", ""), JAZZY) != ""
+
+
+# --- what is missing ---
+
+
+def test_names_the_packages_of_missing_programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine, "SYSTEM_PATH", ())
+    assert [need.package for need in machine.missing_tools(str(tmp_path), None)] == [
+        "bubblewrap",
+        "util-linux",
+        "g++",
+        "cmake",
+        "make",
+    ]
+    (tmp_path / "cmake").touch(mode=0o755)
+    assert "cmake" not in [need.package for need in machine.missing_tools(str(tmp_path), None)]
+
+
+def test_an_installed_turtlesim_needs_no_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine, "SYSTEM_PATH", ())
+    needs = machine.missing_tools(str(tmp_path), JAZZY._replace(turtlesim=True))
+    assert [need.package for need in needs] == ["bubblewrap", "util-linux"]
+
+
+def test_any_browser_will_do_for_the_tests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine, "SYSTEM_PATH", ())
+    assert [need.package for need in machine.missing_of_tests(str(tmp_path))] == ["chromium", "shellcheck"]
+    (tmp_path / "google-chrome").touch(mode=0o755)
+    assert [need.package for need in machine.missing_of_tests(str(tmp_path))] == ["shellcheck"]
+
+
+def test_names_the_packages_of_the_python_that_lacks_them() -> None:
+    default = SYSTEMS._replace(path=os.path.realpath("/usr/bin/python3"), venv=False, headers=False)
+    other = SYSTEMS._replace(path="/usr/bin/python3.13-other", version=(3, 13, 1), venv=False, headers=False)
+    assert [need.package for need in machine.missing_of_python(default)] == ["python3-venv", "python3-dev"]
+    assert [need.package for need in machine.missing_of_python(other)] == ["python3.13-venv", "python3.13-dev"]
+    assert machine.missing_of_python(SYSTEMS) == []
+
+
+def test_one_message_with_one_command() -> None:
+    needs = [Need("a compiler", "g++"), Need("setpriv", "util-linux"), Need("prlimit", "util-linux")]
+    assert machine.lack_message(needs, root=False, apt=True).splitlines() == [
+        "The course needs these, which this system does not have:",
+        "  - a compiler",
+        "  - setpriv",
+        "  - prlimit",
+        "Install them with this command, then run make again:",
+        "",
+        "    sudo apt-get update && sudo apt-get install -y g++ util-linux",
+    ]
+    assert "\n    apt-get update && apt-get install -y g++ util-linux" in machine.lack_message(
+        needs, root=True, apt=True
+    )
+
+
+def test_without_apt_the_things_are_named_all_the_same() -> None:
+    message = machine.lack_message([Need("a compiler", "g++")], root=False, apt=False)
+    assert "a compiler" in message
+    assert "apt-get" not in message
+
+
+def test_no_python_at_all_names_python_and_a_way_round() -> None:
+    message = machine.lack_message(machine.missing_of_python(None), root=False, apt=True)
+    assert "CPython 3.10 to 3.14" in message
+    assert "apt-get install -y python3 python3-venv python3-dev" in message
+    assert "docker run" in message
+    assert "python3.12 python3.12-venv python3.12-dev" in machine.lack_message(
+        machine.missing_of_python(None, (3, 12)), root=False, apt=True
+    )

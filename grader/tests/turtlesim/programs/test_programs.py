@@ -1,0 +1,166 @@
+"""turtle_teleop_key, draw_square and mimic as a user starts them, beside turtlesim, on the real ROS 2."""
+
+from __future__ import annotations
+
+import math
+import os
+import signal
+from typing import TYPE_CHECKING
+
+import pexpect
+import pytest
+
+from grader.tests.ros2.world import World, world
+from grader.tests.waiting import HANG_S, until
+from grader.turtlesim.turtle import FRAME_S
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.tests.ros2.world import Running
+
+UP, LEFT = "\x1b[A", "\x1b[D"
+TELEOP = "ros2 run turtlesim turtle_teleop_key"
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    yield from world(tmp_path_factory.mktemp("alone"))
+
+
+@pytest.fixture
+def beside(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
+    yield from world(tmp_path_factory.mktemp("beside"))
+
+
+def terminal(of: World, command: str = "bash --norc --noprofile") -> pexpect.spawn:
+    program, *arguments = command.split()
+    return pexpect.spawn(program, arguments, env=of.env, cwd=of.home, encoding="utf-8", timeout=HANG_S)
+
+
+def poses(of: World, turtle: str) -> Running:
+    """Lines x,y,theta,linear,angular of a turtle from now on."""
+    return of.start(f"ros2 topic echo /{turtle}/pose --csv", ",")
+
+
+# --- turtle_teleop_key ----------------------------------------------------------------------------------------------
+
+
+def test_keys_drive_and_turn_the_turtle(beside: World) -> None:
+    turtlesim = beside.turtlesim()
+    seen = poses(beside, "turtle1")
+    keys = terminal(beside, f"{TELEOP} --ros-args -p scale_linear:=0.5")
+    keys.expect("Q quits")
+    keys.send(UP)
+    seen.wait_for(",0.5,0.0")
+    keys.send(LEFT)
+    seen.wait_for(",0.0,2.0")
+    keys.send("r")
+    turtlesim.wait_for("Rotation goal completed")
+    assert float(seen.lines[-1].split(",")[2]) == pytest.approx(math.pi / 2, abs=0.05)
+    keys.send("v")
+    seen.wait_for(",0.0,-1.0")
+    keys.send("f")
+    turtlesim.wait_for("Rotation goal canceled")
+    keys.send("q")
+    keys.expect(pexpect.EOF)
+    keys.close()
+    assert keys.exitstatus == 0
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        "Ctrl-C",
+        "SIGHUP",
+        "Ctrl-Z, fg, q",
+        *(pytest.param(how, marks=pytest.mark.exhaustive) for how in ("q", "Ctrl-\\", "SIGTERM")),
+    ],
+)
+def test_the_terminal_is_left_as_it_was(alone: World, how: str) -> None:
+    shell = terminal(alone)
+    shell.sendline("PS1=ready''; echo $$; stty -a > before")
+    shell.expect("ready")
+    shell.sendline(TELEOP)
+    shell.expect("Q quits")
+    job = os.tcgetpgrp(shell.child_fd)
+    if how == "Ctrl-Z, fg, q":
+        shell.send("\x1a")
+        shell.expect("ready")
+        shell.sendline("fg")
+        shell.expect(TELEOP)
+        # As soon as keys are read one by one again.
+        until(lambda: not shell.getecho())
+    if how.startswith("SIG"):
+        os.kill(job, signal.Signals[how])
+    else:
+        shell.send({"Ctrl-C": "\x03", "Ctrl-\\": "\x1c"}.get(how, "q"))
+    shell.expect("ready")
+    shell.sendline("stty -a > after; exit")
+    shell.expect(pexpect.EOF)
+    shell.close()
+    assert (alone.home / "after").read_text() == (alone.home / "before").read_text()
+
+
+def test_it_ends_when_the_terminal_is_lost(alone: World) -> None:
+    keys = terminal(alone, TELEOP)
+    keys.expect("Q quits")
+    # Not `close`, which would kill it.
+    keys.ptyproc.fileobj.close()
+    keys.ptyproc.closed = keys.closed = True
+    until(lambda: not keys.isalive())
+    # It ended by itself.
+    assert keys.signalstatus is None
+
+
+def test_it_says_when_nobody_listens(alone: World) -> None:
+    keys = terminal(alone, TELEOP)
+    keys.expect("Q quits")
+    keys.send(UP)
+    keys.expect(r"Nobody listens on /turtle1/cmd_vel here \(ROS_DOMAIN_ID is [0-9]+\)")
+    keys.send("q")
+    keys.expect(pexpect.EOF)
+
+
+@pytest.mark.parametrize("stdin", ["echo | ", ""])
+def test_it_says_that_it_needs_a_terminal(alone: World, stdin: str) -> None:
+    done = alone.run(f"{stdin}{TELEOP}")
+    assert done.code == 1
+    assert "standard input is none" in done.stderr
+    assert done.stdout == ""
+
+
+# --- draw_square, mimic ---------------------------------------------------------------------------------------------
+
+
+def test_draw_square_resets_and_drives_around_the_corner(beside: World) -> None:
+    beside.turtlesim()
+    moved = beside.run("ros2 service call /turtle1/teleport_absolute turtlesim/srv/TeleportAbsolute '{x: 1.0, y: 9.0}'")
+    assert moved.code == 0
+    seen = poses(beside, "turtle1")
+    square = beside.start("ros2 run turtlesim draw_square")
+    # The rest of the square is tried on the simulator's motion, without waiting for it.
+    square.wait_for("Driving to [7.54, 7.54]")
+    assert square.stop() == 0
+    assert not any("Traceback" in line for line in square.lines)
+    path = [tuple(map(float, line.split(",")[:3])) for line in seen.lines if line.count(",") == 4]
+    path = [place for place in path if place[:2] != (1.0, 9.0)]
+    # Reset to the middle, 2 m straight to the right, then upwards.
+    assert path[0] == pytest.approx((5.544445, 5.544445, 0.0), abs=1e-4)
+    assert max(abs(y - 5.544445) for x, y, _ in path if x < 7.5) < 0.02
+    assert path[-1][0] == pytest.approx(7.544445, abs=0.02)
+    assert path[-1][2] == pytest.approx(math.pi / 2, abs=0.05)
+
+
+def test_mimic_drives_one_turtle_as_the_other_moves(beside: World) -> None:
+    beside.turtlesim()
+    assert "turtle2" in beside.run("ros2 service call /spawn turtlesim/srv/Spawn '{x: 2.0, y: 2.0}'").stdout
+    beside.start("ros2 run turtlesim mimic --ros-args -r input/pose:=turtle1/pose -r output/cmd_vel:=turtle2/cmd_vel")
+    first, second = poses(beside, "turtle1"), poses(beside, "turtle2")
+    twist = "{linear: {x: 0.75}, angular: {z: -0.25}}"
+    beside.start(f"ros2 topic pub -r 10 /turtle1/cmd_vel geometry_msgs/msg/Twist '{twist}'")
+    first.wait_for(",0.75,-0.25")
+    # It has the same velocity, and that frame after frame: so it moves.
+    second.wait_for(",0.75,-0.25", times=round(1.0 / FRAME_S))
+    *_, last = (line for line in second.lines if line.endswith(",0.75,-0.25"))
+    assert math.dist((2.0, 2.0), tuple(map(float, last.split(",")[:2]))) > 0.5

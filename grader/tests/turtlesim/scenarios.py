@@ -1,0 +1,355 @@
+"""What test_node.py runs in processes that have ROS 2: a driven turtlesim and a client of it, side by side."""
+
+# ruff: noqa: ANN401 - to mypy, what ROS 2 brings is Any
+
+from __future__ import annotations
+
+import itertools
+import math
+import threading
+import time
+from typing import TYPE_CHECKING, Any
+
+import rclpy
+from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import Twist, Vector3
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import DescribeParameters, ListParameters, SetParametersAtomically
+from rclpy.action import ActionClient, get_action_server_names_and_types_by_node
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.serialization import deserialize_message, serialize_message
+from std_srvs.srv import Empty
+from turtlesim.action import RotateAbsolute
+from turtlesim.msg import Color, Pose
+from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
+
+from grader.turtlesim.interface import QOS
+from grader.turtlesim.node import TurtlesimNode
+from grader.turtlesim.standalone import spin
+from grader.turtlesim.turtle import FRAME_S, Start
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+HANG_S = 30.0
+STATUS = {
+    GoalStatus.STATUS_SUCCEEDED: "succeeded",
+    GoalStatus.STATUS_CANCELED: "canceled",
+    GoalStatus.STATUS_ABORTED: "aborted",
+}
+
+
+class Rig:
+    """A turtlesim whose frames follow each other as fast as they can, and a client. Times out loudly."""
+
+    def __init__(self, **hooks_and_start: Any) -> None:
+        rclpy.init(args=[])
+        self.turtlesim = TurtlesimNode(**hooks_and_start)
+        self.client = rclpy.create_node("client")
+        self.executor = SingleThreadedExecutor()
+        self.executor.add_node(self.turtlesim)
+        self.executor.add_node(self.client)
+        self.frames = 0
+
+    def __enter__(self) -> Rig:  # noqa: PYI034 - Self is younger than Python 3.10
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        rclpy.shutdown()
+
+    def until(self, condition: Callable[[], bool]) -> None:
+        """Let time go on until something holds."""
+        deadline = time.monotonic() + HANG_S
+        while not condition():
+            assert time.monotonic() < deadline, "it never came"
+            self.executor.spin_once(timeout_sec=0.001)
+            self.frame()
+
+    def frame(self, count: int = 1) -> None:
+        for _ in range(count):
+            self.turtlesim.frame(self.frames * FRAME_S)
+            self.frames += 1
+
+    def call(self, service_type: Any, service: str, **fields: Any) -> Any:
+        client = self.client.create_client(service_type, service)
+        self.until(client.service_is_ready)
+        future = client.call_async(service_type.Request(**fields))
+        self.until(future.done)
+        self.client.destroy_client(client)
+        return future.result()
+
+    def publisher(self, name: str = "/turtle1/cmd_vel") -> Any:
+        publisher = self.client.create_publisher(Twist, name, 10)
+        self.until(lambda: publisher.get_subscription_count() == 1)
+        return publisher
+
+    def state(self, name: str = "turtle1") -> Any:
+        return self.turtlesim.turtle_state(name)
+
+    def goal(self, theta: float, feedback: list[float]) -> Any:
+        """Have a goal of rotate_absolute accepted."""
+        action = ActionClient(self.client, RotateAbsolute, "/turtle1/rotate_absolute")
+        self.until(action.server_is_ready)
+        sent = action.send_goal_async(
+            RotateAbsolute.Goal(theta=theta),
+            feedback_callback=lambda message: feedback.append(message.feedback.remaining),
+        )
+        self.until(sent.done)
+        return sent.result()
+
+    def result(self, handle: Any) -> tuple[str, float]:
+        answer = handle.get_result_async()
+        self.until(answer.done)
+        return STATUS[answer.result().status], answer.result().result.delta
+
+
+def twist(x: float = 0.0, z: float = 0.0) -> Twist:
+    return Twist(linear=Vector3(x=x), angular=Vector3(z=z))
+
+
+def graph() -> dict[str, Any]:
+    with Rig() as rig:
+        rig.until(lambda: "turtlesim" in rig.client.get_node_names())
+        found: dict[str, Any] = {}
+        for section, ask in {
+            "Subscribers": rig.client.get_subscriber_names_and_types_by_node,
+            "Publishers": rig.client.get_publisher_names_and_types_by_node,
+            "Service Servers": rig.client.get_service_names_and_types_by_node,
+            "Action Servers": lambda *of: get_action_server_names_and_types_by_node(rig.client, *of),
+        }.items():
+            entries = [
+                f"{name}: {', '.join(types)}" for name, types in ask("turtlesim", "/") if "/_action/" not in name
+            ]
+            found[section] = sorted(entries)
+        profiles = [
+            *rig.client.get_subscriptions_info_by_topic("/turtle1/cmd_vel"),
+            *rig.client.get_publishers_info_by_topic("/turtle1/pose"),
+            *rig.client.get_publishers_info_by_topic("/turtle1/color_sensor"),
+        ]
+        found["QoS"] = [(p.qos_profile.reliability.name, p.qos_profile.durability.name) for p in profiles]
+        found["depth"] = QOS.depth
+        found["timers"] = len(list(rig.turtlesim.timers))
+        return found
+
+
+def parameters() -> dict[str, Any]:
+    with Rig() as rig:
+
+        def change(name: str, value: ParameterValue) -> tuple[bool, str]:
+            answer = rig.call(
+                SetParametersAtomically,
+                "/turtlesim/set_parameters_atomically",
+                parameters=[Parameter(name=name, value=value)],
+            )
+            return answer.result.successful, answer.result.reason
+
+        def integer(value: int) -> ParameterValue:
+            return ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=value)
+
+        names = rig.call(ListParameters, "/turtlesim/list_parameters").result.names
+        described = rig.call(DescribeParameters, "/turtlesim/describe_parameters", names=names).descriptors
+        found = {
+            "names": sorted(names),
+            "described": {
+                d.name: [
+                    d.type,
+                    d.description,
+                    [[r.from_value, r.to_value, r.step] for r in d.integer_range],
+                    d.read_only,
+                ]
+                for d in described
+            },
+            "refused": change("background_r", integer(999)),
+            "wrong type": change("background_r", ParameterValue(type=ParameterType.PARAMETER_STRING))[0],
+            "accepted": change("background_r", integer(150)),
+        }
+        found["background"] = rig.turtlesim.world.canvas.background
+        change("holonomic", ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=True))
+        found["holonomic"] = rig.turtlesim.world.holonomic
+        return found
+
+
+def as_recorded() -> dict[str, Any]:
+    """Do what was done while the log of the real turtlesim was recorded."""
+    with Rig() as rig:
+        found = {
+            "spawn": rig.call(Spawn, "/spawn", x=2.0, y=2.0, theta=0.2, name="t2").name,
+            "again": rig.call(Spawn, "/spawn", x=2.0, y=2.0, theta=0.2, name="t2").name,
+            "unnamed": rig.call(Spawn, "/spawn", x=3.0, y=3.0).name,
+        }
+        rig.call(Kill, "/kill", name="nope")
+        rig.call(Empty, "/clear")
+        rig.call(Empty, "/reset")
+        rig.result(rig.goal(1.57, []))
+        rig.result(rig.goal(0.0, []))
+        return found
+
+
+def services() -> dict[str, Any]:
+    with Rig(start=Start(4.0, 5.0, 0.25)) as rig:
+        found: dict[str, Any] = {"start": rig.state()[:3]}
+        rig.call(TeleportAbsolute, "/turtle1/teleport_absolute", x=1.0, y=2.0, theta=0.5)
+        rig.frame()
+        found["absolute"] = rig.state()[:3]
+        rig.call(TeleportRelative, "/turtle1/teleport_relative", linear=1.0, angular=-0.5)
+        rig.frame()
+        found["relative"] = rig.state()[:3]
+        pen = {"r": 1, "g": 2, "b": 3, "width": 0, "off": 0}
+        turtle = rig.turtlesim.world.turtles["turtle1"]
+        rig.call(SetPen, "/turtle1/set_pen", **pen)
+        found["pen"] = [turtle.pen.color, turtle.pen.width, turtle.pen.down]
+        rig.call(SetPen, "/turtle1/set_pen", r=9, g=9, b=9, width=9, off=1)
+        found["pen up"] = [turtle.pen.color, turtle.pen.width, turtle.pen.down]
+
+        rig.call(Spawn, "/spawn", x=20.0, y=-3.0, theta=7.0, name="far")
+        rig.frame()
+        found["outside"] = rig.state("far")[:3]
+        rig.call(Spawn, "/spawn", x=8.0, y=8.0, name="near")
+        colors: list[Color] = []
+        poses: list[Pose] = []
+        rig.client.create_subscription(Pose, "/near/pose", poses.append, 7)
+        rig.client.create_subscription(Color, "/near/color_sensor", colors.append, 7)
+        rig.until(lambda: bool(poses and colors))
+        found["seen"] = [colors[-1].r, colors[-1].g, colors[-1].b]
+        rig.call(Kill, "/kill", name="far")
+        rig.until(lambda: not any(name.startswith("/far/") for name, _ in names_of(rig, "topic")))
+        found["left by far"] = [name for name, _ in names_of(rig, "service") if name.startswith("/far/")]
+        rig.call(Empty, "/reset")
+        found["reset"] = rig.state()[:3]
+        return found
+
+
+def names_of(rig: Rig, what: str) -> list[tuple[str, list[str]]]:
+    ask = {
+        "topic": rig.turtlesim.get_publisher_names_and_types_by_node,
+        "service": rig.turtlesim.get_service_names_and_types_by_node,
+    }[what]
+    names: list[tuple[str, list[str]]] = ask("turtlesim", "/")
+    return names
+
+
+def rotations() -> dict[str, Any]:
+    with Rig() as rig:
+        feedback: list[float] = []
+        status, delta = rig.result(rig.goal(0.5, feedback))
+        found: dict[str, Any] = {"status": status, "delta": delta}
+        # The last of it may come after the result, when the client listens no more.
+        found["feedback"] = len(feedback) > 5 and all(a > b for a, b in itertools.pairwise(feedback))
+        # The goals below turn for seconds: they are still going on when something happens to them.
+        goal = rig.goal(3.0, [])
+        cancelled = goal.cancel_goal_async()
+        rig.until(cancelled.done)
+        found["cancel"] = rig.result(goal)[0]
+        first, second = rig.goal(-3.0, []), rig.goal(-2.9, [])
+        found["second goal"] = rig.result(first)[0]
+        publisher = rig.publisher()
+        publisher.publish(twist(x=1.0))
+        found["command"] = rig.result(second)[0]
+        goal = rig.goal(3.0, [])
+        rig.call(Empty, "/reset")
+        found["reset"] = rig.result(goal)[0]
+        goal = rig.goal(3.0, [])
+        rig.call(Kill, "/kill", name="turtle1")
+        rig.frame(20)
+        found["after kill"] = rig.call(Spawn, "/spawn", x=1.0, y=1.0, name="turtle1").name
+        return found
+
+
+def hostile() -> dict[str, Any]:
+    with Rig() as rig:
+
+        def spawn(name: str, x: float = 1.0, theta: float = 0.0) -> str:
+            answer: str = rig.call(Spawn, "/spawn", x=x, y=1.0, theta=theta, name=name).name
+            return answer
+
+        found: dict[str, Any] = {
+            "names": [spawn(name) for name in ("two words", "9lives", "a//b", "ä", "x" * 300, "{", "/", "a-b")],
+            "turtles": list(rig.turtlesim.world.turtles),
+            "no number": spawn("nan", x=math.nan, theta=math.inf),
+        }
+        publisher = rig.publisher()
+        for value in (math.nan, math.inf, -math.inf, 1e300):
+            publisher.publish(twist(x=value, z=value))
+        before = rig.frames
+        rig.until(lambda: rig.frames > before + 50)
+        rig.call(TeleportAbsolute, "/turtle1/teleport_absolute", x=math.nan, y=math.inf, theta=math.nan)
+        rig.call(TeleportRelative, "/turtle1/teleport_relative", linear=math.inf, angular=-math.inf)
+        rig.frame(3)
+        rig.goal(math.nan, [])
+        rig.call(SetPen, "/turtle1/set_pen", width=255)
+        rig.call(Empty, "/reset")
+        publisher.publish(twist())
+        rig.frame(3)
+        found["recovers"] = all(math.isfinite(value) for value in rig.state()[:3])
+        while spawn(""):
+            pass
+        found["most"] = len(rig.turtlesim.world.turtles)
+        for _ in range(3):
+            rig.call(Empty, "/reset")
+        rig.frame(20)
+        found["after"] = list(rig.turtlesim.world.turtles)
+        return found
+
+
+def hooks() -> dict[str, Any]:
+    commands: list[tuple[str, bytes, Any]] = []
+    published: list[tuple[str, str, bytes]] = []
+    interventions: list[str] = []
+    with Rig(
+        on_command=lambda *of: commands.append(of),
+        on_publish=lambda *of: published.append(of),
+        on_intervention=interventions.append,
+    ) as rig:
+        publisher = rig.publisher()
+        message = twist(x=2.0, z=1.0)
+        publisher.publish(message)
+        rig.until(lambda: bool(commands))
+        published.clear()
+        rig.frame()
+        state = rig.state()
+        pose = deserialize_message(published[0][2], Pose)
+        rig.call(Empty, "/clear")
+        rig.call(Spawn, "/spawn", name="t")
+        rig.call(SetPen, "/turtle1/set_pen")
+        rig.call(TeleportAbsolute, "/turtle1/teleport_absolute")
+        rig.call(TeleportRelative, "/turtle1/teleport_relative")
+        rig.call(Kill, "/kill", name="t")
+        rig.goal(0.0, [])
+        red = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=200)
+        holonomic = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=True)
+        for name, value in (("background_r", red), ("holonomic", holonomic)):
+            rig.call(
+                SetParametersAtomically,
+                "/turtlesim/set_parameters_atomically",
+                parameters=[Parameter(name=name, value=value)],
+            )
+        rig.call(Empty, "/reset")
+        topic, data, heard = commands[0]
+        return {
+            "topic": topic,
+            "as sent": data == serialize_message(message) and heard == message,
+            "published": [entry[:2] for entry in published[:2]],
+            "pose as state": max(abs(a - b) for a, b in zip((pose.x, pose.y, pose.theta), state[:3], strict=True))
+            < 1e-6,
+            "interventions": interventions,
+        }
+
+
+def late_frames() -> list[float]:
+    """Run alone at wall time; one frame takes as long as ten."""
+    times: list[float] = []
+    stop = threading.Event()
+
+    class Slow(TurtlesimNode):
+        def frame(self, now_s: float) -> None:
+            super().frame(now_s)
+            times.append(now_s)
+            if len(times) == 5:
+                time.sleep(10 * FRAME_S)
+            if len(times) == 30:
+                stop.set()
+
+    rclpy.init(args=[])
+    spin(Slow(), stop)
+    rclpy.shutdown()
+    return times

@@ -1,0 +1,233 @@
+"""The node turtlesim over the real rclpy, compared with what the real turtlesim was recorded to show."""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from PIL import Image
+
+from grader.turtlesim.turtle import FRAME_S, SIDE_M
+
+if TYPE_CHECKING:
+    from grader.tests.in_ros import InRos
+
+GOLDEN = Path(__file__).parents[1] / "golden" / "ros2"
+INTERFACES = Path(__file__).parents[2] / "turtlesim/package"
+
+
+def golden(name: str) -> list[str]:
+    """The recorded lines of output, without the command and its exit code."""
+    lines = (GOLDEN / name).read_text().splitlines()
+    return [line for line in lines if not line.startswith(("$ ", "[exit "))]
+
+
+def log_of(stderr: str) -> list[str]:
+    """Level and text of each line that the node logged, without its time."""
+    return re.findall(r"^(\[[A-Z]+\]) \[[0-9.]+\] (\[turtlesim\]: .*)$", stderr, re.MULTILINE)
+
+
+# --- graph ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def graph(in_ros: InRos) -> dict[str, Any]:
+    found: dict[str, Any] = in_ros.run("simulator.scenarios:graph").result
+    return found
+
+
+@pytest.mark.parametrize("section", ["Subscribers", "Publishers", "Service Servers", "Action Servers"])
+def test_the_node_has_what_the_real_one_has(graph: dict[str, list[str]], section: str) -> None:
+    recorded: dict[str, list[str]] = {}
+    for line in golden("node_info_turtlesim.txt")[1:]:
+        if line.endswith(":") and not line.startswith("    "):
+            entries = recorded.setdefault(line.strip(" :"), [])
+        elif line.strip():
+            entries.append(line.strip())
+    assert graph[section] == sorted(recorded[section])
+
+
+def test_topics_are_reliable_and_volatile_and_keep_seven(graph: dict[str, Any]) -> None:
+    assert graph["QoS"] == [["RELIABLE", "VOLATILE"]] * 3
+    assert graph["depth"] == 7
+
+
+def test_a_driven_node_has_no_timer(graph: dict[str, Any]) -> None:
+    assert graph["timers"] == 0
+
+
+@pytest.mark.parametrize(
+    ("shown", "source"),
+    [
+        ("interface_show_pose.txt", "msg/Pose.msg"),
+        ("interface_show_color.txt", "msg/Color.msg"),
+        ("interface_show_srv_Spawn.txt", "srv/Spawn.srv"),
+        ("interface_show_rotate_absolute.txt", "action/RotateAbsolute.action"),
+    ],
+)
+def test_interfaces_read_as_the_real_ones(shown: str, source: str) -> None:
+    assert (INTERFACES / source).read_text().splitlines() == golden(shown)
+
+
+# --- parameters -----------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def parameters(in_ros: InRos) -> dict[str, Any]:
+    found: dict[str, Any] = in_ros.run("simulator.scenarios:parameters").result
+    return found
+
+
+def test_parameters_are_those_of_the_real_one(parameters: dict[str, Any]) -> None:
+    lines = golden("param_list.txt")
+    assert parameters["names"] == [line.strip() for line in lines[lines.index("/turtlesim:") + 1 :]]
+
+
+def test_parameters_are_described_as_by_the_real_one(parameters: dict[str, Any]) -> None:
+    types = {"boolean": 1, "integer": 2, "string": 4}
+    text = "\n".join(golden("param_describe_turtlesim.txt"))
+    for block in text.split("Parameter name: ")[1:]:
+        name, *lines = block.splitlines()
+        told = dict(line.strip().split(": ", 1) for line in lines if ": " in line)
+        limits = [[int(told["Min value"]), int(told["Max value"]), int(told["Step"])]] if "Min value" in told else []
+        assert parameters["described"][name] == [
+            types[told["Type"]],
+            told.get("Description", ""),
+            limits,
+            told.get("Read only") == "true",
+        ]
+
+
+def test_a_colour_out_of_range_is_refused_in_the_same_words(parameters: dict[str, Any]) -> None:
+    said = golden("param_set_out_of_range.stderr.txt")[0].removeprefix("Setting parameter failed: ")
+    assert parameters["refused"] == [False, said]
+    assert not parameters["wrong type"]
+
+
+def test_parameters_take_effect(parameters: dict[str, Any]) -> None:
+    assert parameters["accepted"] == [True, ""]
+    assert parameters["background"] == [150, 86, 255]
+    assert parameters["holonomic"]
+
+
+# --- services and the action ----------------------------------------------------------------------------------------
+
+
+def test_log_and_answers_are_those_of_the_real_one(in_ros: InRos) -> None:
+    ran = in_ros.run("simulator.scenarios:as_recorded")
+    assert ran.result == {"spawn": "t2", "again": "", "unnamed": "turtle2"}
+    assert log_of(ran.stderr) == log_of((GOLDEN / "node-turtlesim_node.stderr.txt").read_text())
+
+
+def test_services(in_ros: InRos) -> None:
+    found = in_ros.run("simulator.scenarios:services").result
+    assert found["start"] == pytest.approx([4.0, 5.0, 0.25])
+    assert found["absolute"] == pytest.approx([1.0, 2.0, 0.5])
+    assert found["relative"] == pytest.approx([2.0, 2.0, 0.0])
+    assert found["pen"] == [[1, 2, 3], 1, True]
+    assert found["pen up"] == [[1, 2, 3], 1, False]
+    assert found["outside"] == pytest.approx([SIDE_M, 0.0, 7.0 - 6.283185307])
+    assert found["seen"] == [69, 86, 255]
+    assert found["left by far"] == []
+    assert found["reset"] == pytest.approx([4.0, 5.0, 0.25])
+
+
+def test_rotate_absolute(in_ros: InRos) -> None:
+    found = in_ros.run("simulator.scenarios:rotations").result
+    assert found["status"] == "succeeded"
+    assert found["delta"] == pytest.approx(-0.5, abs=0.021)
+    assert found["feedback"]
+    assert found["cancel"] == "canceled"
+    assert (found["second goal"], found["command"], found["reset"]) == ("aborted", "aborted", "aborted")
+    assert found["after kill"] == "turtle1"
+
+
+def test_wrong_requests_do_not_stop_the_node(in_ros: InRos) -> None:
+    found = in_ros.run("simulator.scenarios:hostile").result
+    assert found["names"] == [""] * 8
+    assert found["turtles"] == ["turtle1"]
+    assert found["no number"] == "nan"
+    assert found["recovers"]
+    assert found["most"] == 64
+    assert found["after"] == ["turtle1"]
+
+
+def test_a_trial_is_told_what_the_node_hears_and_says(in_ros: InRos) -> None:
+    found = in_ros.run("simulator.scenarios:hooks").result
+    assert found["topic"] == "/turtle1/cmd_vel"
+    assert found["as sent"]
+    assert found["published"] == [
+        ["/turtle1/pose", "turtlesim/msg/Pose"],
+        ["/turtle1/color_sensor", "turtlesim/msg/Color"],
+    ]
+    assert found["pose as state"]
+    assert found["interventions"] == [
+        "clear",
+        "spawn",
+        "set_pen",
+        "teleport_absolute",
+        "teleport_relative",
+        "kill",
+        "rotate_absolute",
+        "set_background",
+        "set_parameters",
+        "reset",
+    ]
+
+
+# --- alone ----------------------------------------------------------------------------------------------------------
+
+
+def test_a_late_frame_is_caught_up_and_none_left_out(in_ros: InRos) -> None:
+    times = in_ros.run("simulator.scenarios:late_frames").result
+    assert times == pytest.approx([frame * FRAME_S for frame in range(30)])
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_executable_runs_until_ctrl_c_and_leaves_a_picture(
+    in_ros: InRos, tmp_path: Path, number: signal.Signals
+) -> None:
+    if in_ros.underlay is None:
+        pytest.skip("this ROS 2 has a turtlesim of its own")
+    image = tmp_path / "canvas.png"
+    node = in_ros.underlay / "lib/turtlesim/turtlesim_node"
+    command = [str(node), "--image", str(image), "--ros-args", "-r", "__node:=pond", "-p", "background_r:=0"]
+    with subprocess.Popen(command, env=in_ros.environment(), stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        lines = [process.stderr.readline(), process.stderr.readline()]
+        process.send_signal(number)
+        rest = process.stderr.read()
+    assert process.returncode == 0
+    assert lines[0].endswith("[pond]: Starting turtlesim with node name /pond\n")
+    assert "Spawning turtle [turtle1]" in lines[1]
+    assert rest == ""
+    with Image.open(image) as picture:
+        assert picture.size == (500, 500)
+        assert picture.getpixel((10, 10)) == (0, 86, 255)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--nope"], "unrecognized arguments: --nope"),
+        (["--ros-args", "-p", "background_r:=999"], "out of range"),
+        (["--ros-args", "-p", "background_r:=red"], "expecting type 'INTEGER'"),
+        (["--ros-args", "-p"], "Couldn't parse"),
+    ],
+)
+def test_wrong_arguments_end_with_2_and_one_message(in_ros: InRos, arguments: list[str], said: str) -> None:
+    done = subprocess.run(
+        [in_ros.here.python, "-m", "grader.turtlesim", *arguments],
+        env=in_ros.environment(),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr

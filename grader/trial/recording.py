@@ -1,0 +1,232 @@
+"""Recording: all that a trial saw, in memory."""
+
+from __future__ import annotations
+
+import base64
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+from grader.common.lazy import np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    import numpy.typing as npt
+
+    Floats = npt.NDArray[np.float64]
+
+AFTER_STALL_S = 0.05
+"""How long after a stall things still catch up (s)."""
+
+ClockName = Literal["simulated", "wall"]
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where a turtle is: x, y in m from the lower left corner, theta in rad, counter-clockwise from east."""
+
+    x: float
+    y: float
+    theta: float
+
+
+@dataclass(frozen=True)
+class Message:
+    """A message as it arrived.
+
+    `data` is its CDR serialization, `t_s` the arrival on the trial's clock (s, 0 when the scenario
+    starts, negative before), `mono_s` the arrival on CLOCK_MONOTONIC (s).
+    """
+
+    topic: str
+    type: str
+    data: bytes
+    t_s: float
+    mono_s: float
+
+
+@dataclass(frozen=True)
+class Command:
+    """A geometry_msgs/msg/Twist that reached the turtle on /turtle1/cmd_vel; m/s and rad/s, x, y, z each."""
+
+    t_s: float
+    mono_s: float
+    linear: tuple[float, float, float]
+    angular: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class LogLine:
+    """A line of /rosout by arrival; `level` is DEBUG, INFO, WARN, ERROR or FATAL."""
+
+    t_s: float
+    level: str
+    logger: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """A publisher or subscription in the ROS graph; `node` is the full name, as in "/draw_circle"."""
+
+    kind: Literal["publisher", "subscription"]
+    node: str
+    topic: str
+    type: str
+
+
+@dataclass(frozen=True)
+class Graph:
+    """The ROS graph at time `t_s` of the trial's clock, without the grader's own hidden nodes; /turtlesim is in it."""
+
+    t_s: float
+    nodes: tuple[str, ...]
+    endpoints: tuple[Endpoint, ...]
+
+
+@dataclass(frozen=True)
+class Frames:
+    """turtle1, one row a frame of the simulator (16 ms), from inside the simulator; arrays of shape (N,).
+
+    `t_s` s; `x`, `y` m; `theta` rad; `linear` m/s; `angular` rad/s; `wall` true where the frame was clamped.
+    """
+
+    t_s: Floats
+    x: Floats
+    y: Floats
+    theta: Floats
+    linear: Floats
+    angular: Floats
+    wall: npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Output:
+    """What a process wrote on one stream, decoded with replacement; `dropped` bytes beyond the cap were not kept.
+
+    `times` are the arrivals of the lines of `text` on the trial's clock (s), one a line.
+    """
+
+    text: str
+    dropped: int = 0
+    times: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class ProcessEnd:
+    """How the node's process ended.
+
+    `by` says what it took: "itself" (before the scenario was over), or the signal after which it was gone.
+    `out_of`: the grader ended it, since it held more "memory", "processes" or "files" than a node may.
+    `stop_s` is the time from SIGINT to its end (s of wall time), None when it ended by itself; `t_s` is the end on
+    the trial's clock. `exit_code` is negative for a signal, as in subprocess.
+    """
+
+    by: Literal["itself", "SIGINT", "SIGTERM", "SIGKILL"]
+    exit_code: int
+    t_s: float
+    stop_s: float | None
+    out_of: str | None = None
+
+
+@dataclass(frozen=True)
+class Recording:
+    """All that one trial saw. `why` tells in words for a beginner why this clock judged."""
+
+    clock: ClockName
+    why: str
+    seed: int | None
+    start: Pose
+    duration_s: float
+    sigint_t_s: float
+    messages: tuple[Message, ...]
+    dropped: int
+    """Messages beyond what a recording keeps."""
+    commands: tuple[Command, ...]
+    frames: Frames
+    log: tuple[LogLine, ...]
+    graphs: tuple[Graph, ...]
+    topics: dict[str, tuple[str, ...]]
+    """Every topic of the graph with its types, whether messages could be recorded or not."""
+    stdout: Output
+    stderr: Output
+    end: ProcessEnd
+    own_nodes: tuple[str, ...] = ("/turtlesim",)
+    """The grader's nodes; every other node of the graph belongs to the submission."""
+    interventions: tuple[str, ...] = ()
+    """Services and actions of the simulator that somebody called, in order: "reset", "spawn", "teleport_absolute"."""
+    doubts: tuple[str, ...] = ()
+    """Why simulated time may have judged wrongly here; empty when it may be trusted."""
+    seconds: dict[str, float] = field(default_factory=dict)
+    """Wall time of the trial's parts: discovery, run, stop (s)."""
+    stalls: tuple[tuple[float, float], ...] = ()
+    """When the machine gave simulator or node no time to run in a wall-clock trial: (from, to) on its clock (s)."""
+    crowded: bool = False
+    """Whether others used the machine so much in a wall-clock trial that simulator and node often had to wait."""
+
+    @property
+    def stalled_s(self) -> float:
+        """How long all stalls were together (s)."""
+        return sum(end - begin for begin, end in self.stalls)
+
+    def stalled(self, t_s: float) -> bool:
+        """Whether an arrival at this time says nothing about the node: it fell in a stall, or right after one."""
+        return any(begin <= t_s <= end + AFTER_STALL_S for begin, end in self.stalls)
+
+
+def frames_of(rows: Iterable[tuple[float, float, float, float, float, float, bool]]) -> Frames:
+    """Make Frames of rows (t_s, x, y, theta, linear, angular, wall)."""
+    table = np.array([tuple(map(float, row)) for row in rows], dtype=np.float64).reshape(-1, 7)
+    t_s, x, y, theta, linear, angular, wall = table.T
+    return Frames(t_s, x, y, theta, linear, angular, wall.astype(np.bool_))
+
+
+def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
+    """Make plain data of a recording; without the messages where a bag beside it holds them."""
+    plain = {**recording.__dict__, "frames": None, "messages": None}
+    data: dict[str, Any] = asdict(Recording(**plain))
+    frames = recording.frames
+    data["frames"] = {name: getattr(frames, name).tolist() for name in Frames.__dataclass_fields__}
+    data["messages"] = [
+        [m.topic, m.type, base64.b64encode(m.data).decode() if messages else None, m.t_s, m.mono_s]
+        for m in recording.messages
+    ]
+    return data
+
+
+def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> Recording:
+    """Make a recording of what `to_json` gave; `payloads` are the messages' data where they were left out."""
+    contents = iter(payloads) if payloads is not None else (base64.b64decode(row[2]) for row in data["messages"])
+    frames = data["frames"]
+    wall = np.array(frames["wall"], dtype=np.bool_)
+    columns = {name: np.array(frames[name], dtype=np.float64) for name in frames if name != "wall"}
+    return Recording(
+        **{
+            **data,
+            "start": Pose(**data["start"]),
+            "messages": tuple(
+                Message(topic, kind, content, t_s, mono_s)
+                for (topic, kind, _, t_s, mono_s), content in zip(data["messages"], contents, strict=True)
+            ),
+            "commands": tuple(
+                Command(c["t_s"], c["mono_s"], tuple(c["linear"]), tuple(c["angular"])) for c in data["commands"]
+            ),
+            "frames": Frames(**columns, wall=wall),
+            "log": tuple(LogLine(**line) for line in data["log"]),
+            "graphs": tuple(
+                Graph(g["t_s"], tuple(g["nodes"]), tuple(Endpoint(**e) for e in g["endpoints"])) for g in data["graphs"]
+            ),
+            "topics": {topic: tuple(types) for topic, types in data["topics"].items()},
+            "stdout": _output(data["stdout"]),
+            "stderr": _output(data["stderr"]),
+            "end": ProcessEnd(**data["end"]),
+            "own_nodes": tuple(data["own_nodes"]),
+            "interventions": tuple(data["interventions"]),
+            "doubts": tuple(data["doubts"]),
+            "stalls": tuple((begin, end) for begin, end in data["stalls"]),
+        }
+    )
+
+
+def _output(data: dict[str, Any]) -> Output:
+    return Output(data["text"], data["dropped"], tuple(data["times"]))

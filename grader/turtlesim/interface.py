@@ -1,0 +1,193 @@
+"""What one turtle shows to ROS 2: its topics, services and action."""
+
+from __future__ import annotations
+
+import math
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from geometry_msgs.msg import Twist
+from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message, serialize_message
+from turtlesim.msg import Color, Pose
+from turtlesim.srv import SetPen, TeleportAbsolute, TeleportRelative
+
+from grader.turtlesim.rotate_absolute import RotateAbsoluteServer
+from grader.turtlesim.turtle import SIDE_M, Pen
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rclpy.node import Node
+
+    from grader.turtlesim.turtle import Rgb, State, Turtle
+    from grader.turtlesim.world import World
+
+# Reliable and volatile by default.
+QOS = QoSProfile(depth=7)
+
+_FLOAT32_MAX = 3.4028234663852886e38
+
+
+@dataclass(frozen=True)
+class Hooks:
+    """Who wants to know what the simulator hears and says. `data` is a message's CDR form.
+
+    `on_command(topic, data, twist)`: a command as it arrived, before it moves the turtle.
+    `on_publish(topic, type, data)`: a pose or colour as it is sent.
+    `on_intervention(name)`: somebody called a service or an action ("spawn", "rotate_absolute") or set a parameter
+    ("set_background" for the colours alone, else "set_parameters").
+    """
+
+    on_command: Callable[[str, bytes, Any], object]
+    on_publish: Callable[[str, str, bytes], object]
+    on_intervention: Callable[[str], object]
+
+
+class TurtleInterface:
+    """Topics, services and action of the turtle that is called `name`, whichever it is: a reset changes it."""
+
+    def __init__(self, node: Node, name: str, world: World, hooks: Hooks, pose_every: int = 1) -> None:
+        """Enter the ROS graph; whatever rclpy raises for a name that is none comes through, and nothing is left."""
+        self.name = name
+        self._world = world
+        self._hooks = hooks
+        self._pose_every = pose_every
+        self._frames = 0
+        self._log = node.get_logger()
+        with ExitStack() as parts:
+            command = node.create_subscription(Twist, f"{name}/cmd_vel", self._command, QOS, raw=True)
+            parts.callback(node.destroy_subscription, command)
+            self._command_topic: str = command.topic_name
+            self._pose = _Sender(node, Pose, f"{name}/pose", parts)
+            self._color = _Sender(node, Color, f"{name}/color_sensor", parts)
+            self._state: State | None = None
+            self._seen: Rgb | None = None
+            for service_type, service_name, serve in (
+                (SetPen, "set_pen", self._set_pen),
+                (TeleportRelative, "teleport_relative", self._teleport_relative),
+                (TeleportAbsolute, "teleport_absolute", self._teleport_absolute),
+            ):
+                service = node.create_service(service_type, f"{name}/{service_name}", serve)
+                parts.callback(node.destroy_service, service)
+            self._rotate = RotateAbsoluteServer(
+                node, name, self._turtle, lambda: hooks.on_intervention("rotate_absolute")
+            )
+            parts.callback(self._rotate.destroy)
+            self._parts = parts.pop_all()
+
+    def destroy(self) -> None:
+        """Leave the ROS graph."""
+        self._parts.close()
+
+    @property
+    def idle(self) -> bool:
+        """Whether nobody waits for the end of a rotation."""
+        return self._rotate.idle
+
+    def before_frame(self) -> None:
+        """Hand over what the turtle must know before it moves."""
+        if not self._rotate.idle:
+            self._rotate.before_frame()
+
+    def after_frame(self) -> None:
+        """Publish where the turtle is, what it sees, and how its rotation goes."""
+        if not self._rotate.idle:
+            self._rotate.after_frame()
+        turtle = self._turtle()
+        if turtle is None:
+            return
+        if turtle.clamped_from is not None:
+            x, y = turtle.clamped_from
+            # turtlesim counts y from the top in this line.
+            self._log.warning(f"Oh no! I hit the wall! (Clamping from [x={x:f}, y={SIDE_M - y:f}])")
+        self._publish(turtle)
+
+    def _publish(self, turtle: Turtle) -> None:
+        state = turtle.state()
+        if state != self._state:
+            self._state = state
+            pose = self._pose.message
+            pose.x, pose.y, pose.theta = _narrow(state.x), _narrow(state.y), state.theta
+            pose.linear_velocity, pose.angular_velocity = _narrow(state.linear), _narrow(state.angular)
+            self._pose.serialize()
+        if turtle.color != self._seen:
+            self._seen = turtle.color
+            color = self._color.message
+            color.r, color.g, color.b = turtle.color
+            self._color.serialize()
+        self._frames += 1
+        due = self._frames % self._pose_every == 0
+        for sender in (self._pose, self._color) if due else (self._color,):
+            sender.publish(sender.data)
+            self._hooks.on_publish(sender.topic, sender.type_name, sender.data)
+
+    def _turtle(self) -> Turtle | None:
+        return self._world.turtles.get(self.name)
+
+    def _command(self, data: bytes) -> None:
+        try:
+            twist = deserialize_message(data, Twist)
+        except Exception:
+            self._log.error(f"What came on {self._command_topic} is no Twist; ignored")
+            return
+        self._hooks.on_command(self._command_topic, data, twist)
+        turtle = self._turtle()
+        if turtle is None:
+            return
+        if turtle.rotation is not None:
+            self._log.warning("Velocity command received during rotation goal. Aborting goal")
+        self._world.command(self.name, twist.linear.x, twist.linear.y, twist.angular.z)
+
+    def _set_pen(self, request: SetPen.Request, response: SetPen.Response) -> SetPen.Response:
+        self._hooks.on_intervention("set_pen")
+        turtle = self._turtle()
+        if turtle is not None:
+            if request.off:
+                turtle.pen = replace(turtle.pen, down=False)
+            else:
+                # A width of 0 is a pen of one pixel, not the width it had.
+                turtle.pen = Pen((request.r, request.g, request.b), request.width or 1)
+        return response
+
+    def _teleport_absolute(
+        self, request: TeleportAbsolute.Request, response: TeleportAbsolute.Response
+    ) -> TeleportAbsolute.Response:
+        self._hooks.on_intervention("teleport_absolute")
+        turtle = self._turtle()
+        if turtle is not None:
+            turtle.teleport_absolute(request.x, request.y, request.theta)
+        return response
+
+    def _teleport_relative(
+        self, request: TeleportRelative.Request, response: TeleportRelative.Response
+    ) -> TeleportRelative.Response:
+        self._hooks.on_intervention("teleport_relative")
+        turtle = self._turtle()
+        if turtle is not None:
+            turtle.teleport_relative(request.linear, request.angular)
+        return response
+
+
+class _Sender:
+    """A publisher with its message, serialized only when it changed: a turtle at rest says the same each frame."""
+
+    def __init__(self, node: Node, message_type: type, topic: str, parts: ExitStack) -> None:
+        publisher = node.create_publisher(message_type, topic, QOS)
+        parts.callback(node.destroy_publisher, publisher)
+        self.publish = publisher.publish
+        self.topic: str = publisher.topic_name
+        self.type_name = f"turtlesim/msg/{message_type.__name__}"
+        self.message: Any = message_type()
+        self.data = b""
+
+    def serialize(self) -> None:
+        self.data = serialize_message(self.message)
+
+
+def _narrow(value: float) -> float:
+    """Return what a float32 field takes: beyond its range lies infinity, as in C++."""
+    if abs(value) > _FLOAT32_MAX:
+        return math.copysign(math.inf, value)
+    return value

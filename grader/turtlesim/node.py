@@ -1,0 +1,205 @@
+"""The node `turtlesim`: a headless turtlesim for ROS 2.
+
+Whoever owns the node spins it and calls `frame` once a frame with the time on its own clock: a trial, or alone.py at
+wall time. The node uses no timer and no ROS clock.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+from rcl_interfaces.msg import ParameterEvent, SetParametersResult
+from rclpy.node import Node
+from rclpy.qos import qos_profile_parameter_events
+from std_srvs.srv import Empty
+from turtlesim.srv import Kill, Spawn
+
+from grader.turtlesim import parameters
+from grader.turtlesim.interface import Hooks, TurtleInterface
+from grader.turtlesim.turtle import Start
+from grader.turtlesim.world import World
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+    from rclpy.parameter import Parameter
+
+    from grader.trial.recording import Pose
+    from grader.turtlesim.canvas import Canvas
+    from grader.turtlesim.turtle import State
+
+MOST_TURTLES = 64
+"""The real turtlesim has no limit; ours must not be brought down by whoever spawns without end."""
+
+_FRAMES_TO_LEAVE = 4
+"""A killed turtle's entities stay this long, so that what was already asked of them is answered."""
+
+
+def _nobody(*_: object) -> None:
+    """Nobody listens."""
+
+
+class TurtlesimNode(Node):
+    """turtlesim's topics, services, actions and parameters around a `World`."""
+
+    def __init__(
+        self,
+        *,
+        start: Start | Pose | None = None,
+        on_command: Callable[[str, bytes, Any], object] = _nobody,
+        on_publish: Callable[[str, str, bytes], object] = _nobody,
+        on_intervention: Callable[[str], object] = _nobody,
+        pose_every: int = 1,
+        canvas: Canvas | None = None,
+        **node: Any,  # noqa: ANN401 - handed on to rclpy
+    ) -> None:
+        """`start`: where turtle1 begins (m, m, rad), after a reset too; the `on_...` are described in `Hooks`.
+
+        `pose_every`: a pose is published every so many frames; turtlesim does it in each. `canvas`: what is drawn on.
+        """
+        self._pose_every = pose_every
+        self._hooks = Hooks(on_command, on_publish, on_intervention)
+        super().__init__("turtlesim", **node)
+        parameters.declare(self)
+        self.world = World(Start(start.x, start.y, start.theta) if start is not None else Start(), canvas)
+        self._take_parameters(self._parameters_of_ours())
+        self.add_post_set_parameters_callback(self._parameters_set)
+        # turtlesim listens to parameter events to repaint its window. There is none here, but who looks at the
+        # graph should see the same node.
+        for _ in ("turtlesim", "the clock that rclcpp gives every node"):
+            self.create_subscription(
+                ParameterEvent, "/parameter_events", lambda _: None, qos_profile_parameter_events, raw=True
+            )
+        self.create_service(Empty, "clear", self._clear)
+        self.create_service(Empty, "reset", self._reset)
+        self.create_service(Spawn, "spawn", self._spawn)
+        self.create_service(Kill, "kill", self._kill)
+        self._interfaces: dict[str, TurtleInterface] = {}
+        self._leaving: deque[tuple[int, TurtleInterface]] = deque()
+        self._frames = 0
+        self.get_logger().info(f"Starting turtlesim with node name {self.get_fully_qualified_name()}")
+        self._show("turtle1")
+        self._tell_spawned("turtle1")
+
+    def frame(self, now_s: float) -> None:
+        """Make one frame (16 ms) that takes place at `now_s` on the caller's clock (s), and publish it."""
+        self._frames += 1
+        while self._leaving and self._leaving[0][0] <= self._frames and self._leaving[0][1].idle:
+            self._leaving.popleft()[1].destroy()
+        interfaces = [*self._interfaces.values(), *(interface for _, interface in self._leaving)]
+        for interface in interfaces:
+            interface.before_frame()
+        self.world.step(now_s)
+        for interface in interfaces:
+            interface.after_frame()
+
+    def turtle_state(self, name: str = "turtle1") -> State | None:
+        """Return a turtle as of the last frame; None when there is none of that name."""
+        turtle = self.world.turtles.get(name)
+        return turtle.state() if turtle is not None else None
+
+    def save_image(self, path: Path) -> None:
+        """Write the canvas with the trails as PNG."""
+        self.world.canvas.save(path)
+
+    # --- turtles ----------------------------------------------------------------------------------------------
+
+    def _show(self, name: str) -> None:
+        """Give a turtle its topics, services and action; those of a killed namesake are its own again."""
+        for waiting in self._leaving:
+            if waiting[1].name == name:
+                self._leaving.remove(waiting)
+                self._interfaces[name] = waiting[1]
+                return
+        self._interfaces[name] = TurtleInterface(self, name, self.world, self._hooks, self._pose_every)
+
+    def _hide(self, name: str) -> None:
+        # Not at once: this runs in a callback, and the executor may hold others of the same turtle.
+        self._leaving.append((self._frames + _FRAMES_TO_LEAVE, self._interfaces.pop(name)))
+
+    def _tell_spawned(self, name: str) -> None:
+        turtle = self.world.turtles[name]
+        self.get_logger().info(
+            f"Spawning turtle [{name}] at x=[{turtle.x:f}], y=[{turtle.y:f}], theta=[{turtle.theta:f}]"
+        )
+
+    def _spawn(self, request: Spawn.Request, response: Spawn.Response) -> Spawn.Response:
+        self._hooks.on_intervention("spawn")
+        if len(self.world.turtles) >= MOST_TURTLES:
+            self.get_logger().error(f"There are {MOST_TURTLES} turtles already, and no more are let in")
+            return response
+        name = self.world.spawn(request.name, Start(request.x, request.y, request.theta))
+        if not name:
+            self.get_logger().error(f"A turtle named [{request.name}] already exists")
+            return response
+        try:
+            self._show(name)
+        except Exception as error:
+            # turtlesim itself ends here with an exception. The first line says which characters are allowed.
+            self.world.kill(name)
+            self.get_logger().error(f"A turtle cannot be named [{name}]: {str(error).partition(chr(10))[0]}")
+            return response
+        self._tell_spawned(name)
+        response.name = name
+        return response
+
+    def _kill(self, request: Kill.Request, response: Kill.Response) -> Kill.Response:
+        self._hooks.on_intervention("kill")
+        if self.world.kill(request.name):
+            self._hide(request.name)
+        else:
+            self.get_logger().error(f"Tried to kill turtle [{request.name}], which does not exist")
+        return response
+
+    def _clear(self, _: Empty.Request, response: Empty.Response) -> Empty.Response:
+        self._hooks.on_intervention("clear")
+        self.clear()
+        return response
+
+    def clear(self) -> None:
+        """Wipe off the trail."""
+        self.get_logger().info("Clearing turtlesim.")
+        self.world.canvas.clear()
+
+    def _reset(self, _: Empty.Request, response: Empty.Response) -> Empty.Response:
+        self._hooks.on_intervention("reset")
+        self.reset()
+        return response
+
+    def reset(self) -> None:
+        """Begin anew: turtle1 alone, at its start, and no trail."""
+        self.get_logger().info("Resetting turtlesim.")
+        self.world.reset()
+        for name in [name for name in self._interfaces if name != "turtle1"]:
+            self._hide(name)
+        if "turtle1" not in self._interfaces:
+            self._show("turtle1")
+        self._tell_spawned("turtle1")
+
+    # --- parameters -------------------------------------------------------------------------------------------
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set parameters as rclpy does, but refuse in turtlesim's words."""
+        return parameters.refusal(parameter_list) or super().set_parameters_atomically(parameter_list)
+
+    def _parameters_of_ours(self) -> list[Parameter]:
+        ours: list[Parameter] = self.get_parameters([*parameters.CHANNELS, parameters.HOLONOMIC])
+        return ours
+
+    def _parameters_set(self, changed: Iterable[Parameter]) -> None:
+        given = list(changed)
+        colours = all(parameter.name in parameters.CHANNELS for parameter in given)
+        self._hooks.on_intervention("set_background" if colours else "set_parameters")
+        self._take_parameters(given)
+
+    def _take_parameters(self, changed: Iterable[Parameter]) -> None:
+        background = list(self.world.canvas.background)
+        for parameter in changed:
+            if parameter.name == parameters.HOLONOMIC:
+                self.world.holonomic = parameter.value
+            elif parameter.name in parameters.CHANNELS:
+                background[parameters.CHANNELS.index(parameter.name)] = parameter.value
+        red, green, blue = background
+        self.world.canvas.background = (red, green, blue)

@@ -1,0 +1,34 @@
+"""mimic: drive one turtle as another one moves: from input/pose to output/cmd_vel, which are to be remapped."""
+
+from __future__ import annotations
+
+import sys
+
+from geometry_msgs.msg import Twist
+from rclpy.node import Node
+from turtlesim.msg import Pose
+
+from grader.turtlesim.programs.run import run
+
+
+class Mimic(Node):
+    """The node turtle_mimic."""
+
+    def __init__(self) -> None:
+        super().__init__("turtle_mimic")
+        self._publisher = self.create_publisher(Twist, "output/cmd_vel", 1)
+        self.create_subscription(Pose, "input/pose", self._pose, 1)
+
+    def _pose(self, pose: Pose) -> None:
+        twist = Twist()
+        twist.linear.x, twist.angular.z = pose.linear_velocity, pose.angular_velocity
+        self._publisher.publish(twist)
+
+
+def main() -> int:
+    """Run it until Ctrl-C; returns the exit code."""
+    return run(Mimic)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,147 @@
+"""turtle_teleop_key: drive the turtle with the arrow keys, turn it with the keys around F."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from contextlib import suppress
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.action import ActionClient
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from turtlesim.action import RotateAbsolute
+
+from grader.turtlesim.programs.keys import Cancel, Drive, Quit, Turn, keys
+from grader.turtlesim.programs.raw_terminal import is_terminal, keyboard
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_HELP = """\
+Arrow keys drive the turtle; each press lasts a second.
+    E R T
+    D   G   turn it to look where the key lies, seen from F: G east, R north, D west, V south.
+    C V B
+F stops turning, Q quits."""
+_NO_TERMINAL = (
+    "turtle_teleop_key: it reads keys from a terminal, and its standard input is none (a pipe, a file, or it was "
+    "started in the background). Start it in a terminal of its own: ros2 run turtlesim turtle_teleop_key"
+)
+_DISCOVERY_S = 2.0
+"""A turtlesim that is running is heard of by then."""
+
+
+class Teleop(Node):
+    """The node teleop_turtle; in a view's hands it has another name, drives another turtle, and says nothing."""
+
+    def __init__(
+        self,
+        name: str = "teleop_turtle",
+        turtle: str = "turtle1",
+        tell: Callable[[str], object] | None = None,
+    ) -> None:
+        super().__init__(name)
+        self._tell = tell or partial(print, flush=True)
+        self.declare_parameter("scale_linear", 2.0)
+        self.declare_parameter("scale_angular", 2.0)
+        self._publisher = self.create_publisher(Twist, f"{turtle}/cmd_vel", 1)
+        self._rotate = ActionClient(self, RotateAbsolute, f"{turtle}/rotate_absolute")
+        self._action = self.resolve_service_name(f"{turtle}/rotate_absolute")
+        self._goal: Any = None
+        self._begun = time.monotonic()
+
+    def drive(self, key: Drive) -> None:
+        """Publish one command."""
+        self._see_that(lambda: self._publisher.get_subscription_count() > 0, self._publisher.topic_name)
+        twist = Twist()
+        twist.linear.x = key.linear * self.get_parameter("scale_linear").value
+        twist.angular.z = key.angular * self.get_parameter("scale_angular").value
+        self._publisher.publish(twist)
+
+    async def turn(self, key: Turn) -> None:
+        """Send a goal; turtlesim gives up the one before."""
+        if not self._see_that(self._rotate.server_is_ready, self._action):
+            return
+        goal = await self._rotate.send_goal_async(RotateAbsolute.Goal(theta=key.theta))
+        if goal.accepted:
+            self._goal = goal
+
+    async def cancel(self) -> None:
+        """Cancel the last goal, if it is still going on."""
+        if self._goal is not None:
+            await self._goal.cancel_goal_async()
+
+    def destroy_node(self) -> None:
+        """Leave the graph; an action client that is kept would keep the node in it."""
+        self._rotate.destroy()
+        super().destroy_node()
+
+    def _see_that(self, somebody: Callable[[], bool], name: str) -> bool:
+        """Whether somebody is there; if not in the first two seconds either, say so."""
+        while not somebody() and time.monotonic() < self._begun + _DISCOVERY_S:
+            time.sleep(0.01)
+        there = somebody()
+        if not there:
+            domain = os.environ.get("ROS_DOMAIN_ID", "0")
+            self._tell(f"Nobody listens on {name} here (ROS_DOMAIN_ID is {domain}). Is turtlesim running?")
+        return there
+
+
+def main() -> int:
+    """Run it until Q or Ctrl-C; returns the exit code: 0, or 1 where there is no terminal."""
+    if not is_terminal():
+        print(_NO_TERMINAL, file=sys.stderr)
+        return 1
+    # Signals end Python's wait for a key; rclpy would only end its own waits.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
+    node = Teleop()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    spinning = threading.Thread(target=_spin, args=[executor], daemon=True)
+    spinning.start()
+    try:
+        with keyboard() as read:
+            print(_HELP, flush=True)
+            _follow(read, node, executor)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        executor.shutdown()
+        spinning.join()
+        node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
+
+
+def _spin(executor: SingleThreadedExecutor) -> None:
+    with suppress(ExternalShutdownException):
+        executor.spin()
+
+
+def _follow(read: Callable[[], bytes | None], node: Teleop, executor: SingleThreadedExecutor) -> None:
+    """Do what the keys say until Q, or until the terminal is gone."""
+    rest = ""
+    while data := read():
+        typed, rest = keys(rest + data.decode("latin-1"))
+        for key in typed:
+            if isinstance(key, Quit):
+                return
+            if isinstance(key, Drive):
+                node.drive(key)
+            elif isinstance(key, Turn):
+                executor.create_task(node.turn, key)
+            elif isinstance(key, Cancel):
+                executor.create_task(node.cancel)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

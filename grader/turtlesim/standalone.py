@@ -1,0 +1,144 @@
+"""turtlesim alone at wall time: what `grader sim` and the executable turtlesim_node run, until Ctrl-C."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+import threading
+import time
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import rclpy
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.executors import SingleThreadedExecutor, TimeoutException
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import remove_ros_args
+
+from grader.errors import GraderError
+from grader.turtlesim.node import TurtlesimNode
+from grader.turtlesim.turtle import FRAME_S
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from grader.view.launch import View
+
+_MOST_AT_ONCE = 200
+"""Callbacks handled before a frame: a flood of messages must not stop the turtle."""
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run turtlesim; return the exit code: 0 after Ctrl-C, 2 for arguments that are wrong."""
+    arguments = list(sys.argv if args is None else ["turtlesim_node", *args])
+    stop = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    try:
+        options = _options(remove_ros_args(arguments)[1:])
+        with ExitStack() as stack:
+            view = _view(options, stack)
+            # rclpy's own handler would shut the context down in the middle of a frame.
+            rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
+            stack.callback(rclpy.try_shutdown)
+            node = _node(view)
+            spin(node, stop, view)
+    except (InvalidParameterValueException, InvalidParameterTypeException, RuntimeError) as error:
+        return _wrong(_first_line(error))
+    except GraderError as error:
+        _wrong(str(error))
+        return error.exit_code
+    if options.image is not None:
+        try:
+            node.save_image(options.image)
+        except OSError as error:
+            return _wrong(f"the picture could not be written: {error}")
+    return 0
+
+
+def _node(view: View | None) -> TurtlesimNode:
+    if view is None:
+        return TurtlesimNode()
+    feed = view.feed
+    node = TurtlesimNode(canvas=feed.canvas, on_command=feed.on_command, on_publish=feed.on_publish)
+    feed.namespace = node.get_namespace()
+    return node
+
+
+def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -> None:
+    """Make a frame every 16 ms of CLOCK_MONOTONIC until `stop`. A late frame is caught up, none is left out.
+
+    While the view has paused it, the turtles' time stands still.
+    """
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    begun = time.monotonic()
+    ticks = frames = 0
+    while not stop.is_set():
+        early_s = begun + ticks * FRAME_S - time.monotonic()
+        if early_s > 0:
+            time.sleep(early_s)
+        # As turtlesim does: what has arrived is handled at the start of a frame.
+        _handle_what_arrived(executor)
+        if view is None or not view.paused:
+            node.frame(frames * FRAME_S)
+            frames += 1
+        ticks += 1
+        if view is not None:
+            view.after_frame(node)
+            if not view.open:
+                if view.kind == "terminal":
+                    return
+                node.get_logger().warning("The view has ended; turtlesim goes on without it.")
+                view = None
+
+
+def _handle_what_arrived(executor: SingleThreadedExecutor) -> None:
+    for _ in range(_MOST_AT_ONCE):
+        try:
+            handler, _, _ = executor.wait_for_ready_callbacks(timeout_sec=0.0)
+        except TimeoutException:
+            return
+        handler()
+        handler.result()
+
+
+def _options(arguments: Sequence[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="turtlesim_node",
+        description="turtlesim at wall time, until Ctrl-C; without a window, so --view shows it.",
+        epilog="Example: ros2 run turtlesim turtlesim_node --view",
+    )
+    parser.add_argument("--image", type=Path, metavar="FILE.png", help="write the canvas with the trails on exit")
+    parser.add_argument(
+        "--view",
+        nargs="?",
+        const="page",
+        choices=("page", "terminal"),
+        help="see it move: on a page of this machine (the default), or drawn in this terminal",
+    )
+    parser.add_argument("--port", type=int, help="of the page; the same as the last time, or a free one")
+    options = parser.parse_args(arguments)
+    if options.port is not None and options.view != "page":
+        parser.error("--port is for --view, which serves a page there")
+    return options
+
+
+def _view(options: argparse.Namespace, stack: ExitStack) -> View | None:
+    """Start the view that was asked for; without one nothing of it is imported."""
+    if options.view is None:
+        return None
+    from grader.view.launch import view
+
+    return stack.enter_context(view(options.view, options.port))
+
+
+def _wrong(what: str) -> int:
+    print(f"turtlesim_node: {what}", file=sys.stderr)
+    return 2
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__

@@ -1,0 +1,59 @@
+"""All turtles on one canvas, moved frame by frame. The time is always passed in: there is no clock here."""
+
+from __future__ import annotations
+
+import itertools
+
+from grader.turtlesim.canvas import Canvas
+from grader.turtlesim.turtle import FRAME_S, Start, Turtle
+
+
+class World:
+    """The turtles by name, the canvas, and the parameter `holonomic`."""
+
+    def __init__(self, start: Start = Start(), canvas: Canvas | None = None) -> None:  # noqa: B008
+        self.canvas = canvas or Canvas()
+        self.holonomic = False
+        self.turtles: dict[str, Turtle] = {}
+        self._start = start
+        self.reset()
+
+    def reset(self) -> None:
+        """Remove all turtles and the trail and put turtle1 at its start; parameters stay as they are."""
+        for turtle in self.turtles.values():
+            turtle.abort_rotation()
+        self.turtles.clear()
+        self._numbers = itertools.count(1)
+        self.spawn("", self._start)
+        self.canvas.clear()
+
+    def new_name(self) -> str:
+        """Return the next free turtleN. A number is never given twice between two resets."""
+        return next(name for number in self._numbers if (name := f"turtle{number}") not in self.turtles)
+
+    def spawn(self, name: str, start: Start) -> str:
+        """Add a turtle; without a name it is called turtleN. Return its name, "" when the name is taken."""
+        if name in self.turtles:
+            return ""
+        name = name or self.new_name()
+        self.turtles[name] = Turtle(start)
+        # turtlesim moves its turtles in the order of their names, which decides whose line lies on top.
+        self.turtles = dict(sorted(self.turtles.items()))
+        return name
+
+    def kill(self, name: str) -> bool:
+        """Remove a turtle, keeping its trail; False when there is none of that name."""
+        turtle = self.turtles.pop(name, None)
+        if turtle is None:
+            return False
+        turtle.abort_rotation()
+        return True
+
+    def command(self, name: str, linear_x: float, linear_y: float, angular_z: float) -> None:
+        """Give a turtle a velocity command (m/s, m/s, rad/s). Sideways counts only for holonomic turtles."""
+        self.turtles[name].command(linear_x, linear_y if self.holonomic else None, angular_z)
+
+    def step(self, now_s: float) -> None:
+        """Advance every turtle by one frame (16 ms) that takes place at `now_s` (s on the caller's clock)."""
+        for turtle in self.turtles.values():
+            turtle.update(FRAME_S, now_s, self.canvas)

@@ -1,0 +1,154 @@
+"""The command `rqt_graph`: the ROS graph live on a page, as a picture in a file, or as text without a browser."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.errors import GraderError, MachineError, UsageError
+from grader.graph.graph import Show, picture, to_dot, to_text
+from grader.graph.layout import Format, render
+from grader.ros.start import hand_over, see_to_environment
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from grader.graph.graph import Picture
+
+_FORMATS = (".svg", ".png", ".dot")
+_NOTHING = (
+    "No node is running here (ROS_DOMAIN_ID is {domain}). Start one in another terminal, with the same domain id: "
+    "ros2 run turtlesim turtlesim_node"
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns the exit code: 0 drawn, 1 no node is running, else as in design.md."""
+    argv = list(sys.argv[1:] if arguments is None else arguments)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        # As Ctrl-C does, so that the node leaves the graph in order.
+        if signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, signal.default_int_handler)
+    try:
+        hand_over("rqt_graph", "rqt_graph")
+        options = _parse(argv)
+        see_to_environment({"rclpy"})
+        return _run(options)
+    except GraderError as error:
+        print(f"rqt_graph: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:
+        # Whoever read us has gone, as in `rqt_graph | head`.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return 1
+
+
+def _parse(argv: Sequence[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="rqt_graph",
+        description="Show which nodes are running, and which topics they publish and subscribe to.",
+        epilog="Without --output it is shown live in a browser, until Ctrl-C; without a browser it is printed as text. "
+        "Example: rqt_graph --output graph.svg",
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="FILE", help="write the picture: graph.svg, graph.png or graph.dot"
+    )
+    parser.add_argument("--text", action="store_true", help="print it as text, also where there is a browser")
+    parser.add_argument("--port", type=int, help="of the page; the same as the last time, or a free one")
+    parser.add_argument("--active", action="store_true", help="leave out topics that nobody publishes or subscribes to")
+    parser.add_argument("--debug", action="store_true", help="show /rosout, /parameter_events, /clock and tools, too")
+    parser.add_argument(
+        "--hidden", action="store_true", help='show names with a "_" in front, too: the inside of actions'
+    )
+    parser.add_argument("--all", action="store_true", help="show everything: --debug and --hidden")
+    if "_ARGCOMPLETE" in os.environ:
+        from argcomplete import autocomplete
+
+        autocomplete(parser)
+    options = parser.parse_args(argv)
+    if options.output is not None:
+        _check(options.output)
+    return options
+
+
+def _check(output: Path) -> None:
+    if output.suffix not in _FORMATS:
+        message = f"--output {output}: the name must end in .svg, .png or .dot, which says how the graph is drawn."
+        raise UsageError(message)
+    if not output.absolute().parent.is_dir():
+        message = f"--output {output}: there is no folder {output.absolute().parent}."
+        raise UsageError(message)
+
+
+def _run(options: argparse.Namespace) -> int:
+    show = Show(debug=options.debug or options.all, hidden=options.hidden or options.all, dead_ends=not options.active)
+    if options.output is None and not options.text and _shown_live(show, options.port):
+        return 0
+    # Here, since rclpy cannot be imported before the environment has it.
+    from grader.graph.discovery import cli_node, settle
+    from grader.graph.endpoints import heard
+
+    with cli_node(f"_rqt_graph_{os.getpid()}") as node:
+        settle(node)
+        seen = heard(node)
+    if not seen.nodes:
+        print(_NOTHING.format(domain=os.environ.get("ROS_DOMAIN_ID", "0")), file=sys.stderr)
+        return 1
+    drawn = picture(seen.nodes, seen.ends, show)
+    if options.output is not None:
+        _write(options.output, drawn)
+    else:
+        print(to_text(drawn, ascii_only=not sys.stdout.encoding.lower().startswith("utf")), end="")
+    sys.stdout.flush()
+    return 0
+
+
+def _write(file: Path, drawn: Picture) -> None:
+    dot = to_dot(drawn)
+    kinds: dict[str, Format] = {".svg": "svg", ".png": "png"}
+    content = render(dot, kinds[file.suffix]) if file.suffix in kinds else dot.encode()
+    try:
+        file.write_bytes(content)
+    except OSError as error:
+        message = f"{file} could not be written: {error.strerror}."
+        raise UsageError(message) from error
+
+
+def _shown_live(show: Show, port: int | None) -> bool:
+    """Serve the graph on a page until Ctrl-C; returns False, at once, where there is no browser to show it in."""
+    from grader.view import browser
+
+    if not browser.there_is_one():
+        return False
+    import asyncio
+
+    from grader.view.address import listen
+    from grader.view.launch import see_that_it_can_be_served
+
+    try:
+        see_that_it_can_be_served()
+    except MachineError as error:
+        print(f"rqt_graph: {error}", file=sys.stderr)
+        return False
+    from grader.view.page import Page
+
+    place = listen("graph", port)
+
+    async def serve() -> bool:
+        return await Page(None, show).serve(place)
+
+    print(f"The graph, live until Ctrl-C: {place.address.url}", flush=True)
+    shown = asyncio.run(serve())
+    # From here on Ctrl-C is Python's again.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    return shown
+
+
+if __name__ == "__main__":
+    sys.exit(main())
