@@ -34,7 +34,7 @@ _PAGE = """
 import sys, time
 from pathlib import Path
 from rich.console import Console
-from grader import archive
+from grader.evidence import archive
 from grader.checks.judge import judge
 from grader.grade import report_of
 from grader.report import json, terminal

@@ -1,4 +1,4 @@
-"""Autograde's kernels: each in a cell of its own (sandbox.py), heard over sockets in a folder that both sides see.
+"""Autograde's kernels: each in a cell of its own (grader.sandbox), heard over sockets in a folder that both sides see.
 
 A notebook's cells are a student's code. A cell has no network but its own loopback, so the kernel is not reached over
 TCP but over ipc sockets; interrupts go as messages, since a signal would reach bubblewrap and not the kernel.

@@ -50,7 +50,7 @@ UNASKED_SEED = 1
 
 @dataclass(frozen=True)
 class Options:
-    """How to grade: `in_cell` confines the student's code (sandbox.py).
+    """How to grade: `in_cell` confines the student's code (grader.sandbox).
 
     `trials_at_once` of an exercise with several run side by side: one where other gradings keep the processors busy.
     """

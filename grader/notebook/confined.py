@@ -1,4 +1,4 @@
-"""A kernel in a cell (sandbox.py), for `nbgrader autograde`: `python -m grader.notebook.confined FOLDER -f FILE`.
+"""A kernel in a cell (grader.sandbox), for `nbgrader autograde`: `python -m grader.notebook.confined FOLDER -f FILE`.
 
 FOLDER is a copy of the submission that can only be read. The kernel works on a copy of its own, on the cell's disk:
 what it writes goes with it.

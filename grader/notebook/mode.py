@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 CONFINED = "GRADER_CONFINED"
-"""Set in a kernel that runs in a cell (sandbox.py) already: nothing below it can be confined once more."""
+"""Set in a kernel that runs in a cell (grader.sandbox) already: nothing below it can be confined once more."""
 
 
 def grading() -> bool:

@@ -81,7 +81,7 @@ def environment(
 
     `underlay` is the prefix of the turtlesim interfaces, `overlays` are install folders of packages
     (install/<package>), searched first. `home` must be writable: HOME, ROS_LOG_DIR and TMPDIR lie there. `domain` is
-    None in a room (sandbox.py), whose network is its own.
+    None in a room (grader.sandbox), whose network is its own.
     """
     local = [*overlays, *([underlay] if underlay else [])]
     env = {

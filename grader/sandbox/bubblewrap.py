@@ -7,7 +7,7 @@ Two walls, both made by bubblewrap:
   have holes;
 - a **cell** holds a student's process: own user, pid, ipc, uts, cgroup and mount namespaces, no network but the
   room's, nothing of the disk but what `View` names, a filter of system calls (system_calls.py), limits on memory,
-  processes, files, CPU and disk. What no limit counts in all, watch.py does.
+  processes, files, CPU and disk. What no limit counts in all, usage.py does.
 
 These functions only make command lines; whoever runs them owns the process. Input and output travel on pipes.
 """
@@ -50,14 +50,14 @@ class Limits:
 
     memory: int = 4096 * MIB
     total_memory: int = 2048 * MIB
-    """What all processes and disks of a cell hold together (watch.py)."""
+    """What all processes and disks of a cell hold together (usage.py)."""
     processes: int = 600
     """Processes and threads together; a node that makes 400 timers makes no thread for them."""
     open_files: int = 1024
     file_size: int = 256 * MIB
     disk: int = 256 * MIB
     files: int = 50_000
-    """Files on the writable disks together (watch.py)."""
+    """Files on the writable disks together (usage.py)."""
     cpu_s: int = 120
 
 

@@ -1,7 +1,7 @@
 """Control groups: the kernel's own count of what many processes hold together, where one may make them.
 
 Root may nearly everywhere, an ordinary user where systemd has delegated a part of the tree and the grader runs in it.
-The wall is `ABOVE` beyond what watch.py allows, so that watch.py ends a cell first and knows why; what grows faster
+The wall is `ABOVE` beyond what usage.py allows, so that usage.py ends a cell first and knows why; what grows faster
 than it looks, and what the kernel holds for sockets and pipes, stops here.
 
 Both versions are known: in version 2 a group is a folder in one tree, in version 1 one in each controller's

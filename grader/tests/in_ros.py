@@ -44,7 +44,7 @@ class InRos:
         return installation.environment(self.here, home=self.home, underlay=self.underlay, domain=own_domain())
 
     def run(self, name: str, *arguments: object) -> Ran:
-        """Call a function, named as in "simulator.scenarios:graph" from grader.tests, in a process of its own."""
+        """Call a function, named as in "turtlesim.scenarios:graph" from grader.tests, in a process of its own."""
         code = "import sys; from grader.tests import in_ros; in_ros.call(*sys.argv[1:])"
         done = subprocess.run(
             [self.here.python, "-c", code, name, json.dumps(arguments)],

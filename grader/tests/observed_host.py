@@ -1,7 +1,7 @@
 """A host that is looked at before and after: a namespace with its own /tmp, home, shared memory, processes and network.
 
 What a submission leaves behind shows here and nowhere else, so an attack can also be run undefended: then bubblewrap
-and prlimit are replaced by programs that do nothing, watch.py sees nothing, and the real command finds that it has no
+and prlimit are replaced by programs that do nothing, usage.py sees nothing, and the real command finds that it has no
 sandbox.
 
 Run as a script, this file is what is inside: it offers what an attacker would like to reach (services, secrets), runs
@@ -68,7 +68,7 @@ class Host:
         if interfaces is not None:
             shutil.copytree(interfaces, scratch / "cache/grader" / interfaces.name, symlinks=True)
         source = (ROOT / "grader/sandbox/usage.py").read_text("utf-8")
-        (scratch / "shims/watch.py").write_text(source + "\n\ndef exceeded(*_):\n    return None\n")
+        (scratch / "shims/usage.py").write_text(source + "\n\ndef exceeded(*_):\n    return None\n")
         _program(scratch / "shims/bwrap", "exit 1")
         _program(scratch / "shims/prlimit", 'while [ "$1" != "--" ]; do shift; done; shift; exec "$@"')
 
@@ -128,7 +128,7 @@ class Host:
         for path in map(str, _ours()):
             command += ["--ro-bind", path, path]
         if not defended:
-            real["watch.py"] = str(ROOT / "grader/sandbox/usage.py")
+            real["usage.py"] = str(ROOT / "grader/sandbox/usage.py")
             command += [word for name, at in real.items() for word in ("--ro-bind", str(scratch / "shims" / name), at)]
         if ordinary or not defended:
             command += ["--proc", "/proc"]

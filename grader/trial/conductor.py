@@ -1,6 +1,6 @@
 """Conduct one trial: the process that holds the simulator, the recorder and the clock.
 
-It lives in a room (sandbox.py), speaks JSON lines with the grader's own process over its standard streams, and
+It lives in a room (grader.sandbox), speaks JSON lines with the grader's own process over its standard streams, and
 holds the student's node in a cell. First line in: what the trial is. It answers {"ready": true} once simulator and
 launcher wait. Second line in: what to start, followed by the install tree. Last line out: {"recording": {...}},
 {"doubt": "..."} when another clock must judge, {"overwhelmed": "..."} when the node has brought the simulator down, or

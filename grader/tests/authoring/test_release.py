@@ -69,7 +69,7 @@ def test_what_is_released_must_parse(root: Path, path: str, text: str) -> None:
 
 def test_a_marker_where_we_know_no_comments_is_an_error(root: Path) -> None:
     (root / "solutions" / "01-x" / "a.cpp").write_text("// BEGIN SOLUTION\n")
-    with pytest.raises(UsageError, match=r"a\.cpp: a marker in a file whose comments are not known"):
+    with pytest.raises(UsageError, match=r"a\.cpp: a marker in a file of an unknown kind"):
         released(root / "solutions" / "01-x")
 
 

@@ -112,7 +112,7 @@ def broken(tmp_path: Path, sitecustomize: str) -> subprocess.CompletedProcess[st
     ("fault", "said"),
     [
         (
-            "import grader.ros.installation\ngrader.ros._wheels = lambda _: None\n",
+            "import grader.ros.installation\ngrader.ros.installation._wheels = lambda _: None\n",
             "No ROS 2 Jazzy was found",
         ),
         (

@@ -57,7 +57,7 @@ def without(monkeypatch: pytest.MonkeyPatch, *programs: str) -> None:
 
 
 def test_two_at_once_build_it_once_and_both_get_it(here: installation.Ros, tmp_path: Path) -> None:
-    code = "from grader import ros, underlay; print(underlay.ensure(ros.find_ros(), print))"
+    code = "from grader.ros import installation, underlay; print(underlay.ensure(installation.find_ros(), print))"
     env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
     both = [
         subprocess.Popen([sys.executable, "-c", code], env=env, stdout=subprocess.PIPE, text=True) for _ in range(2)

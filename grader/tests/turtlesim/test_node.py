@@ -36,7 +36,7 @@ def log_of(stderr: str) -> list[str]:
 
 @pytest.fixture(scope="module")
 def graph(in_ros: InRos) -> dict[str, Any]:
-    found: dict[str, Any] = in_ros.run("simulator.scenarios:graph").result
+    found: dict[str, Any] = in_ros.run("turtlesim.scenarios:graph").result
     return found
 
 
@@ -78,7 +78,7 @@ def test_interfaces_read_as_the_real_ones(shown: str, source: str) -> None:
 
 @pytest.fixture(scope="module")
 def parameters(in_ros: InRos) -> dict[str, Any]:
-    found: dict[str, Any] = in_ros.run("simulator.scenarios:parameters").result
+    found: dict[str, Any] = in_ros.run("turtlesim.scenarios:parameters").result
     return found
 
 
@@ -118,13 +118,13 @@ def test_parameters_take_effect(parameters: dict[str, Any]) -> None:
 
 
 def test_log_and_answers_are_those_of_the_real_one(in_ros: InRos) -> None:
-    ran = in_ros.run("simulator.scenarios:as_recorded")
+    ran = in_ros.run("turtlesim.scenarios:as_recorded")
     assert ran.result == {"spawn": "t2", "again": "", "unnamed": "turtle2"}
     assert log_of(ran.stderr) == log_of((GOLDEN / "node-turtlesim_node.stderr.txt").read_text())
 
 
 def test_services(in_ros: InRos) -> None:
-    found = in_ros.run("simulator.scenarios:services").result
+    found = in_ros.run("turtlesim.scenarios:services").result
     assert found["start"] == pytest.approx([4.0, 5.0, 0.25])
     assert found["absolute"] == pytest.approx([1.0, 2.0, 0.5])
     assert found["relative"] == pytest.approx([2.0, 2.0, 0.0])
@@ -137,7 +137,7 @@ def test_services(in_ros: InRos) -> None:
 
 
 def test_rotate_absolute(in_ros: InRos) -> None:
-    found = in_ros.run("simulator.scenarios:rotations").result
+    found = in_ros.run("turtlesim.scenarios:rotations").result
     assert found["status"] == "succeeded"
     assert found["delta"] == pytest.approx(-0.5, abs=0.021)
     assert found["feedback"]
@@ -147,7 +147,7 @@ def test_rotate_absolute(in_ros: InRos) -> None:
 
 
 def test_wrong_requests_do_not_stop_the_node(in_ros: InRos) -> None:
-    found = in_ros.run("simulator.scenarios:hostile").result
+    found = in_ros.run("turtlesim.scenarios:hostile").result
     assert found["names"] == [""] * 8
     assert found["turtles"] == ["turtle1"]
     assert found["no number"] == "nan"
@@ -157,7 +157,7 @@ def test_wrong_requests_do_not_stop_the_node(in_ros: InRos) -> None:
 
 
 def test_a_trial_is_told_what_the_node_hears_and_says(in_ros: InRos) -> None:
-    found = in_ros.run("simulator.scenarios:hooks").result
+    found = in_ros.run("turtlesim.scenarios:hooks").result
     assert found["topic"] == "/turtle1/cmd_vel"
     assert found["as sent"]
     assert found["published"] == [
@@ -183,7 +183,7 @@ def test_a_trial_is_told_what_the_node_hears_and_says(in_ros: InRos) -> None:
 
 
 def test_a_late_frame_is_caught_up_and_none_left_out(in_ros: InRos) -> None:
-    times = in_ros.run("simulator.scenarios:late_frames").result
+    times = in_ros.run("turtlesim.scenarios:late_frames").result
     assert times == pytest.approx([frame * FRAME_S for frame in range(30)])
 
 
