@@ -189,7 +189,7 @@ def sim(
     options = [text for name, value in given if value is not None for text in (name, str(value))]
     env = users_environment(here, extra)
     start = interpreter(
-        "-m", "grader.turtlesim", *options, *context.args, python=str(here.python), env=env, searches=True
+        "-m", "grader.view.turtlesim_node", *options, *context.args, python=str(here.python), env=env, searches=True
     )
     os.execve(start.argv[0], start.argv, start.env)
 

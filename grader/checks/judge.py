@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.kind import STAGES
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.common.words import shorten
+from grader.evidence.stage import STAGES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import MISSING, dataclass, field, fields
-from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from grader.common.words import a_list
 
@@ -18,11 +18,7 @@ if TYPE_CHECKING:
 
     from grader.checks.outcome import Finding
     from grader.evidence.evidence import Evidence
-
-Stage = Literal["source", "build", "trial"]
-"""What a check needs: the submission's files alone, what colcon made of them, or the recording of a trial."""
-
-STAGES: tuple[Stage, ...] = ("source", "build", "trial")
+    from grader.evidence.stage import Stage
 
 Value = str | float | int | bool | tuple[str, ...]
 """What a parameter may be."""

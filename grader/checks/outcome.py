@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from grader.submission.where import Where
 
 
 class Status(str, Enum):
@@ -13,17 +17,6 @@ class Status(str, Enum):
     FAILED = "failed"
     SKIPPED = "skipped"
     ERROR = "error"
-
-
-@dataclass(frozen=True)
-class Where:
-    """A place in the submission: `file` relative to the package folder, `line` from 1."""
-
-    file: str
-    line: int | None = None
-
-    def __str__(self) -> str:
-        return self.file if self.line is None else f"{self.file}:{self.line}"
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from grader.build.build import Build
-    from grader.checks.kind import Stage
-    from grader.checks.outcome import Where
+    from grader.evidence.stage import Stage
     from grader.exercise.model import Exercise
     from grader.submission.package import Submission
+    from grader.submission.where import Where
     from grader.trial.recording import Command, Recording
 
 

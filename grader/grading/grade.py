@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.checks.judge import Early
-    from grader.checks.kind import Stage
     from grader.checks.outcome import Outcome
+    from grader.evidence.stage import Stage
     from grader.exercise.model import Exercise
     from grader.ros.installation import Ros
     from grader.submission.package import Submission

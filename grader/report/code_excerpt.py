@@ -11,8 +11,8 @@ from grader.report.plain import LONGEST_LINE, plain_line, size
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from grader.checks.outcome import Where
     from grader.evidence.evidence import Evidence
+    from grader.submission.where import Where
 
 AROUND = 4
 """Lines before and after the place."""

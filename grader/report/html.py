@@ -22,9 +22,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from grader.checks.outcome import Outcome, Report, Where
+    from grader.checks.outcome import Outcome, Report
     from grader.evidence.evidence import Evidence
     from grader.report.code_excerpt import Excerpt
+    from grader.submission.where import Where
 
 CODE_BYTES = 50_000
 """Of all excerpts of code together; later checks name the place only."""

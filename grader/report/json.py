@@ -22,8 +22,9 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from grader.checks.outcome import Finding, Outcome, Report, Status, Where
+from grader.checks.outcome import Finding, Outcome, Report, Status
 from grader.errors import UsageError
+from grader.submission.where import Where
 
 SCHEMA = 2
 READ = (1, SCHEMA)

@@ -12,7 +12,7 @@ from rclpy.subscription import Subscription
 
 from grader.trial.recorder import Recorder
 from grader.turtlesim.node import TurtlesimNode
-from grader.turtlesim.turtle import FRAME_S
+from grader.turtlesim.turtle import FRAME_S, Start
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -46,7 +46,7 @@ class Stage:
         self.interventions: list[str] = []
         self.recorder = Recorder(self.now, prefixes, {**PUBLISHED, "/clock": "rosgraph_msgs/msg/Clock"})
         self.turtlesim = TurtlesimNode(
-            start=start,
+            start=Start(start.x, start.y, start.theta),
             pose_every=inputs.pose_every,
             cli_args=["--ros-args", *(part for rule in inputs.rename for part in ("-r", rule))],
             on_command=self.recorder.keep_command,

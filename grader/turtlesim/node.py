@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from rclpy.parameter import Parameter
 
-    from grader.trial.recording import Pose
     from grader.turtlesim.canvas import Canvas
     from grader.turtlesim.turtle import State
 
@@ -47,7 +46,7 @@ class TurtlesimNode(Node):
     def __init__(
         self,
         *,
-        start: Start | Pose | None = None,
+        start: Start | None = None,
         on_command: Callable[[str, bytes, Any], object] = _nobody,
         on_publish: Callable[[str, str, bytes], object] = _nobody,
         on_intervention: Callable[[str], object] = _nobody,
@@ -63,7 +62,7 @@ class TurtlesimNode(Node):
         self._hooks = Hooks(on_command, on_publish, on_intervention)
         super().__init__("turtlesim", **node)
         parameters.declare(self)
-        self.world = World(Start(start.x, start.y, start.theta) if start is not None else Start(), canvas)
+        self.world = World(start or Start(), canvas)
         self._take_parameters(self._parameters_of_ours())
         self.add_post_set_parameters_callback(self._parameters_set)
         # turtlesim listens to parameter events to repaint its window. There is none here, but who looks at the

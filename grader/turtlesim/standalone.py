@@ -9,7 +9,7 @@ import threading
 import time
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import rclpy
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
@@ -22,16 +22,57 @@ from grader.turtlesim.node import TurtlesimNode
 from grader.turtlesim.turtle import FRAME_S
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
+    from contextlib import AbstractContextManager
+    from typing import Any, Literal
 
-    from grader.view.launch import View
+    from grader.turtlesim.canvas import Canvas
+
+    Kind = Literal["page", "terminal"]
+    OpenView = Callable[[Kind, int | None], AbstractContextManager["View"]]
 
 _MOST_AT_ONCE = 200
 """Callbacks handled before a frame: a flood of messages must not stop the turtle."""
 
 
-def main(args: Sequence[str] | None = None) -> int:
-    """Run turtlesim; return the exit code: 0 after Ctrl-C, 2 for arguments that are wrong."""
+class Feed(Protocol):
+    """What a view is told as it happens; `canvas` is what the turtles draw on while it watches."""
+
+    namespace: str
+
+    @property
+    def canvas(self) -> Canvas:
+        """The canvas, which the view sees too."""
+
+    @property
+    def on_command(self) -> Callable[..., Any]:
+        """Called with each command that arrives."""
+
+    @property
+    def on_publish(self) -> Callable[..., Any]:
+        """Called with each message that the simulator publishes."""
+
+
+class View(Protocol):
+    """A running view of the simulator. `paused`: the turtles' time stands still. `open`: it is still there."""
+
+    paused: bool
+    open: bool
+    kind: Kind
+
+    @property
+    def feed(self) -> Feed:
+        """Where it is told what happens."""
+
+    def after_frame(self, node: TurtlesimNode) -> None:
+        """Show the world after a frame, and do what the view asks for."""
+
+
+def main(open_view: OpenView, args: Sequence[str] | None = None) -> int:
+    """Run turtlesim; return the exit code: 0 after Ctrl-C, 2 for wrong arguments.
+
+    `open_view` starts the view that `--view` asks for, on a port or, with None, on one of its own choice.
+    """
     arguments = list(sys.argv if args is None else ["turtlesim_node", *args])
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -39,7 +80,7 @@ def main(args: Sequence[str] | None = None) -> int:
     try:
         options = _options(remove_ros_args(arguments)[1:])
         with ExitStack() as stack:
-            view = _view(options, stack)
+            view = stack.enter_context(open_view(options.view, options.port)) if options.view else None
             # rclpy's own handler would shut the context down in the middle of a frame.
             rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
             stack.callback(rclpy.try_shutdown)
@@ -124,15 +165,6 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
     if options.port is not None and options.view != "page":
         parser.error("--port is for --view, which serves a page there")
     return options
-
-
-def _view(options: argparse.Namespace, stack: ExitStack) -> View | None:
-    """Start the view that was asked for; without one nothing of it is imported."""
-    if options.view is None:
-        return None
-    from grader.view.launch import view
-
-    return stack.enter_context(view(options.view, options.port))
 
 
 def _wrong(what: str) -> int:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from grader.checks.outcome import Where
+    from grader.submission.where import Where
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ import signal
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from grader.checks.outcome import Where
 from grader.common.words import shorten
 from grader.evidence.observed import ended_at_start
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

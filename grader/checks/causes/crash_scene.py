@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from grader.checks.outcome import Where
 from grader.submission.constants import dotted
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

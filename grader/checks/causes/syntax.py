@@ -6,9 +6,10 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.causes.cause import Cause
-from grader.checks.outcome import Finding, Where, failed
+from grader.checks.outcome import Finding, failed
 from grader.common.words import shorten
 from grader.submission.package_xml import line_of
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.submission.code import Unreadable

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from grader.submission.constants import number
 
 if TYPE_CHECKING:
-    from grader.checks.outcome import Where
     from grader.evidence.evidence import Evidence
+    from grader.submission.where import Where
 
 
 @dataclass(frozen=True)

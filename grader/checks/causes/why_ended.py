@@ -6,9 +6,9 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.causes.cause import Cause
-from grader.checks.outcome import Where
 from grader.evidence.observed import ended_at_start
 from grader.submission.constants import dotted
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence

@@ -6,8 +6,8 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.causes.cause import Cause
-from grader.checks.outcome import Where
 from grader.submission.constants import dotted
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,9 +9,9 @@ from grader.checks.causes import ros_names
 from grader.checks.causes.cause import Cause
 from grader.checks.causes.timers import timer_fault
 from grader.checks.causes.why_ended import SPINS, named_only
-from grader.checks.outcome import Where
 from grader.common.words import nearest, shorten
 from grader.submission.constants import dotted, evaluate
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -7,11 +7,12 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks.kind import Kind, NoParams, choice, number, text, texts
-from grader.checks.outcome import Finding, Where, failed, passed
+from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
 from grader.common.words import a_list, shorten
 from grader.evidence import observed as seen_in
 from grader.submission.answers import FILE, Answer
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from collections.abc import Collection

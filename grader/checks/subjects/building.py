@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from grader.checks.causes.crash import read_tracebacks
 from grader.checks.causes.syntax import unreadable_seen, why_unreadable
 from grader.checks.kind import Kind, NoParams
-from grader.checks.outcome import Finding, Where, failed, passed
+from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, shorten
 from grader.submission.code import import_path
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence

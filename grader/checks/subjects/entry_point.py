@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 from grader.checks.causes.no_entry_point import FORM, line, no_entry_point
 from grader.checks.causes.syntax import unreadable_finding
 from grader.checks.kind import Kind, NoParams
-from grader.checks.outcome import Finding, Where, failed, passed
+from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.building import INSTALLED_MODULE, is_linked
 from grader.common.words import nearest, shorten
 from grader.submission.code import import_path, module_file, read_module
 from grader.submission.constants import dotted
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.kind import Kind, NoParams, number
-from grader.checks.outcome import Finding, Where, failed, passed
+from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.path import CircleParams, circle
 from grader.checks.subjects.rate import Rate, rate
 from grader.common.words import shorten
 from grader.exercise.own_numbers import FILE, OwnNumbers, draw_numbers, from_toml
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.kind import Kind, NoParams, texts
-from grader.checks.outcome import Finding, Where, failed, passed
+from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
 from grader.submission.code import import_path
 from grader.submission.package_xml import line_of, open_tag
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.causes.crash import ended_early
 from grader.checks.kind import Kind, NoParams, choice, number
-from grader.checks.outcome import Finding, Status, Where, failed, passed
+from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.tolerance import Band
 from grader.common.words import count, shorten
 from grader.common.words import number as shown
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from grader.evidence.circle_fit import Circle
     from grader.evidence.evidence import Evidence
     from grader.evidence.track import Track
+    from grader.submission.where import Where
     from grader.trial.recording import Pose
 
 MOVED_M = 0.05

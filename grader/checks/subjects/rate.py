@@ -10,7 +10,7 @@ from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_rate import why_often, why_timers_grow
 from grader.checks.kind import Kind, number
-from grader.checks.outcome import Finding, Status, Where, failed, passed
+from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.tolerance import Band
 from grader.common.words import count
 from grader.evidence import observed as seen_in
@@ -19,6 +19,7 @@ from grader.submission.constants import number as constant
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
+    from grader.submission.where import Where
 
 FEWEST = 3
 """Commands: with fewer there is at most one interval, and no rate to speak of."""

@@ -10,13 +10,14 @@ from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_silent import why_nothing, why_qos
 from grader.checks.kind import Kind, text
-from grader.checks.outcome import Finding, Where, failed, passed
+from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
 from grader.evidence import observed as seen_in
 from grader.submission.constants import evaluate
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
+    from grader.submission.where import Where
     from grader.trial.recording import Endpoint
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.kind import Kind, number
-from grader.checks.outcome import Finding, Where, failed, passed
+from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
 from grader.common.words import a_list
 from grader.common.words import number as shown
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from grader.evidence.evidence import Evidence
+    from grader.submission.where import Where
     from grader.trial.recording import Command
 
 FIELDS = ("linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z")

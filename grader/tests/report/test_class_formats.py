@@ -15,12 +15,13 @@ import pytest
 from junitparser import Error, Failure, JUnitXml, Skipped, TestCase
 from markdown_it import MarkdownIt
 
-from grader.checks.outcome import Finding, Outcome, Report, Status, Where
+from grader.checks.outcome import Finding, Outcome, Report, Status
 from grader.report.csv import COLUMNS, to_csv
 from grader.report.github import MOST_ANNOTATIONS, MOST_SUMMARY, to_annotations, to_summary
 from grader.report.gradescope import to_gradescope
 from grader.report.hidden import for_students
 from grader.report.junit import to_junit
+from grader.submission.where import Where
 from grader.tests.report.hostile import ALL, ODD
 from grader.tests.report.reports import report
 

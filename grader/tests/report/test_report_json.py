@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.checks.outcome import Finding, Outcome, Status, Where
+from grader.checks.outcome import Finding, Outcome, Status
 from grader.errors import UsageError
 from grader.report.json import from_json, to_json
+from grader.submission.where import Where
 from grader.tests.report.reports import EVIDENCE, report
 
 GOLDEN = Path(__file__).parent.parent / "golden" / "report"

@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from grader.checks.outcome import Report, Status, Where, failed, passed
+from grader.checks.outcome import Report, Status, failed, passed
 from grader.report.terminal import render
 from grader.report.verdict import UNCONFINED
+from grader.submission.where import Where
 from grader.tests.report.reports import report
 
 ESCAPE = "\x1b"

@@ -221,7 +221,7 @@ def test_the_executable_runs_until_ctrl_c_and_leaves_a_picture(
 )
 def test_wrong_arguments_end_with_2_and_one_message(in_ros: InRos, arguments: list[str], said: str) -> None:
     done = subprocess.run(
-        [in_ros.here.python, "-m", "grader.turtlesim", *arguments],
+        [in_ros.here.python, "-m", "grader.view.turtlesim_node", *arguments],
         env=in_ros.environment(),
         capture_output=True,
         text=True,

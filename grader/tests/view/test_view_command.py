@@ -80,6 +80,6 @@ def test_a_view_does_not_outlive_its_simulator(alone: World) -> None:
 
 
 def test_nothing_of_the_view_is_imported_without_it(alone: World) -> None:
-    listed = "[name for name in sys.modules if 'starlette' in name or 'grader.view' in name]"
-    code = f"import sys, grader.turtlesim.standalone; print({listed})"
-    assert alone.run(f'python3 -c "{code}"').stdout == "[]\n"
+    listed = "[name for name in sys.modules if 'starlette' in name or 'grader.view.' in name]"
+    code = f"import sys, grader.turtlesim.standalone, grader.view.turtlesim_node; print({listed})"
+    assert alone.run(f'python3 -c "{code}"').stdout == "['grader.view.turtlesim_node']\n"

@@ -1,0 +1,35 @@
+"""`python -m grader.view.turtlesim_node`: what `ros2 run turtlesim turtlesim_node` and `grader sim` run.
+
+The simulator by itself needs no view; here it gets one, for `--view`.
+"""
+
+from __future__ import annotations
+
+import signal
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
+    from grader.turtlesim.standalone import Kind, View
+
+
+def open_view(kind: Kind, port: int | None) -> AbstractContextManager[View]:
+    """Start a view; until then nothing of it is imported. Raises as `grader.view.launch.view` does."""
+    from grader.view.launch import view
+
+    return view(kind, port)
+
+
+def main() -> None:
+    """Run turtlesim until Ctrl-C, and exit."""
+    # Ctrl-C ends quietly from the first moment: while ROS 2 is being imported too, which takes a while.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from grader.turtlesim import standalone
+
+    sys.exit(standalone.main(open_view))
+
+
+if __name__ == "__main__":
+    main()
