@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 STEP = "03-circle-publisher"
-WITHOUT = "import grader.sandbox.bubblewrap\ngrader.sandbox.bubblewrap = lambda: None\n"
+WITHOUT = "import grader.sandbox.bubblewrap\ngrader.sandbox.bubblewrap.program = lambda: None\n"
 
 
 @pytest.fixture
