@@ -16,4 +16,4 @@ class UsageError(GraderError):
 
 
 class MachineError(GraderError):
-    """The grader or the machine is broken: never the student's fault, never costs points."""
+    """The grader or the machine is broken: never the student's fault."""

@@ -21,7 +21,7 @@ def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     """The outcome of every check, in the order of the exercise.
 
     A check is skipped when one that it needs did not pass, and names the first cause. A check that needs what the
-    machine could not make (`evidence.fault`) is an `error`, and so is what needs that one: neither costs points.
+    machine could not make (`evidence.fault`) is an `error`, and so is what needs that one.
     """
     specs = {spec.id: spec for spec in evidence.exercise.checks}
     findings: dict[str, Finding] = {}

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Status(str, Enum):
-    """`failed`: the student's work is wrong. `error`: the grader or the machine is broken, costs no points."""
+    """`failed`: the student's work is wrong. `error`: the grader or the machine is broken, no points yet."""
 
     PASSED = "passed"
     FAILED = "failed"
@@ -107,8 +107,11 @@ class Report:
 
     @property
     def max(self) -> float:
-        """The points that could be had: those of a check that the machine could not judge are not among them."""
-        return sum(outcome.max for outcome in self.outcomes if outcome.status is not Status.ERROR)
+        """The points of all checks if each had passed, those included that the machine could not judge.
+
+        Else a submission that makes the grading fail in the right place would have all points of what is left.
+        """
+        return sum(outcome.max for outcome in self.outcomes)
 
     def with_status(self, status: Status) -> tuple[Outcome, ...]:
         """The outcomes with this status, advice left out."""

@@ -143,6 +143,7 @@ def summary(results: list[Result]) -> str:
     """A sentence or two on the whole class."""
     tones = [tone(result.report) for result in results]
     counted = [f"{tones.count(kind)} {word}" for kind, word in _WORDS if kind in tones]
-    shares = [each.report.points / each.report.max for each in results if each.report.max]
+    judged = [each.report for each, kind in zip(results, tones, strict=True) if kind != "error" and each.report.max]
+    shares = [report.points / report.max for report in judged]
     mean = f", {100 * sum(shares) / len(shares):.0f} % of the points on average" if shares else ""
     return f"{count(len(results), 'submission')}: {', '.join(counted)}{mean}."

@@ -114,7 +114,7 @@ def _confined(*, trusted: bool) -> bool:
 
 
 def set_aside(task: Task, why: str) -> Done:
-    """The result of a submission that no worker came back with: an `error`, which costs no points."""
+    """The result of a submission that no worker came back with: an `error`."""
     exercise = task.sources.exercise(lesson_folder(task.sources))
     return _with_page(_unjudged(task, exercise, Finding(Status.ERROR, why)))
 

@@ -3,7 +3,7 @@
     submission  the name of the folder or archive
     exercise    its id
     points      what was got
-    max         what could be had: what the machine could not judge is not counted
+    max         the points of the whole exercise, whatever could be judged
     percent     of that
     status      passed, failed, or error: graded again by the next run
     failed      ids of the checks that failed, in the order of the exercise, blanks between
@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import csv
 import io
+import unicodedata
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
@@ -46,6 +47,10 @@ COLUMNS = (
     "graded_by",
     "report",
 )
+FORMULA = frozenset({"=", "+", "-", "@", "\N{MINUS SIGN}"})
+SEPARATORS = frozenset({";", "|", "\t", "\r", "\n"})
+BEFORE = frozenset({"", '"', "'", "`"})
+"""What may stand before a formula's first character: blanks, and quotes that a reader takes off."""
 
 
 def to_csv(rows: Iterable[tuple[str, Report, str, str]]) -> str:
@@ -78,6 +83,16 @@ def _row(student: str, report: Report, grader: str, file: str) -> tuple[object, 
 
 
 def _safe(text: str) -> str:
-    """One line, and no formula: spreadsheets run what begins like one (CWE-1236)."""
-    line = printable(text)
-    return f"'{line}" if line.startswith(("=", "+", "-", "@")) else line
+    """One line, and no formula: spreadsheets run what begins like one (CWE-1236).
+
+    Where a reader takes another character than the comma for a separator, a cell begins behind each of those too. What
+    is full width or small counts as what it is a variant of: some spreadsheets normalize it on input.
+    """
+    begins, line = True, ""
+    for char in printable(text):
+        plain = unicodedata.normalize("NFKC", char).strip()
+        if begins and plain in FORMULA:
+            line += "'"
+        begins = plain in SEPARATORS or (begins and plain in BEFORE)
+        line += char
+    return line

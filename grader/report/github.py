@@ -56,7 +56,7 @@ def _details(student: str, report: Report) -> str:
         sign = (
             "\N{INFORMATION SOURCE}" if outcome.advice and outcome.status is Status.FAILED else _SIGNS[outcome.status]
         )
-        points = f"{outcome.points:g}/{outcome.max:g}" if outcome.max and outcome.status is not Status.ERROR else ""
+        points = f"{outcome.points:g}/{outcome.max:g}" if outcome.max else ""
         lines.append(f"| {sign} | {_text(outcome.title)} | {points} | {_told(outcome)} |")
     return "\n".join(lines) + "\n"
 

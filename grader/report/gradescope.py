@@ -51,11 +51,9 @@ def _test(number: int, outcome: Outcome) -> dict[str, Any]:
         "visibility": "visible",
     }
     if outcome.max:
-        # Here, what the machine could not judge takes no points: it is worth none.
-        most = 0.0 if outcome.status is Status.ERROR else outcome.max
-        test |= {"score": round(outcome.points, 6), "max_score": round(most, 6)}
-    # Without a status of its own Gradescope would call advice and errors failed, since they have no points.
-    return {**test, "status": "passed" if passed or outcome.advice or outcome.status is Status.ERROR else "failed"}
+        test |= {"score": round(outcome.points, 6), "max_score": round(outcome.max, 6)}
+    # Without a status of its own Gradescope would call advice failed, since it has no points.
+    return {**test, "status": "passed" if passed or outcome.advice else "failed"}
 
 
 def _output(outcome: Outcome) -> str:
@@ -65,5 +63,5 @@ def _output(outcome: Outcome) -> str:
     note = "Advice, worth no points." if outcome.advice else ""
     where = f"Where: {finding.where}" if finding.where else ""
     expected = f"Expected: {finding.expected}" if finding.expected else ""
-    error = "This could not be judged, through no fault of yours." if outcome.status is Status.ERROR else ""
+    error = "This could not be judged; your instructor is told." if outcome.status is Status.ERROR else ""
     return "\n".join(printable(text) for text in (note, error, finding.seen, expected, finding.cause, where) if text)

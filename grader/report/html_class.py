@@ -186,6 +186,7 @@ def class_page(reports: ClassReports) -> str:
     exercises = sorted({entry.report.exercise for entry in reports.entries})
     shares = [entry.share for entry in judged]
     values = {
+        "rows": reports.entries,
         "entries": judged,
         "broken": broken,
         "unreadable": reports.unreadable,

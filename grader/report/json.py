@@ -1,15 +1,15 @@
 """Report to JSON and back.
 
-Schema 2. Every key is always there; texts are never null unless it says so.
+Schema 3. Every key is always there; texts are never null unless it says so.
 
-    schema        2; in schema 1, which is read too, `confined` was missing
+    schema        3; 1 and 2 are read too: in 1 `confined` was missing, in both `max` left out what was an "error"
     exercise      {id, title, sha256 of exercise.toml}
     submission    {name as the user gave it, sha256 over its files}
     grader, ros   their versions
     clock         {used: "simulated" or "wall" ("none" when no trial ran), why: a sentence}
     confined      false where the student's code ran without a sandbox, with resource limits only
     seed          the number that drew the turtle's start; null for turtlesim's own start
-    points, max   sums over the outcomes; what the machine could not judge (status "error") is in neither
+    points, max   sums over the outcomes; what the machine could not judge (status "error") has 0 of its points
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
                   cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,
                   advice: worth nothing and fails no run, whatever its status, near_edge}]
@@ -26,8 +26,8 @@ from grader.checks.outcome import Finding, Outcome, Report, Status
 from grader.errors import UsageError
 from grader.submission.where import Where
 
-SCHEMA = 2
-READ = (1, SCHEMA)
+SCHEMA = 3
+READ = (1, 2, SCHEMA)
 
 
 def to_json(report: Report) -> str:

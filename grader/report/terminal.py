@@ -71,7 +71,7 @@ def _check(outcome: Outcome, console: Console, told: str) -> None:
     head = Text(f"{signs[look]} ", style=STYLES[look])
     head.append(printable(outcome.title), style="" if look == "passed" else "bold")
     if outcome.max:
-        points = f"{_points(outcome.points)}/{_points(outcome.max)}" if look != "error" else "not counted"
+        points = f"{_points(outcome.points)}/{_points(outcome.max)}" + (" so far" if look == "error" else "")
         head.append(f"  {points}", style="dim" if look == "passed" else STYLES[look])
     _line(console, head)
     if look == "passed" or outcome.hidden or outcome.finding.seen == told:

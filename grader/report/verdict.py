@@ -31,8 +31,7 @@ def verdict(report: Report) -> str:
     errors, failed = report.with_status(Status.ERROR), report.with_status(Status.FAILED)
     skipped = report.with_status(Status.SKIPPED)
     if errors:
-        what = f"{count(len(errors), 'check')} could not be judged, through no fault of the submission"
-        return f"Not finished: {what}. {points}."
+        return f"Not finished: {count(len(errors), 'check')} could not be judged. {points} so far."
     if not failed and not skipped:
         return f"Passed: {points}."
     if not failed:

@@ -81,17 +81,17 @@ def test_advice_that_was_not_followed_fails_no_run() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "broken", "points", "most"),
+    ("given", "broken", "points"),
     [
-        (evidence(None, build=None, fault=Fault("build", FULL_DISK)), 12, 0.0, 0.0),
-        (evidence(None, fault=Fault("trial", FULL_DISK)), 9, 0.0, 0.0),
+        (evidence(None, build=None, fault=Fault("build", FULL_DISK)), 12, 0.0),
+        (evidence(None, fault=Fault("trial", FULL_DISK)), 9, 0.0),
     ],
 )
-def test_a_fault_of_the_machine_costs_no_points(given: Evidence, broken: int, points: float, most: float) -> None:
+def test_a_fault_of_the_machine_takes_nothing_out_of_the_maximum(given: Evidence, broken: int, points: float) -> None:
     made = report(judge(given))
     errors = made.with_status(Status.ERROR)
     assert (len(errors), {outcome.finding.seen for outcome in errors}) == (broken, {FULL_DISK})
-    assert (made.points, made.max, made.exit_code) == (points, most, 3)
+    assert (made.points, made.max, made.exit_code) == (points, 100.0, 3)
     assert made.with_status(Status.SKIPPED) == ()
 
 

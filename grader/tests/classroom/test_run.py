@@ -82,7 +82,7 @@ def assert_set_aside(done: dict[str, Result]) -> None:
     aside = done["deadly"].report
     assert {outcome.status for outcome in aside.outcomes} == {Status.ERROR}
     assert "lost twice" in aside.outcomes[0].finding.seen
-    assert (aside.points, aside.max) == (0.0, 0.0)  # it costs no points
+    assert (aside.points, aside.max) == (0.0, 100.0)
     assert (done["anna"].report.points, done["ben"].report.points) == (100.0, 0.0)
 
 

@@ -6,6 +6,8 @@ import csv
 import io
 import json
 import re
+import unicodedata
+import xml.etree.ElementTree as ET
 from dataclasses import dataclass, replace
 from html.parser import HTMLParser
 from typing import TYPE_CHECKING, Any
@@ -20,6 +22,7 @@ from grader.report.csv import COLUMNS, to_csv
 from grader.report.github import MOST_ANNOTATIONS, MOST_SUMMARY, to_annotations, to_summary
 from grader.report.gradescope import to_gradescope
 from grader.report.hidden import for_students
+from grader.report.html_class import Entry
 from grader.report.junit import to_junit
 from grader.submission.where import Where
 from grader.tests.report.hostile import ALL, ODD
@@ -72,11 +75,68 @@ def test_the_table_has_a_line_a_submission() -> None:
     assert "wrong-radius" in found[1]["diagnoses"].split()
 
 
-@pytest.mark.parametrize("sign", ["=", "+", "-", "@", "\t=", "\r="])
-def test_no_cell_is_a_formula(sign: str) -> None:
-    cells = [cell for row in table((f"{sign}cmd|' /C calc'!A0", hostile())) for cell in row.values()]
-    assert [cell for cell in cells if cell.startswith(("=", "+", "-", "@", "\t", "\r", "\n"))] == []
-    assert all(cell.isprintable() for cell in cells)
+def unfinished() -> Report:
+    """All that could be judged has passed, and the circle could not be judged: 75 points."""
+    made = report("passed")
+    broken = Finding(Status.ERROR, "The machine was too busy.")
+    outcomes = (replace(each, points=0.0, finding=broken) if each.id == "circle" else each for each in made.outcomes)
+    return replace(made, outcomes=tuple(outcomes))
+
+
+def test_an_error_takes_nothing_out_of_the_maximum_in_any_format() -> None:
+    given = unfinished()
+    (row,) = table(("anna", given))
+    assert (row["points"], row["max"], row["percent"], row["status"]) == ("75", "100", "75.0", "error")
+    properties = ET.fromstring(to_junit([("anna", given)])).iter("property")
+    assert {each.get("name"): each.get("value") for each in properties}.items() >= {
+        "points": "75",
+        "max": "100",
+    }.items()
+    data = gradescope(given)
+    circle = next(test for test in data["tests"] if test["name"] == "The turtle drives a circle")
+    assert (data["score"], circle["score"], circle["max_score"], circle["status"]) == (75, 0, 25, "failed")
+    assert "75 of 100" in shown(to_summary([("anna", given)])).cells
+    assert "0/25" in shown(to_summary([("anna", given)])).cells
+    assert Entry(given, "anna", "").share == 0.75
+
+
+SIGNS = ("=", "+", "-", "@", "＝", "＋", "－", "＠", "﹣", "\N{MINUS SIGN}")  # noqa: RUF001 - that is the attack
+BEFORE = (
+    "",
+    " ",
+    "\t",
+    "\r",
+    "\n",
+    "\r\n",
+    "\N{NO-BREAK SPACE}",
+    "\N{IDEOGRAPHIC SPACE}",
+    '"',
+    "' ",
+    "\ufeff",
+    "\v",
+    "\0",
+)
+SEPARATORS = (",", ";", "\t", "|")
+
+
+def begins_like_a_formula(cell: str) -> bool:
+    """Whether a spreadsheet may run the cell: blanks are passed over, quotes taken off, wide characters made plain."""
+    return unicodedata.normalize("NFKC", cell).lstrip(' \t\r\n"`').startswith(("=", "+", "-", "@", "\N{MINUS SIGN}"))
+
+
+@pytest.mark.parametrize("sign", SIGNS)
+@pytest.mark.parametrize("separator", SEPARATORS)
+def test_no_cell_is_a_formula_wherever_a_reader_splits(sign: str, separator: str) -> None:
+    call = f"{sign}cmd|' /C calc'!A0"
+    names = [f"{before}{call}" for before in BEFORE]
+    names += [f"a{between}{before}{call}{between}b" for between in ";|\t" for before in BEFORE]
+    text = to_csv((name, hostile(), "0.1.0 abc", f"{name}.json") for name in names).removeprefix("\ufeff")
+    rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=separator))
+    rows += [line.split(separator) for line in text.split("\r\n")]  # a reader that knows no quotes
+    cells = [cell for row in rows for cell in row]
+    assert len(cells) > len(names)
+    assert [cell for cell in cells if begins_like_a_formula(cell)] == []
+    assert all(cell.isprintable() for cell in text.split("\r\n"))
 
 
 # JUnit

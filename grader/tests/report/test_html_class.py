@@ -49,11 +49,12 @@ def test_checks_that_fail_most_come_first_with_their_causes(folder: Path) -> Non
     assert "linear.x divided by angular.z" in circle.diagnoses[0].text
 
 
-def test_the_machines_errors_stand_apart_and_count_for_nothing(folder: Path) -> None:
+def test_the_machines_errors_stand_apart_and_out_of_the_averages(folder: Path) -> None:
     tags = Tags(class_page(read_class(folder)))
     page = class_page(read_class(folder))
     table = page[page.index("<tbody>") : page.index("</tbody>")]
-    assert "student6" not in table
+    assert '0 of 100</td>\n<td><span class="mark error" aria-hidden="true">!</span> not judged' in table
+    assert table.count("<tr ") == 7
     assert "student6" in page[page.index('id="machine"') :]
     assert "The disk is full" in page[page.index('id="machine"') :]
     assert any("6 submissions judged: 3 passed, 3 not yet" in text for text in tags.texts["p"])

@@ -29,10 +29,11 @@ def test_back_from_json_it_is_the_same_report(status: str) -> None:
     assert from_json(to_json(made)) == made
 
 
-def test_a_report_of_the_first_schema_is_read() -> None:
+def test_a_report_of_an_older_schema_is_read() -> None:
     made = report("passed")
     data = {key: value for key, value in json.loads(to_json(made)).items() if key != "confined"}
     assert from_json(json.dumps({**data, "schema": 1})) == made
+    assert from_json(json.dumps({**json.loads(to_json(made)), "schema": 2, "max": 0.0})) == made
     with pytest.raises(UsageError, match="damaged"):
         from_json(json.dumps(data))
 
@@ -68,7 +69,7 @@ def test_a_file_name_that_is_not_utf8_makes_valid_json() -> None:
         ("", "no report of the grader"),
         ("[]", "no report of the grader"),
         ("{}", "no report of the grader"),
-        ('{"schema": 3}', "schema 3; this version of the grader reads schema 1 to 2"),
+        ('{"schema": 4}', "schema 4; this version of the grader reads schema 1 to 3"),
         ('{"schema": 1}', "damaged"),
     ],
 )
@@ -83,8 +84,8 @@ def test_an_unknown_status_is_damage() -> None:
         from_json(text)
 
 
-def test_points_leave_out_what_the_machine_could_not_judge() -> None:
+def test_what_the_machine_could_not_judge_stays_in_the_maximum() -> None:
     made = report("passed")
     broken = replace(made.outcomes[-2], points=0.0, finding=Finding(Status.ERROR, "The disk is full."))
     data = json.loads(to_json(replace(made, outcomes=(*made.outcomes[:-2], broken))))
-    assert (data["points"], data["max"]) == (95.0, 95.0)
+    assert (data["points"], data["max"]) == (95.0, 100.0)

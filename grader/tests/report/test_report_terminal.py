@@ -54,7 +54,7 @@ def test_what_ran_without_a_sandbox_is_told_in_one_line() -> None:
     [
         ("passed", "Passed: 100 of 100 points."),
         ("skipped", "Not passed yet: 0 of 100 points, 1 check failed, 11 not judged because of that."),
-        ("error", "Not finished: 12 checks could not be judged, through no fault of the submission. 0 of 0 points."),
+        ("error", "Not finished: 12 checks could not be judged. 0 of 100 points so far."),
     ],
 )
 def test_each_verdict(status: str, verdict: str) -> None:
@@ -89,9 +89,9 @@ def test_brief_is_what_is_to_be_mended() -> None:
     assert f"{amount} checks passed. In a higher window" in console.file.getvalue()
 
 
-def test_an_error_is_not_counted_and_says_what_to_do() -> None:
+def test_an_error_has_no_points_yet_and_says_what_to_do() -> None:
     text = told(report("error"))
-    assert "! The turtle drives a circle  not counted\n" in text
+    assert "! The turtle drives a circle  0/25 so far\n" in text
     assert "    seen: The disk is full: make room, then grade again.\n" in text
 
 
