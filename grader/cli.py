@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Optional
 import typer
 
 from grader.classroom import cli as classroom
+from grader.common.interpreter import clean_own
 from grader.errors import GraderError, UsageError
 from grader.gradebook import cli as gradebook
-from grader.interpreter import clean_own
 from grader.learner import cli as learner
 
 if TYPE_CHECKING:
@@ -175,7 +175,7 @@ def sim(
     port: Annotated[Optional[int], typer.Option(help="Of the page; the one of the last time when left out.")] = None,  # noqa: UP045
 ) -> None:
     """Run turtlesim as a node, at wall time, until Ctrl-C; it has no window, so --view shows it."""
-    from grader.interpreter import interpreter
+    from grader.common.interpreter import interpreter
     from grader.ros import underlay
     from grader.ros.installation import find_ros, users_environment
 

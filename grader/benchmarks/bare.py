@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.benchmarks.measure import Cost, cost
-from grader.interpreter import interpreter
+from grader.common.interpreter import interpreter
 from grader.ros import underlay
 from grader.ros.installation import environment, find_ros
 from grader.submission.package import open_submission, write_copy

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 from grader.benchmarks.bare import bare_costs
 from grader.benchmarks.measure import cost
-from grader.interpreter import interpreter
+from grader.common.interpreter import interpreter
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

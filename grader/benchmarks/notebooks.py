@@ -22,9 +22,9 @@ import time
 from pathlib import Path
 from typing import Any
 
+from grader.common.interpreter import interpreter
 from grader.exercise.model import course_folder
 from grader.gradebook.class_folder import make_class
-from grader.interpreter import interpreter
 
 STEP = "03-circle-publisher"
 AT_MOST = 1.5

@@ -14,8 +14,8 @@ from pathlib import Path
 
 from grader.benchmarks.bare import bare_costs
 from grader.benchmarks.measure import Cost, cost
+from grader.common.interpreter import interpreter
 from grader.errors import MachineError
-from grader.interpreter import interpreter
 from grader.sandbox import bubblewrap
 
 _ROOT = Path(__file__).resolve().parents[2]

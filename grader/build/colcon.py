@@ -21,7 +21,7 @@ from grader.sandbox import bubblewrap, process
 from grader.build.build import Build
 from grader.sandbox.control_group import control_group
 from grader.errors import MachineError
-from grader.interpreter import interpreter
+from grader.common.interpreter import interpreter
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.tar_stream import Member, read_tar
 

@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.interpreter import interpreter
 from grader.errors import MachineError
-from grader.interpreter import interpreter
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -18,7 +18,7 @@ from multiprocessing.connection import Connection
 from threading import Thread
 from typing import IO, TYPE_CHECKING, Literal
 
-from grader.interpreter import interpreter
+from grader.common.interpreter import interpreter
 
 if TYPE_CHECKING:
     from grader.classroom.task import Done, Pace, Task

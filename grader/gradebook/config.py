@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-CLASS = "class"
-"""The folder of a class, which git ignores: submitted/, autograded/, feedback/, reports/, gradebook.db."""
+from grader.gradebook.folders import CLASS
+
 COURSE_ID = "ros2-topics"
 BUSY_S = 60
 """How long the database may be somebody else's before nbgrader gives up."""

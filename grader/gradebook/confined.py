@@ -21,8 +21,8 @@ from nbclient.exceptions import CellTimeoutError, DeadKernelError
 from nbgrader.preprocessors import Execute
 from traitlets import Bool, Instance, Integer, Unicode
 
+from grader.common.interpreter import interpreter
 from grader.exercise.model import course_folder
-from grader.interpreter import interpreter
 from grader.notebook.mode import CONFINED
 from grader.ros import underlay
 from grader.ros.installation import environment, find_ros

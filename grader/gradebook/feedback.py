@@ -10,8 +10,7 @@ from nbformat.v4 import new_output
 from nbgrader.preprocessors import ClearHiddenTests, NbGraderPreprocessor
 
 from grader.classroom.results import Results
-from grader.gradebook.config import CLASS
-from grader.gradebook.folders import RESULTS
+from grader.gradebook.folders import CLASS, RESULTS
 from grader.notebook.worker import reason
 from grader.report.hidden import for_students
 

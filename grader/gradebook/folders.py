@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from grader.errors import MachineError, UsageError
 from grader.exercise.model import catalogue, find_exercise
-from grader.gradebook.config import CLASS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 CONFIG = "nbgrader_config.py"
+CLASS = "class"
+"""The folder of a class, which git ignores: submitted/, autograded/, feedback/, reports/, gradebook.db."""
 RESULTS = "results"
 """What the grader itself found out, below the folder of the class: see grader/classroom/results.py."""
 HANDED_IN = "handed-in"

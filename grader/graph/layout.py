@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Literal
 from xml.sax.saxutils import escape
 
+from grader.common.interpreter import interpreter
 from grader.errors import MachineError
-from grader.interpreter import interpreter
 
 Format = Literal["svg", "png", "json0"]
 _PNG_DPI = 144

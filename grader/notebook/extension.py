@@ -8,8 +8,8 @@ import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.interpreter import interpreter
 from grader.errors import GraderError
-from grader.interpreter import interpreter
 from grader.notebook import guardian
 from grader.notebook.cells import Cells
 from grader.notebook.check import Checking

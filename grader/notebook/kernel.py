@@ -13,8 +13,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from grader.common.interpreter import interpreter
 from grader.errors import MachineError
-from grader.interpreter import interpreter
 
 NAME = "ros2-jazzy-course"
 DISPLAY_NAME = "ROS 2 Jazzy (course)"

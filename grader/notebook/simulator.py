@@ -19,8 +19,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common.interpreter import interpreter
 from grader.errors import MachineError, UsageError
-from grader.interpreter import interpreter
 from grader.notebook.cells import run_below
 from grader.notebook.mode import grading
 

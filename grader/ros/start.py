@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.interpreter import interpreter
+from grader.common.interpreter import interpreter
 from grader.ros import index
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.common import xdg
+from grader.common.interpreter import interpreter
 from grader.errors import MachineError
-from grader.interpreter import interpreter
 from grader.ros import installation
 from grader.setup import machine
 

@@ -19,7 +19,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from grader import interpreter
+from grader.common import interpreter
 from grader.setup import machine
 
 ROOT = Path(__file__).resolve().parents[2]

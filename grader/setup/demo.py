@@ -13,7 +13,7 @@ import sys
 import time
 from pathlib import Path
 
-from grader.interpreter import interpreter
+from grader.common.interpreter import interpreter
 from grader.setup.bootstrap import ROOT, STAMP, read_stamp, say
 
 STEP = "03-circle-publisher"

@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from grader.common import xdg
+from grader.common.interpreter import interpreter
 from grader.errors import MachineError
-from grader.interpreter import interpreter
 from grader.ros import underlay
 from grader.ros.installation import DISTRO, FASTDDS_PROFILE, Ros, environment, find_ros, has_turtlesim
 from grader.sandbox import bubblewrap

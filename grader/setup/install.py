@@ -15,8 +15,8 @@ import sys
 import time
 from pathlib import Path
 
+from grader.common.interpreter import clean, interpreter
 from grader.errors import MachineError
-from grader.interpreter import clean, interpreter
 from grader.setup import lock
 from grader.setup.bootstrap import MACHINE_BROKEN, ROOT, STAMP, Stamp, say, write_stamp
 

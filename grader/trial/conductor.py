@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-from grader.interpreter import interpreter
+from grader.common.interpreter import interpreter
 from grader.ros import installation
 from grader.sandbox import bubblewrap
 from grader.trial.inputs import Inputs

@@ -18,8 +18,8 @@ from threading import Timer
 from typing import IO, TYPE_CHECKING, Any
 
 import grader
+from grader.common.interpreter import interpreter
 from grader.errors import MachineError
-from grader.interpreter import interpreter
 from grader.ros import installation
 from grader.sandbox import bubblewrap
 from grader.sandbox.control_group import ControlGroup, control_group

@@ -6,7 +6,7 @@ import os
 import shutil
 import subprocess
 
-from grader.interpreter import clean, interpreter
+from grader.common.interpreter import clean, interpreter
 
 _OPENED_S = 3.0
 """A program that has not failed by then has opened the page."""

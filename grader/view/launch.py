@@ -11,15 +11,15 @@ from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Literal
 
+from grader.common.interpreter import interpreter
 from grader.errors import MachineError, UsageError
-from grader.interpreter import interpreter
 from grader.view.address import listen
 from grader.view.feed import Feed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from grader.interpreter import Start
+    from grader.common.interpreter import Start
     from grader.turtlesim.node import TurtlesimNode
 
 Kind = Literal["page", "terminal"]

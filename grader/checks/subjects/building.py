@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.bad_entry_point import bad_entry_point
 from grader.checks.causes.crash import read_tracebacks
 from grader.checks.causes.syntax import unreadable_seen, why_unreadable
 from grader.checks.kind import Kind, NoParams
@@ -15,7 +16,6 @@ from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
-    from grader.submission.setup_py import EntryPoint
 
 INSTALLED_MODULE = re.compile(r"(?:local/)?lib/python[\d.]+/(?:site|dist)-packages/(?P<path>.+\.py)")
 LAST_WORDS = re.compile(r"^(?:error|[\w.]*Error|[\w.]*Exception)\b.*", re.MULTILINE)
@@ -72,21 +72,6 @@ def early(evidence: Evidence, _: NoParams) -> Finding | None:
     why = why_unreadable(setup.unreadable, evidence.submission.files["setup.py"])
     seen = unreadable_seen("setup.py", setup.unreadable)
     return failed("setup-py-syntax", seen, EXPECTED, why.text, where=Where("setup.py", setup.unreadable.line))
-
-
-def bad_entry_point(point: EntryPoint) -> Finding:
-    """A failed finding about a text in console_scripts that is of no form that setuptools knows."""
-    seen = f'setuptools cannot read the entry point "{shorten(point.text)}".'
-    expected = "An entry point reads NAME = PACKAGE.MODULE:FUNCTION."
-    diagnosis, cause = "entry-point-format", "Compare it sign by sign: = and : each stand once."
-    if point.text.count("=") > 1:
-        diagnosis, cause = "entry-point-comma", "A comma is missing between two texts, so Python joins them to one."
-    elif "/" in point.text:
-        diagnosis, cause = "entry-point-slash", "This is a file's path; a module has points between folder and file."
-    elif ":" not in point.text:
-        cause = "It names no function: after the module come a colon and the function's name."
-        diagnosis = "entry-point-no-function"
-    return failed(diagnosis, seen, expected, cause, where=Where("setup.py", point.line))
 
 
 def _broken(evidence: Evidence) -> Finding:
