@@ -21,7 +21,7 @@ import shutil
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
-from grader.build.build import Build
+from grader.colcon.build import Build
 from grader.errors import MachineError, UsageError
 from grader.evidence.evidence import Evidence, Fault
 from grader.exercise.model import FILE_NAME, load_exercise

@@ -16,7 +16,7 @@ from grader.submission.setup_py import SetupPy, read_setup_py
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from grader.build.build import Build
+    from grader.colcon.build import Build
     from grader.evidence.stage import Stage
     from grader.exercise.model import Exercise
     from grader.submission.package import Submission

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import grader
-from grader.build import colcon
 from grader.checks.judge import judge, judge_early, near_edge, of_this_trial, wants_trial
 from grader.checks.outcome import Report, Status
+from grader.colcon import workspace
 from grader.common.words import printable
 from grader.errors import MachineError
 from grader.evidence.evidence import Evidence, Fault
@@ -77,7 +77,7 @@ def grade(
     tell: Callable[[str], None] = lambda _: None,
     *,
     early: Callable[[Sequence[Outcome]], object] = lambda _: None,
-    build: Callable[..., colcon.Built] = colcon.build,
+    build: Callable[..., workspace.Built] = workspace.build,
     trial: Callable[..., Trial] = Trial,
 ) -> Graded:
     """Grade a submission; `tell` hears in a few words what is being done, `early` what failed for certain before that.
@@ -120,7 +120,7 @@ class _Grading:
     options: Options
     tell: Callable[[str], None]
     early: Callable[[Sequence[Outcome]], object]
-    builder: Callable[..., colcon.Built]
+    builder: Callable[..., workspace.Built]
     trials: Callable[..., Trial]
     turns: Turns
     ahead: Ahead

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from grader.build import colcon
+from grader.colcon import workspace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,7 +27,7 @@ class Rebuild:
 
     def __init__(self) -> None:
         self.runs = 0
-        self._last: tuple[Submission, colcon.Built] | None = None
+        self._last: tuple[Submission, workspace.Built] | None = None
 
     def __call__(
         self,
@@ -37,19 +37,19 @@ class Rebuild:
         *,
         in_cell: bool,
         tell: Callable[[str], None],
-    ) -> colcon.Built:
+    ) -> workspace.Built:
         """Build the submission, with colcon or without; `tell` hears which."""
         built = renewed(submission, *self._last) if self._last else None
         if built is not None:
             tell("Taking the last build, with the modules as they are now")
         else:
             self.runs += 1
-            built = colcon.build(submission, here, underlay, in_cell=in_cell, tell=tell)
+            built = workspace.build(submission, here, underlay, in_cell=in_cell, tell=tell)
         self._last = (submission, built)
         return built
 
 
-def renewed(submission: Submission, before: Submission, built: colcon.Built) -> colcon.Built | None:
+def renewed(submission: Submission, before: Submission, built: workspace.Built) -> workspace.Built | None:
     """What was `built` of a submission `before`, with the modules of this one; None where more than those differ."""
     if submission.files.keys() != before.files.keys() or submission.executable != before.executable:
         return None
@@ -58,10 +58,10 @@ def renewed(submission: Submission, before: Submission, built: colcon.Built) -> 
     if built.build.exit_code != 0 or not all(installed.values()):
         return None
     texts = {f"{built.build.package}/{place}": changed[path] for path, place in installed.items() if place}
-    return colcon.Built(replace(built.build, seconds=0.0), _with_texts(built.tree, texts))
+    return workspace.Built(replace(built.build, seconds=0.0), _with_texts(built.tree, texts))
 
 
-def _installed(path: str, built: colcon.Built) -> str | None:
+def _installed(path: str, built: workspace.Built) -> str | None:
     """Where a module of the submission was installed; None for what is no module, or was not."""
     if not path.endswith(".py") or "/" not in path:
         return None

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from grader.build import colcon
+from grader.colcon import workspace
 from grader.errors import UsageError
 from grader.exercise.model import find_exercise
 from grader.grading.grade import Options, grade
@@ -46,7 +46,7 @@ class Builds:
         *,
         in_cell: bool,
         tell: Callable[[str], None],
-    ) -> colcon.Built:
+    ) -> workspace.Built:
         """Build the submission, with colcon or without."""
         with self._lock:
             kept = self._known.setdefault(_alike(submission), _Kept(threading.Lock()))
@@ -54,7 +54,7 @@ class Builds:
             again = renewed(submission, *kept.first) if kept.first else None
             if again is not None:
                 return again
-            built = colcon.build(submission, here, underlay, in_cell=in_cell, tell=tell)
+            built = workspace.build(submission, here, underlay, in_cell=in_cell, tell=tell)
             kept.first = kept.first or (submission, built)
             return built
 
@@ -62,7 +62,7 @@ class Builds:
 @dataclass
 class _Kept:
     lock: threading.Lock
-    first: tuple[Submission, colcon.Built] | None = None
+    first: tuple[Submission, workspace.Built] | None = None
 
 
 def _alike(submission: Submission) -> object:

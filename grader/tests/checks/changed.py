@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from grader.tests.checks.made import BUILD, PACKAGE_XML, SETUP_PY, evidence, finding, submission
 
 if TYPE_CHECKING:
-    from grader.build.build import Build
     from grader.checks.outcome import Finding
+    from grader.colcon.build import Build
 
 Files = dict[str, str | bytes | None]
 

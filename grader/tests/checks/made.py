@@ -8,8 +8,8 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from grader.build.build import Build
 from grader.checks.judge import judge
+from grader.colcon.build import Build
 from grader.evidence.evidence import Evidence
 from grader.exercise.model import Exercise, find_exercise
 from grader.submission.package import Submission

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader.build.colcon import Built
 from grader.checks.outcome import Status
+from grader.colcon.workspace import Built
 from grader.errors import MachineError
 from grader.exercise.model import find_exercise
 from grader.grading.grade import Options, grade

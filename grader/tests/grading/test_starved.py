@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader.build.colcon import Built
 from grader.checks.outcome import Status
+from grader.colcon.workspace import Built
 from grader.grading import turns
 from grader.grading.grade import WALL_TRIALS, Options, grade
 from grader.tests.checks.made import BUILD, every, exercise, good, recording, submission

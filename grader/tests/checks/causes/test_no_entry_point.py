@@ -13,7 +13,7 @@ from grader.checks.subjects.entry_point import ENTRY_POINT
 from grader.tests.checks.made import BUILD, NODE, NODE_FILE, SETUP_PY, evidence, finding, submission
 
 if TYPE_CHECKING:
-    from grader.build.build import Build
+    from grader.colcon.build import Build
 
 POINT = '            "draw_circle = my_robot_controller.draw_circle:main",\n'
 NOTHING = replace(BUILD, executables=(), entry_points={})

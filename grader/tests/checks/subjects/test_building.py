@@ -12,7 +12,7 @@ from grader.tests.checks.changed import BARE, INIT, LINKED, NOTHING, of, setup_p
 from grader.tests.checks.made import BUILD
 
 if TYPE_CHECKING:
-    from grader.build.build import Build
+    from grader.colcon.build import Build
     from grader.tests.checks.changed import Files
 
 

@@ -12,7 +12,7 @@ from grader.tests.checks.changed import NOTHING, POINT, of, setup_py
 from grader.tests.checks.made import BUILD, NODE, NODE_FILE
 
 if TYPE_CHECKING:
-    from grader.build.build import Build
+    from grader.colcon.build import Build
     from grader.tests.checks.changed import Files
 
 

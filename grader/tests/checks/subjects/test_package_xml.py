@@ -11,7 +11,7 @@ from grader.tests.checks.changed import INIT, LINKED, of, setup_py, xml
 from grader.tests.checks.made import BUILD, NODE_FILE, PACKAGE_XML, evidence, finding, submission
 
 if TYPE_CHECKING:
-    from grader.build.build import Build
+    from grader.colcon.build import Build
     from grader.tests.checks.changed import Files
 
 

@@ -16,12 +16,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
+from grader.colcon.build import Build
+from grader.common.interpreter import interpreter
+from grader.errors import MachineError
 from grader.ros import installation
 from grader.sandbox import bubblewrap, process
-from grader.build.build import Build
 from grader.sandbox.control_group import control_group
-from grader.errors import MachineError
-from grader.common.interpreter import interpreter
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.tar_stream import Member, read_tar
 
