@@ -20,18 +20,18 @@ TESTS = Path(__file__).parent
 PAGE = TESTS.parent / "checks" / "README.md"
 MISTAKES = CASES.parent / "mistakes"
 SHOWN_BY_TESTS = {
-    "build-limit": "checks/test_building.py",
-    "lobe-gap": "checks/test_eight.py",
-    "no-commands": "checks/test_values.py",
-    "no-timer": "checks/test_running.py",
-    "numbers-of-another": "checks/test_own.py",
+    "build-limit": "checks/subjects/test_building.py",
+    "lobe-gap": "checks/subjects/test_eight.py",
+    "no-commands": "checks/subjects/test_values.py",
+    "no-timer": "checks/subjects/test_node.py",
+    "numbers-of-another": "checks/subjects/test_own.py",
     "overwhelmed": "checks/test_judge.py",
-    "package-xml-not-installed": "checks/test_building.py",
-    "resource-marker": "checks/test_building.py",
-    "slow-stop": "checks/test_running.py",
-    "square-gap": "checks/test_square.py",
-    "too-soon": "checks/test_square.py",
-    "wrong-centre": "checks/test_path.py",
+    "package-xml-not-installed": "checks/subjects/test_building.py",
+    "resource-marker": "checks/subjects/test_building.py",
+    "slow-stop": "checks/subjects/test_node.py",
+    "square-gap": "checks/subjects/test_square.py",
+    "too-soon": "checks/subjects/test_square.py",
+    "wrong-centre": "checks/subjects/test_path.py",
 }
 """Diagnosis -> the test that shows it: no ordinary submission leads to it, but a hostile one, or a class."""
 HEAD = """\

@@ -36,7 +36,7 @@ def diagnosis_files() -> list[Path]:
     """The files of the checks that make diagnoses."""
     return [
         file
-        for file in sorted(CHECKS.glob("*.py"))
+        for file in sorted(CHECKS.rglob("*.py"))
         if file.name not in NOT_THESE and MAKES_DIAGNOSES.search(file.read_text("utf-8"))
     ]
 

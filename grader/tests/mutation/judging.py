@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Report
 from grader.report.json import to_data
+from grader.tests.case import ROOT
 from grader.tests.gradings import Graded, compare
 
 if TYPE_CHECKING:
@@ -33,6 +34,8 @@ Lines = dict[tuple["Path", int], set[str]]
 """Who runs a line (from 1) of a file."""
 
 PACKAGE = "grader.checks"
+SHARED = "grader.checks.outcome"
+"""What reports are made of, by everybody: no mutants are made of it, and its Status must stay the same object."""
 SURVIVED, KILLED = 0, 1
 LIMIT_S = 60
 """CPU time after which a mutant is one that never ends, which is noticed as well; a loaded machine changes nothing."""
@@ -73,7 +76,7 @@ def load(recorded: Iterable[Recorded]) -> list[Material]:
 
 def forget() -> None:
     """Forget the checks."""
-    for name in [name for name in sys.modules if name == PACKAGE or name.startswith(f"{PACKAGE}.")]:
+    for name in [name for name in sys.modules if name.startswith(f"{PACKAGE}.") and name != SHARED]:
         del sys.modules[name]
 
 
@@ -171,7 +174,7 @@ def asked(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
 
 def install(mutant: Mutant) -> None:
     """Import the changed file in place of the grader's own."""
-    name = f"{PACKAGE}.{mutant.file.stem}"
+    name = ".".join(mutant.file.relative_to(ROOT).with_suffix("").parts)
     spec = importlib.util.spec_from_loader(name, loader=None, origin=str(mutant.file))
     assert spec is not None
     module = importlib.util.module_from_spec(spec)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-ANSWERS = ROOT / "grader" / "checks" / "answers.py"
+ANSWERS = ROOT / "grader" / "checks" / "subjects" / "answers.py"
 CASE = CASES.parent / "mistakes" / "201-no-slash"
 
 SOURCE = '''
@@ -140,6 +140,8 @@ def test_what_no_case_runs_survives(recorded: list[Recorded]) -> None:
 @pytest.mark.exhaustive
 def test_every_known_mutant_is_there() -> None:
     known = equivalent.read()
-    files = {ROOT / "grader" / "checks" / each.file for each in known}
+    files = [file for each in known for file in (ROOT / "grader" / "checks").rglob(each.file)]
+    assert len(files) == len(known)
+    files = sorted(set(files))
     mutants = [mutant for file in files for mutant in mutants_of(file)]
     assert [each for each in known if not any(equivalent.is_known(mutant, [each]) for mutant in mutants)] == []
