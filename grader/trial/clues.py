@@ -76,8 +76,6 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
             yield Clue(node.arg, path, node.value.lineno)
         elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id in modules:
             yield Clue(modules[node.id], path, node.lineno)
-        elif isinstance(node, ast.Call) and _has_own_arguments(node):
-            yield Clue("a list of arguments for rclpy.init", path, node.lineno)
         elif isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in _CLOCKS:
             yield Clue("a clock of its own", path, node.lineno)
         elif isinstance(node, ast.Constant) and node.value == "use_sim_time":
@@ -86,14 +84,6 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
 
 def _is_timeless(node: ast.Attribute, modules: Mapping[str, str]) -> bool:
     return isinstance(node.value, ast.Name) and f"{modules.get(node.value.id)}.{node.attr}" in _TIMELESS
-
-
-def _has_own_arguments(call: ast.Call) -> bool:
-    """Whether it is rclpy.init with a list: then the node never hears of use_sim_time."""
-    if ast.unparse(call.func) not in ("rclpy.init", "init"):
-        return False
-    given = [keyword.value for keyword in call.keywords if keyword.arg == "args"]
-    return any(isinstance(each, ast.List | ast.Tuple) for each in (*call.args[:1], *given))
 
 
 def _wall_time_names(tree: ast.Module) -> Iterator[tuple[str, str]]:

@@ -1,12 +1,16 @@
 """Start a node inside its cell, quickly: rclpy is imported while colcon still builds.
 
 Runs alone as a script, before the install tree exists. On standard input come one line of JSON
-(`script`, `argv`, `python_path`, `env`, `install`) and the install tree as a tar stream; then the installed script
-runs here as __main__, just as the interpreter in its first line would run it.
+(`script`, `ros_arguments`, `python_path`, `env`, `install`) and the install tree as a tar stream; then the installed
+script runs here as __main__, just as the interpreter in its first line would run it.
+
+`ros_arguments` choose simulated time. They are given to rclpy when it is initialized, and never appear in sys.argv: a
+program that reads its own arguments must see those that `ros2 run PACKAGE EXECUTABLE` gives it, which are none.
 """
 
 from __future__ import annotations
 
+import functools
 import importlib
 import json
 import os
@@ -15,6 +19,10 @@ import sys
 import tarfile
 import types
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 _AHEAD = (
     "importlib.metadata",
@@ -35,10 +43,45 @@ def _import_ahead() -> None:
         type(getattr(importlib.import_module(name), message)).__import_type_support__()
 
 
+def _initialize_with(ours: list[str]) -> None:
+    """Add arguments to whatever each ROS context is initialized with."""
+    from rclpy.context import Context
+
+    original = Context.init
+
+    @functools.wraps(original)
+    def init(self: Context, args: list[str] | None = None, **options: object) -> None:
+        given = sys.argv if args is None else args
+        original(self, [*given, *ours] if isinstance(given, list | tuple) else given, **options)
+
+    Context.init = init
+
+
 def _without_us(kind: type[BaseException], error: BaseException, trace: types.TracebackType | None) -> None:
+    """Print a traceback of the program as it would be without the launcher around it."""
+    for each in _chain(error):
+        each.__traceback__ = _frames_of_others(each.__traceback__)
+    sys.__excepthook__(kind, error, _frames_of_others(trace))
+
+
+def _chain(error: BaseException | None) -> Iterator[BaseException]:
+    """The error, and those that it came from."""
+    seen: set[int] = set()
+    waiting = [error]
+    while waiting:
+        each = waiting.pop()
+        if each is not None and id(each) not in seen:
+            seen.add(id(each))
+            waiting += [each.__cause__, each.__context__]
+            yield each
+
+
+def _frames_of_others(trace: types.TracebackType | None) -> types.TracebackType | None:
     while trace is not None and trace.tb_frame.f_code.co_filename == __file__:
         trace = trace.tb_next
-    sys.__excepthook__(kind, error, trace)
+    if trace is not None:
+        trace.tb_next = _frames_of_others(trace.tb_next)
+    return trace
 
 
 def main() -> None:
@@ -59,7 +102,7 @@ def main() -> None:
     for path in order["python_path"]:
         sys.path_importer_cache.pop(path, None)
     importlib.invalidate_caches()
-    sys.argv = [str(script), *order["argv"]]
+    sys.argv = [str(script)]
     # Whoever grades in the background (`grader grade ... &`) has Ctrl-C ignored, and all that it starts inherits that.
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
@@ -68,7 +111,10 @@ def main() -> None:
     os.setpgid(0, 0)
     source = script.read_bytes()
     if not (source.startswith(b"#!") and b"python" in source.split(b"\n", 1)[0]):
-        os.execv(script, sys.argv)
+        # Another language: all that can be done is to put them on the command line.
+        os.execv(script, [*sys.argv, *order["ros_arguments"]])
+    if order["ros_arguments"]:
+        _initialize_with(order["ros_arguments"])
     sys.excepthook = _without_us
     module = types.ModuleType("__main__")
     module.__file__ = str(script)

@@ -131,10 +131,10 @@ class Trial:
         env = installation.environment(
             self._here, home=self._home, underlay=self._underlay, overlays=[prefix], domain=self._domain
         )
-        argv = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []
+        simulated = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []
         order = {
             "script": str(prefix / "lib" / package / executable),
-            "argv": argv,
+            "ros_arguments": simulated,
             "python_path": env["PYTHONPATH"].split(os.pathsep)[:1],
             "env": env,
             "install": str(install),

@@ -7,6 +7,8 @@ import subprocess
 import tarfile
 from typing import TYPE_CHECKING
 
+import pytest
+
 import grader.trial
 from grader.tests.in_ros import HANG_S
 
@@ -27,13 +29,24 @@ def deaf_to_ctrl_c() -> None:
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
 
-def test_a_node_hears_ctrl_c_though_its_grader_does_not(in_ros: InRos, tmp_path: Path) -> None:
-    script = tmp_path / "node"
-    script.write_text(SCRIPT, "utf-8")
+ARGUMENTS = """#!/usr/bin/env python3
+import sys
+import rclpy
+rclpy.init(args={args})
+print(rclpy.create_node("fish").get_parameter("use_sim_time").value, len(sys.argv))
+"""
+SIMULATED = ["--ros-args", "-p", "use_sim_time:=true"]
+
+
+def launch(in_ros: InRos, folder: Path, text: str, ros_arguments: list[str]) -> subprocess.CompletedProcess[bytes]:
+    """Run a program as the launcher does."""
+    script = folder / "node"
+    script.write_text(text, "utf-8")
     tree = io.BytesIO()
     tarfile.open(fileobj=tree, mode="w").close()
-    order = {"script": str(script), "argv": [], "python_path": [], "env": {}, "install": str(tmp_path / "install")}
-    done = subprocess.run(
+    given = {"script": str(script), "ros_arguments": ros_arguments}
+    order = {**given, "python_path": [], "env": {}, "install": str(folder / "install")}
+    return subprocess.run(
         [in_ros.here.python, f"{grader.trial.__path__[0]}/launcher.py"],
         input=json.dumps(order).encode() + b"\n" + tree.getvalue(),
         env=in_ros.environment(),
@@ -42,4 +55,29 @@ def test_a_node_hears_ctrl_c_though_its_grader_does_not(in_ros: InRos, tmp_path:
         timeout=HANG_S,
         check=False,
     )
-    assert done.stdout.rpartition(b"ready\n")[2] == b"True set()\n", done.stderr
+
+
+def printed(done: subprocess.CompletedProcess[bytes]) -> bytes:
+    """What the program itself printed."""
+    return done.stdout.rpartition(b"ready\n")[2]
+
+
+def test_a_node_hears_ctrl_c_though_its_grader_does_not(in_ros: InRos, tmp_path: Path) -> None:
+    done = launch(in_ros, tmp_path, SCRIPT, [])
+    assert printed(done) == b"True set()\n", done.stderr
+
+
+@pytest.mark.parametrize("args", ["None", "sys.argv", "[]", "('node', '--ros-args', '-r', 'a:=b', '--')"])
+def test_simulated_time_is_asked_for_without_an_argument_that_the_program_sees(
+    in_ros: InRos, tmp_path: Path, args: str
+) -> None:
+    done = launch(in_ros, tmp_path, ARGUMENTS.format(args=args), SIMULATED)
+    assert printed(done) == b"True 1\n", done.stderr
+
+
+def test_a_traceback_shows_the_program_alone(in_ros: InRos, tmp_path: Path) -> None:
+    twice = "#!/usr/bin/env python3\nimport rclpy\nrclpy.init()\nrclpy.init()\n"
+    done = launch(in_ros, tmp_path, twice, SIMULATED)
+    assert b"Context.init() must only be called once" in done.stderr
+    assert b"launcher.py" not in done.stderr
+    assert b'node", line 4, in <module>' in done.stderr
