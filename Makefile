@@ -46,5 +46,4 @@ clean: ## remove .venv and what the tools left; never anybody's work
 	@$(SET_UP) tests $(CHOSEN)
 
 python3:
-	@command -v python3 > /dev/null || { echo "There is no python3 here. Install it, then run make again:" \
-	  "sudo apt-get update && sudo apt-get install -y python3 python3-venv python3-dev" >&2; exit 3; }
+	@command -v python3 > /dev/null || sh grader/setup/get_python3.sh

@@ -9,9 +9,8 @@ Like machine.py, this runs under any Python 3 before anything is installed: synt
 
 import os
 import sys
-from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 SEARCHED = (
     *("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH"),
@@ -36,17 +35,17 @@ _MODULE_BELOW = (
 class Start(NamedTuple):
     """A command line and its environment."""
 
-    argv: list[str]
-    env: dict[str, str]
+    argv: List[str]
+    env: Dict[str, str]
 
 
 def interpreter(
     *arguments: str,
     python: str = sys.executable,
-    env: Mapping[str, str] | None = None,
+    env: Optional[Mapping[str, str]] = None,
     searches: bool = False,
-    root: Path | None = None,
-    version: tuple[int, int] = sys.version_info[:2],
+    root: Optional[Path] = None,
+    version: Tuple[int, int] = sys.version_info[:2],
 ) -> Start:
     """How to start an interpreter: `arguments` are `-m MODULE ...`, `-c CODE ...` or the absolute path of a script.
 
@@ -76,7 +75,7 @@ def interpreter(
     return Start(argv, clean(os.environ if env is None else env))
 
 
-def clean(env: Mapping[str, str]) -> dict[str, str]:
+def clean(env: Mapping[str, str]) -> Dict[str, str]:
     """The environment without what leads to the current folder: empty and relative entries of search paths."""
     cleaned = dict(env)
     for name in SEARCHED:

@@ -15,11 +15,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.common import xdg
+from grader.common import packages, xdg
 from grader.common.interpreter import interpreter
 from grader.errors import MachineError
 from grader.ros import installation
-from grader.setup import machine
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -106,22 +105,23 @@ def _require_tools(search: str) -> None:
     python_headers = Path(sysconfig.get_path("include"), "Python.h")
     dev = f"python{sys.version_info.major}.{sys.version_info.minor}-dev"
     checks = [
-        (shutil.which("c++", path=search), machine.Need("a C++ compiler", "g++")),
-        (shutil.which("cc", path=search), machine.Need("a C compiler", "gcc")),
-        (shutil.which("cmake", path=search), machine.Need("cmake", "cmake")),
-        (shutil.which("ninja", path=search) or shutil.which("make", path=search), machine.Need("make", "make")),
-        (python_headers.is_file(), machine.Need("Python's headers (Python.h)", dev)),
+        (shutil.which("c++", path=search), packages.Need("a C++ compiler", "g++")),
+        (shutil.which("cc", path=search), packages.Need("a C compiler", "gcc")),
+        (shutil.which("cmake", path=search), packages.Need("cmake", "cmake")),
+        (shutil.which("ninja", path=search) or shutil.which("make", path=search), packages.Need("make", "make")),
+        (python_headers.is_file(), packages.Need("Python's headers (Python.h)", dev)),
     ]
     missing = [need for found, need in checks if not found]
     if missing:
+        manager = packages.find_manager(search)
         message = (
             f"The turtlesim interfaces must be built once, and this machine lacks {_listed(missing)} for that. "
-            f"Install it: {machine.apt_command(missing, root=os.geteuid() == 0)}"
+            f"Install it: {packages.command(manager, missing, root=os.geteuid() == 0)}"
         )
         raise MachineError(message)
 
 
-def _listed(needs: list[machine.Need]) -> str:
+def _listed(needs: list[packages.Need]) -> str:
     *most, last = [need.what for need in needs]
     return f"{', '.join(most)} and {last}" if most else last
 

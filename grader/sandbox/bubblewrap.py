@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.common import packages
 from grader.errors import MachineError
 from grader.sandbox.system_calls import call_filter
 
@@ -192,7 +193,7 @@ def require(*, trusted: bool = False) -> bool:
 def why_unavailable() -> str | None:
     """Try a cell; None when it works, else what is wrong and what to do."""
     if program() is None:
-        return "bubblewrap is not installed: `sudo apt-get install bubblewrap`"
+        return _not_installed()
     view = View(read_only=())
     env = {"PATH": "/usr/bin:/bin"}
     with call_filter() as filter_fd:
@@ -221,8 +222,15 @@ def why_unavailable() -> str | None:
 def _bwrap() -> str:
     path = program()
     if path is None:
-        raise MachineError("bubblewrap is not installed: `sudo apt-get install bubblewrap`.")  # noqa: EM101
+        message = f"{_not_installed()}."
+        raise MachineError(message)
     return path
+
+
+def _not_installed() -> str:
+    need = packages.Need("bubblewrap", "bubblewrap")
+    manager = packages.find_manager(os.environ.get("PATH", ""))
+    return f"bubblewrap is not installed; it comes with `{packages.command(manager, [need], root=os.geteuid() == 0)}`"
 
 
 def _ordinary(command: list[str]) -> list[str]:

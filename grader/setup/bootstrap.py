@@ -15,12 +15,13 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from grader.common import interpreter
+from grader.common import interpreter, packages
+from grader.common.packages import Need
 from grader.setup import machine
+from grader.setup.provide import provide
 
 ROOT = Path(__file__).resolve().parents[2]
 VENV = ROOT / ".venv"
@@ -42,14 +43,14 @@ class Stamp(NamedTuple):
     ros: str
     """The prefix of the sourced ROS 2, or "wheels"."""
     python: str
-    version: list[int]
+    version: List[int]
     digest: str
     """Of the lock file and pyproject.toml."""
-    parts: list[str]
-    seconds: dict[str, float]
+    parts: List[str]
+    seconds: Dict[str, float]
 
 
-def read_stamp(path: Path = STAMP) -> Stamp | None:
+def read_stamp(path: Path = STAMP) -> Optional[Stamp]:
     """The stamp of a finished set-up, if there is one that this version wrote."""
     try:
         return Stamp(**json.loads(path.read_text()))
@@ -72,7 +73,7 @@ def digest() -> str:
     return whole.hexdigest()
 
 
-def stands(stamp: Stamp, ros: str, wanted: machine.Python | None) -> bool:
+def stands(stamp: Stamp, ros: str, wanted: Optional[machine.Python]) -> bool:
     """Whether .venv is where it was made, for this ROS 2, and its Python still the one it was made with."""
     now = machine.probe(str(PYTHON))
     same = now is not None and (now.path, list(now.version)) == (stamp.python, stamp.version)
@@ -85,7 +86,7 @@ def say(text: str) -> None:
     print(f"\033[1m{text}\033[0m" if bold else text, flush=True)
 
 
-def clean_environment(env: Mapping[str, str]) -> dict[str, str]:
+def clean_environment(env: Mapping[str, str]) -> Dict[str, str]:
     """The caller's environment without what would lead an installer elsewhere: a sourced ROS 2, an active venv."""
     foreign = {
         "PYTHONPATH",
@@ -100,42 +101,40 @@ def clean_environment(env: Mapping[str, str]) -> dict[str, str]:
     return {**{name: env[name] for name in env if name not in foreign}, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
 
 
-def apt_install(needs: Sequence[machine.Need]) -> None:
-    """Install what is missing, as root. What cannot be had is still missing afterwards, and said then."""
-    say("Installing what the system lacks: " + machine.apt_command(needs, root=True))
-    packages = dict.fromkeys(need.package for need in needs)
-    for arguments in (["update", "-q"], ["install", "-y", "-q", "--no-install-recommends", *packages]):
-        env = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
-        subprocess.call(["apt-get", *arguments], env=env, stdin=subprocess.DEVNULL)
-
-
-def see_tools_of_tests(*, install: bool, root: bool) -> None:
-    """Install what only some tests need if that may be done, else say how."""
-    path = os.environ.get("PATH", "")
-    if install:
-        for need in machine.missing_of_tests(path):
-            apt_install([need])  # each by itself, since not every system has every package
-    needs = machine.missing_of_tests(path)
-    if needs:
-        whats = "; ".join(need.what for need in needs)
-        print(f"Some tests cannot run without these: {whats}. They come with: {machine.apt_command(needs, root=root)}")
-
-
 def look(
-    ros: machine.SourcedRos | None, wanted: machine.Python | None, *, made: bool
-) -> tuple[machine.Python | None, list[machine.Need]]:
-    """The Python to make .venv with (None if it is `made`), and what the system lacks."""
+    ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python], parts: Sequence[str], *, made: bool
+) -> Tuple[Optional[machine.Python], List[Need]]:
+    """The Python to make .venv with (None if it is `made`), and what the system lacks for these parts."""
     path = os.environ.get("PATH", "")
     tools = machine.missing_tools(path, ros)
+    if "tests" in parts:
+        # Half of the tests are about the sandbox.
+        tools = [need._replace(lost="") for need in tools] + machine.missing_of_tests(path)
     if made:
         return None, tools
     version = ros.python if ros else None
     pythons = [wanted] if wanted else machine.find_pythons(path)
     python = machine.choose_python(pythons, root=os.getuid() == 0, wanted=version)
-    return python, machine.missing_of_python(python, version) + tools
+    manager = packages.find_manager(path)
+    newer = manager.newer if manager and Path("/usr/bin/python3").exists() else ""
+    return python, machine.missing_of_python(python, version, newer) + tools
 
 
-def make_venv(python: machine.Python, ros: machine.SourcedRos | None) -> bool:
+def tell_lacks(needs: Sequence[Need], why: str) -> bool:
+    """Tell what the system lacks, and `why` it was not installed; whether that stops the set-up."""
+    root = os.getuid() == 0
+    manager = packages.find_manager(os.environ.get("PATH", ""))
+    if not all(need.lost for need in needs):
+        print(machine.lack_message(needs, manager, root=root, why=why), file=sys.stderr)
+        return True
+    for need in needs:
+        reason = f" It was not installed: {why.rstrip('.')}." if why else ""
+        how = packages.command(manager, [need], root=root)
+        say(f"Without {need.what.partition(',')[0]}: {need.lost}.{reason} It comes with: {how}")
+    return False
+
+
+def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool:
     """Make .venv, in place of any that is there; False if Python could not."""
     say("Making .venv with Python {}.{}.{} ({})".format(*python.version, python.path))
     options = ["--clear"]
@@ -184,28 +183,22 @@ def main(arguments: Sequence[str]) -> int:
         return set_up(PARTS[asked.parts], ros, asked.python)
 
 
-def set_up(parts: list[str], ros: machine.SourcedRos | None, wanted: machine.Python | None) -> int:
+def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> int:
     """Look at the machine, make .venv and fill it, each only if it is to be done; returns the exit code."""
     kind = ros.prefix if ros else "wheels"
     stamp = read_stamp()
     made = stamp is not None and stands(stamp, kind, wanted)
-    root = os.getuid() == 0
-    apt = shutil.which("apt-get") is not None
-    python, needs = look(ros, wanted, made=made)
-    if needs and apt and root and os.environ.get("CI") == "true":
-        apt_install(needs)
-        python, needs = look(ros, wanted, made=made)
-    if any(not need.lost or "tests" in parts for need in needs):
-        print(machine.lack_message(needs, root=root, apt=apt), file=sys.stderr)
+    unfinished = not (stamp and made and stamp.digest == digest() and set(parts) <= set(stamp.parts))
+    python, needs = look(ros, wanted, parts, made=made)
+    why = ""
+    # What can be done without is tried for when something is set up, and not again every time.
+    if any(unfinished or not need.lost for need in needs):
+        why = provide(needs, os.environ, say)
+        python, needs = look(ros, wanted, parts, made=made)
+    if tell_lacks(needs, why):
         return MACHINE_BROKEN
-    for need in needs:
-        how = f" It comes with: {machine.apt_command([need], root=root)}" if apt else ""
-        say(f"Without {need.package}: {need.lost}.{how}")
 
-    if "tests" in parts:
-        see_tools_of_tests(install=apt and root and os.environ.get("CI") == "true", root=root)
-
-    if stamp and made and stamp.digest == digest() and set(parts) <= set(stamp.parts):
+    if not unfinished:
         return 0
     if STAMP.exists():
         STAMP.unlink()  # From here to the end .venv is unfinished.

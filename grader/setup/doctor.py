@@ -18,7 +18,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from grader.common import xdg
+from grader.common import packages, xdg
 from grader.common.interpreter import interpreter
 from grader.errors import MachineError
 from grader.ros import underlay
@@ -154,7 +154,7 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
     headers = Path(sysconfig.get_path("include"), "Python.h").is_file()
     builds = not (ros and ros.turtlesim)
     if builds and not headers:
-        needs.append(machine.Need("Python's headers (Python.h)", f"python3.{sys.version_info.minor}-dev"))
+        needs.append(packages.Need("Python's headers (Python.h)", f"python3.{sys.version_info.minor}-dev"))
     for name in ("g++", "cmake", "make") if builds else ():
         version = _version_of(name)
         if version:
@@ -165,7 +165,8 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
     needs = [need for need in needs if not need.lost]
     if needs:
         seen = "missing: " + "; ".join(need.what for need in needs)
-        yield Line("programs", seen, "broken", machine.apt_command(needs, root=os.getuid() == 0))
+        manager = packages.find_manager(env.get("PATH", ""))
+        yield Line("programs", seen, "broken", packages.command(manager, needs, root=os.getuid() == 0))
 
 
 def look_at_colcon() -> Line:

@@ -9,11 +9,12 @@ import os
 import shutil
 import stat
 import subprocess
-from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
+from grader.common import packages
 from grader.common.interpreter import clean, interpreter
+from grader.common.packages import Need
 
 OLDEST, NEWEST = (3, 10), (3, 14)
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -42,7 +43,7 @@ class Python(NamedTuple):
     """An interpreter: `path` is free of symlinks; `cpython` means one that the ROS 2 wheels are built for."""
 
     path: str
-    version: tuple[int, int, int]
+    version: Tuple[int, int, int]
     cpython: bool
     venv: bool
     headers: bool
@@ -57,20 +58,11 @@ class SourcedRos(NamedTuple):
     """A sourced ROS 2 Jazzy: its prefix, the (major, minor) of its Python, and whether it brings a turtlesim."""
 
     prefix: str
-    python: tuple[int, int]
+    python: Tuple[int, int]
     turtlesim: bool
 
 
-class Need(NamedTuple):
-    """Something that the system lacks, and the Debian or Ubuntu package that brings it."""
-
-    what: str
-    package: str
-    lost: str = ""
-    """What does not work without it; empty where nothing does."""
-
-
-def sourced_ros(env: Mapping[str, str], ours: Path) -> SourcedRos | None:
+def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
     """The ROS 2 Jazzy that the caller has sourced, if any; `ours` is the prefix of the wheels, which does not count."""
     if env.get("ROS_DISTRO") != "jazzy":
         return None
@@ -84,7 +76,7 @@ def sourced_ros(env: Mapping[str, str], ours: Path) -> SourcedRos | None:
     return None
 
 
-def platform_problem(system: str, machine: str, libc: tuple[str, str], ros: SourcedRos | None) -> str:
+def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Optional[SourcedRos]) -> str:
     """Why the ROS 2 wheels cannot be installed here, with what to do instead; empty if they can.
 
     The arguments are what the module `platform` says: system(), machine(), libc_ver().
@@ -105,13 +97,13 @@ def platform_problem(system: str, machine: str, libc: tuple[str, str], ros: Sour
     )
 
 
-def closed_folder(path: str) -> Path | None:
+def closed_folder(path: str) -> Optional[Path]:
     """The topmost folder above `path` that other users cannot enter: what lies below it, they cannot run."""
     folders = Path(path).resolve().parents
     return next((folder for folder in reversed(list(folders)) if not folder.stat().st_mode & stat.S_IXOTH), None)
 
 
-def probe(executable: str) -> Python | None:
+def probe(executable: str) -> Optional[Python]:
     """Ask an interpreter what it is; None if it does not answer, like a shim for one not installed."""
     try:
         asking = interpreter("-c", _PROBE, python=executable)
@@ -134,13 +126,15 @@ def find_pythons(path: str) -> Iterator[Python]:
                 yield python
 
 
-def choose_python(pythons: Iterable[Python], *, root: bool, wanted: tuple[int, int] | None = None) -> Python | None:
+def choose_python(
+    pythons: Iterable[Python], *, root: bool, wanted: Optional[Tuple[int, int]] = None
+) -> Optional[Python]:
     """The interpreter for .venv: the first that will do, and one that lacks nothing before one that does.
 
     Root gets one that others can run too (not below its own home), since the sandbox gives up root's rights.
     `wanted` is the only (major, minor) that will do: the one a sourced ROS 2 was built for.
     """
-    best: tuple[tuple[bool, bool], Python] | None = None
+    best: Optional[Tuple[Tuple[bool, bool], Python]] = None
     for python in pythons:
         fits = python.version[:2] == wanted if wanted else OLDEST <= python.version[:2] <= NEWEST
         lacks = not (python.venv and python.headers)
@@ -155,7 +149,7 @@ def choose_python(pythons: Iterable[Python], *, root: bool, wanted: tuple[int, i
     return best[1] if best else None
 
 
-def missing_tools(path: str, ros: SourcedRos | None) -> list[Need]:
+def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
     """Programs that the system lacks. Where turtlesim is installed, its messages need no compiler."""
     tools = {"bwrap": Need("bubblewrap, the sandbox that student code runs in", "bubblewrap", NO_SANDBOX)}
     limits = Need("setpriv, prlimit and choom, which set the sandbox's limits", "util-linux")
@@ -168,20 +162,25 @@ def missing_tools(path: str, ros: SourcedRos | None) -> list[Need]:
     return list(dict.fromkeys(need for name, need in tools.items() if shutil.which(name, path=search) is None))
 
 
-def missing_of_tests(path: str) -> list[Need]:
+def missing_of_tests(path: str) -> List[Need]:
     """What is missing that only some tests need: no reason to stop, since the others run without it."""
     tools = {
-        BROWSERS: Need("a browser, for the tests of the pages", "chromium"),
-        ("shellcheck",): Need("shellcheck, for the test of the shell scripts", "shellcheck"),
+        BROWSERS: Need("a browser", "chromium", "the tests of the pages do not run"),
+        ("shellcheck",): Need("shellcheck", "shellcheck", "the test of the shell scripts does not run"),
     }
     search = os.pathsep.join([path, *SYSTEM_PATH])
     return [need for names, need in tools.items() if not any(shutil.which(name, path=search) for name in names)]
 
 
-def missing_of_python(python: Python | None, wanted: tuple[int, int] | None = None) -> list[Need]:
-    """What the chosen Python lacks; all of it, if there is none."""
+def missing_of_python(
+    python: Optional[Python], wanted: Optional[Tuple[int, int]] = None, newer: str = ""
+) -> List[Need]:
+    """What the chosen Python lacks; all of it, if there is none.
+
+    `newer` is the package of a Python that the system has beside one that is too old.
+    """
     if python is None:
-        name = f"python{wanted[0]}.{wanted[1]}" if wanted else "python3"
+        name = f"python{wanted[0]}.{wanted[1]}" if wanted else newer or "python3"
         what = f"CPython {wanted[0]}.{wanted[1]}" if wanted else f"CPython 3.{OLDEST[1]} to 3.{NEWEST[1]}"
         return [Need(what + " with its headers", name + part) for part in ("", "-venv", "-dev")]
     default = os.path.realpath("/usr/bin/python3") == python.path
@@ -194,22 +193,16 @@ def missing_of_python(python: Python | None, wanted: tuple[int, int] | None = No
     return needs
 
 
-def apt_command(needs: Sequence[Need], *, root: bool) -> str:
-    """The one line that installs what is missing on Debian and Ubuntu."""
-    sudo = "" if root else "sudo "
-    packages = " ".join(dict.fromkeys(need.package for need in needs))
-    return f"{sudo}apt-get update && {sudo}apt-get install -y {packages}"
-
-
-def lack_message(needs: Sequence[Need], *, root: bool, apt: bool) -> str:
-    """All that the system lacks, and the one command for it; `apt` says whether there is an apt-get."""
+def lack_message(needs: Sequence[Need], manager: Optional[packages.Manager], *, root: bool, why: str = "") -> str:
+    """All that the system lacks, and the one command for it; `why` it was not installed at once."""
     whats = [f"  - {what}" for what in dict.fromkeys(need.what for need in needs)]
     lines = ["The course needs these, which this system does not have:", *whats]
-    if not apt:
-        packages = ", ".join(dict.fromkeys(need.package for need in needs))
-        lines.append(f"Install them with your package manager (Debian's names: {packages}), then run make again.")
-        return "\n".join(lines)
-    lines += ["Install them with this command, then run make again:", "", "    " + apt_command(needs, root=root), ""]
+    lines += [f"They were not installed: {why}."] if why else []
+    how = packages.command(manager, needs, root=root)
+    if manager is None:
+        lines.append(f"Install them with {how}, then run make again.")
+    else:
+        lines += ["Install them with this command, then run make again:", "", "    " + how, ""]
     if any(need.what.startswith("CPython") for need in needs):
         lines += [
             "Where the system's own Python is older, take a newer system (Debian 12, Ubuntu 22.04), or",

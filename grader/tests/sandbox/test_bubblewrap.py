@@ -136,7 +136,7 @@ def test_the_filter_is_small() -> None:
 
 def test_grading_for_marks_refuses_without_a_sandbox(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bubblewrap, "program", lambda: None)
-    with pytest.raises(MachineError, match=r"install bubblewrap.*--trust-submissions"):
+    with pytest.raises(MachineError, match=r"install -y bubblewrap.*--trust-submissions"):
         bubblewrap.require()
     assert bubblewrap.require(trusted=True) is False
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 import ast
 import json
 import os
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -10,13 +11,15 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.common.packages import MANAGERS, Need
 from grader.setup import machine
-from grader.setup.machine import Need, Python, SourcedRos
+from grader.setup.machine import Python, SourcedRos
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 SYSTEMS = Python("/usr/bin/python3.11", (3, 11, 2), cpython=True, venv=True, headers=True)
+APT = MANAGERS[0]
 JAZZY = SourcedRos("/opt/ros/jazzy", (3, 12), turtlesim=False)
 
 
@@ -47,11 +50,53 @@ def fake_ros(prefix: Path, *packages: str, python: str = "python3.12") -> None:
     (prefix / f"lib/{python}/site-packages/rclpy").mkdir(parents=True)
 
 
-@pytest.mark.parametrize("name", ["__init__.py", "machine.py", "bootstrap.py"])
+RUNS_FIRST = (
+    *("__init__.py", "common/__init__.py", "common/interpreter.py", "common/packages.py"),
+    *("setup/__init__.py", "setup/bootstrap.py", "setup/machine.py", "setup/provide.py"),
+)
+
+
+@pytest.mark.parametrize("name", RUNS_FIRST)
 def test_what_runs_first_reads_under_an_old_python(name: str) -> None:
-    tree = ast.parse((Path(machine.__file__).parent / name).read_text(encoding="utf-8"), feature_version=(3, 6))
-    future = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
-    assert "__future__" not in future
+    text = (Path(machine.__file__).parents[1] / name).read_text(encoding="utf-8")
+    assert too_new(ast.parse(text, feature_version=(3, 6))) == []
+
+
+def too_new(tree: ast.Module) -> list[str]:
+    """What parses under Python 3.6 and fails when it runs: types as later versions write them, and later modules."""
+    found = [node.module or "" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    found = [name for name in found if name in ("__future__", "collections.abc", "dataclasses")]
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name):
+            found += [node.value.id] if node.value.id in ("dict", "frozenset", "list", "set", "tuple", "type") else []
+        if isinstance(node, (ast.arg, ast.AnnAssign)):
+            found += ["|"] if isinstance(node.annotation, ast.BinOp) else []
+        if isinstance(node, ast.FunctionDef):
+            found += ["|"] if isinstance(node.returns, ast.BinOp) else []
+    return found
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "def f(x: int | None): pass",
+        "def f() -> int | None: pass",
+        "x: list[int]",
+        "from __future__ import annotations",
+        "from collections.abc import Mapping",
+    ],
+)
+def test_types_of_a_later_python_are_noticed(line: str) -> None:
+    assert too_new(ast.parse(line)) != []
+
+
+def test_nothing_else_of_ours_runs_first() -> None:
+    code = "import sys; from grader.setup import bootstrap; print(*(n for n in sys.modules if n.startswith('grader')))"
+    root = Path(machine.__file__).parents[2]
+    done = subprocess.run([sys.executable, "-S", "-c", code], cwd=root, capture_output=True, text=True, check=True)
+    paths = {name.replace(".", "/") for name in done.stdout.split()}
+    known = {name.replace("/__init__.py", "").replace("__init__.py", "").replace(".py", "") for name in RUNS_FIRST}
+    assert {path.partition("/")[2] for path in paths} == known
 
 
 # --- Python ---
@@ -215,9 +260,16 @@ def test_names_the_packages_of_the_python_that_lacks_them() -> None:
     assert machine.missing_of_python(SYSTEMS) == []
 
 
+def test_a_newer_python_beside_one_that_is_too_old_is_asked_for_by_its_name() -> None:
+    needs = machine.missing_of_python(None, newer="python3.12")
+    assert [need.package for need in needs] == ["python3.12", "python3.12-venv", "python3.12-dev"]
+    wanted = machine.missing_of_python(None, (3, 10), newer="python3.12")
+    assert [need.package for need in wanted] == ["python3.10", "python3.10-venv", "python3.10-dev"]
+
+
 def test_one_message_with_one_command() -> None:
     needs = [Need("a compiler", "g++"), Need("setpriv", "util-linux"), Need("prlimit", "util-linux")]
-    assert machine.lack_message(needs, root=False, apt=True).splitlines() == [
+    assert machine.lack_message(needs, APT, root=False).splitlines() == [
         "The course needs these, which this system does not have:",
         "  - a compiler",
         "  - setpriv",
@@ -226,22 +278,25 @@ def test_one_message_with_one_command() -> None:
         "",
         "    sudo apt-get update && sudo apt-get install -y g++ util-linux",
     ]
-    assert "\n    apt-get update && apt-get install -y g++ util-linux" in machine.lack_message(
-        needs, root=True, apt=True
-    )
+    assert "\n    apt-get update && apt-get install -y g++ util-linux" in machine.lack_message(needs, APT, root=True)
+
+
+def test_why_it_was_not_installed_is_told() -> None:
+    message = machine.lack_message([Need("a compiler", "g++")], APT, root=False, why="sudo is not here")
+    assert "  - a compiler\nThey were not installed: sudo is not here.\nInstall them" in message
 
 
 def test_without_apt_the_things_are_named_all_the_same() -> None:
-    message = machine.lack_message([Need("a compiler", "g++")], root=False, apt=False)
+    message = machine.lack_message([Need("a compiler", "g++")], None, root=False)
     assert "a compiler" in message
     assert "apt-get" not in message
 
 
 def test_no_python_at_all_names_python_and_a_way_round() -> None:
-    message = machine.lack_message(machine.missing_of_python(None), root=False, apt=True)
+    message = machine.lack_message(machine.missing_of_python(None), APT, root=False)
     assert "CPython 3.10 to 3.14" in message
     assert "apt-get install -y python3 python3-venv python3-dev" in message
     assert "docker run" in message
     assert "python3.12 python3.12-venv python3.12-dev" in machine.lack_message(
-        machine.missing_of_python(None, (3, 12)), root=False, apt=True
+        machine.missing_of_python(None, (3, 12)), APT, root=False
     )

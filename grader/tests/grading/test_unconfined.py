@@ -60,5 +60,5 @@ def test_who_wants_a_sandbox_is_refused_without_one(tmp_path: Path, without: dic
     copy_solution(STEP, tmp_path / "my_robot_controller")
     done = grader(without, "check", tmp_path / "my_robot_controller", "--exercise", STEP, "--sandbox")
     assert (done.returncode, done.stdout) == (3, "")
-    assert "install bubblewrap" in done.stderr
+    assert "install -y bubblewrap" in done.stderr
     assert "Traceback" not in done.stderr

@@ -1,0 +1,34 @@
+"""Programs that write down how they were called, in place of ones that would change this machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@dataclass(frozen=True)
+class StandIns:
+    """A folder for PATH. Each call is a line of the file `calls`: the program's name and its arguments."""
+
+    folder: Path
+
+    @property
+    def path(self) -> str:
+        """A PATH with nothing but them, and what their own scripts need."""
+        return str(self.folder)
+
+    def add(self, name: str, then: str = "") -> None:
+        """Add a program; `then` is what it does next, lines of a shell with the real programs on PATH."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        program = self.folder / name
+        note = f'echo "{name} $*" >> "{self.folder}/calls"'
+        program.write_text(f'#!/bin/sh\n{note}\nPATH="$PATH:/usr/bin:/bin"\n{then}\n')
+        program.chmod(0o755)
+
+    def calls(self) -> list[str]:
+        """All calls so far."""
+        file = self.folder / "calls"
+        return file.read_text("utf-8").splitlines() if file.exists() else []
