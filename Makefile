@@ -8,14 +8,14 @@ export PATH := $(if $(PATH),$(PATH):)/usr/local/sbin:/usr/local/bin:/usr/sbin:/u
 
 BIN := .venv/bin
 # `make demo PYTHON=python3.12` chooses the Python of .venv, and makes it anew if it was another.
-SET_UP := python3 -m grader.setup.bootstrap
+SET_UP := python3 -Es -m grader.setup.bootstrap
 CHOSEN := $(if $(findstring command line,$(origin PYTHON)),--python $(PYTHON))
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 18
 
 demo: python3 ## set up, grade the solution of step 03, say what to type next
-	@begin=$$(date +%s) && $(SET_UP) learner $(CHOSEN) && $(BIN)/python -m grader.setup.demo --since $$begin
+	@begin=$$(date +%s) && $(SET_UP) learner $(CHOSEN) && $(BIN)/python -I -m grader.setup.demo --since $$begin
 
 cluster: python3 ## set up a machine that is to grade for another one, with Dask
 	@$(SET_UP) cluster $(CHOSEN)
@@ -35,7 +35,7 @@ lint: .tests ## ruff and mypy
 	$(BIN)/mypy
 
 lock: .tests ## resolve pyproject.toml into requirements.lock; UPGRADE=1 takes the newest versions
-	@$(BIN)/python -m grader.setup.lock $(if $(UPGRADE),--upgrade)
+	@$(BIN)/python -I -m grader.setup.lock $(if $(UPGRADE),--upgrade)
 
 clean: ## remove .venv and what the tools left; never anybody's work
 	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis build/demo

@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING
 
 from grader.benchmarks.bare import bare_costs
 from grader.benchmarks.measure import Cost, cost
+from grader.common.interpreter import interpreter
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
 _ROOT = Path(__file__).resolve().parents[2]
 _STEP = "03-circle-publisher"
 _GRADER = str(Path(sys.executable).with_name("grader"))
-_DASK = str(Path(sys.executable).with_name("dask"))
 _LOOK_S = 0.25
 AIM_F = 1.0
 """Wall time a submission, with two processors."""
@@ -161,7 +161,7 @@ def _cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
     started: list[subprocess.Popen[bytes]] = []
 
     def start(*arguments: str) -> None:
-        argv = [_DASK, *arguments, "--no-dashboard"]
+        argv = interpreter("-m", "dask", *arguments, "--no-dashboard").argv
         with (folder / f"{len(started)}.log").open("wb") as log:
             started.append(subprocess.Popen(argv, cwd=folder, stdout=log, stderr=log))
 

@@ -18,6 +18,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from grader.common.interpreter import interpreter
 from grader.ros import installation, underlay
 
 _ROS2 = str(Path(sys.executable).with_name("ros2"))
@@ -40,7 +41,7 @@ def main() -> None:
         commands = {
             "topic list": [_ROS2, "topic", "list"],
             "interface show": [_ROS2, "interface", "show", "geometry_msgs/msg/Twist"],
-            "bare rclpy node": [str(here.python), "-c", _NODE],
+            "bare rclpy node": interpreter("-c", _NODE, python=str(here.python), searches=True).argv,
         }
         with subprocess.Popen(
             [_ROS2, "run", "turtlesim", "turtlesim_node"], env=env, stderr=subprocess.PIPE, text=True

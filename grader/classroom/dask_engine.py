@@ -79,7 +79,10 @@ class DaskEngine:
             # Dask tells no types.
             self._client: Any = Client(f"tcp://{address}", timeout=CONNECT_S, set_as_default=False)  # type: ignore[no-untyped-call]
         except (OSError, ValueError) as error:
-            message = f"No Dask scheduler answers at {address}: start it with `dask scheduler`, or mend HOST:PORT."
+            message = (
+                f"No Dask scheduler answers at {address}: start it with `python -I -m dask scheduler`, "
+                "or mend HOST:PORT."
+            )
             raise UsageError(message) from error
         self._most = jobs
         self._running: dict[str, _Running] = {}
@@ -162,7 +165,9 @@ class DaskEngine:
         if self._threads:
             self._last_seen = time.monotonic()
         elif time.monotonic() - self._last_seen > WORKERS_S:
-            message = f"Dask has had no worker for {WORKERS_S:.0f} s: start one with `dask worker HOST:PORT`."
+            message = (
+                f"Dask has had no worker for {WORKERS_S:.0f} s: start one with `python -I -m dask worker HOST:PORT`."
+            )
             raise MachineError(message)
         lost = [key for key, each in self._running.items() if each.where not in self._threads]
         gone = [self._running.pop(key) for key in lost]

@@ -10,26 +10,18 @@ Like machine.py, this runs under any Python 3 before anything is installed: synt
 import os
 import sys
 from pathlib import Path
-from typing import Dict, List, Mapping, NamedTuple, Optional, Tuple
+from typing import Dict, List, Mapping, NamedTuple, Optional
 
 SEARCHED = (
     *("PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH"),
     *("CMAKE_MODULE_PATH", "PKG_CONFIG_PATH", "PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX", "PYTHONSTARTUP"),
 )
 """Variables that hold a path or a list of paths from which programs, libraries or modules are loaded."""
-_SAFE_PATH = (3, 11)
-"""The first Python with the option -P."""
-_MODULE = (
-    "import sys; del sys.path[0], sys.argv[0]; import runpy; "
-    "runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)"
-)
-"""What `python -P -m MODULE` does, for a Python that has no -P."""
-
-_MODULE_BELOW = (
-    "import sys; sys.path.insert(0, sys.argv[1]); del sys.argv[:2]; import runpy; "
-    "runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)"
-)
-"""The same with a folder that modules are looked for in first."""
+_CODE = "import sys; sys.path[:] = filter(None, sys.path)\n"
+"""Python 3.11 has the option -P for that; but IPython then keeps a notebook's folder from its own cells."""
+_RUN = "import runpy; runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)\n"
+_MODULE = _CODE + "del sys.argv[0]; " + _RUN
+_MODULE_BELOW = "import sys; sys.path.insert(0, sys.argv[1]); del sys.argv[:2]; " + _RUN
 
 
 class Start(NamedTuple):
@@ -45,13 +37,12 @@ def interpreter(
     env: Optional[Mapping[str, str]] = None,
     searches: bool = False,
     root: Optional[Path] = None,
-    version: Tuple[int, int] = sys.version_info[:2],
 ) -> Start:
     """How to start an interpreter: `arguments` are `-m MODULE ...`, `-c CODE ...` or the absolute path of a script.
 
-    `python` is its path, and `version` its version; `env` is the caller's when left out. `searches`: PYTHONPATH counts,
-    as it must for what imports rclpy; without it the interpreter is isolated (-I). `root`: the folder that holds the
-    module's package, where that is not installed yet.
+    `python` is its path, `env` the caller's when left out. `searches`: PYTHONPATH counts, as it must for what imports
+    rclpy; without it the interpreter is isolated (-I). `root`: the folder that holds the module's package, where that
+    is not installed yet.
 
     Raises:
         ValueError: the script's path is relative.
@@ -66,12 +57,10 @@ def interpreter(
         argv = [python, "-I", *arguments]
     elif not kind.startswith("-"):
         argv = [python, *arguments]  # its folder comes first on the path, and is ours
-    elif version >= _SAFE_PATH:
-        argv = [python, "-P", *arguments]
     elif kind == "-m":
         argv = [python, "-c", _MODULE, *arguments[1:]]
     else:
-        argv = [python, "-c", "import sys; del sys.path[0]\n" + arguments[1], *arguments[2:]]
+        argv = [python, "-c", _CODE + arguments[1], *arguments[2:]]
     return Start(argv, clean(os.environ if env is None else env))
 
 
@@ -92,3 +81,10 @@ def clean_own() -> None:
     for name in [name for name in os.environ if name not in cleaned]:
         del os.environ[name]
     os.environ.update(cleaned)
+
+
+def search_users_folders() -> None:
+    """Look for modules in PYTHONPATH's folders too, in an interpreter that was started isolated; cleans it before."""
+    clean_own()
+    folders = [folder for folder in os.environ.get("PYTHONPATH", "").split(os.pathsep) if folder]
+    sys.path[:0] = [folder for folder in folders if folder not in sys.path]

@@ -43,7 +43,7 @@ class Traps:
     """Fills `folder`; `touched` are the names of those that were loaded or run since."""
 
     def __init__(self, folder: Path, marker: Path) -> None:
-        self._marker = marker
+        self.folder, self._marker = folder, marker
         folder.mkdir(parents=True, exist_ok=True)
         mark = f"open({str(marker)!r}, 'a').write({{name!r}} + '\\n')\n"
         for name in sorted(_modules()):

@@ -5,4 +5,4 @@ set -euo pipefail
 apt-get update -q
 apt-get install -y -q bubblewrap cmake g++ make python3-dev python3-venv
 cd "${AUTOGRADER:-/autograder}/source/course"
-CI=true python3 -m grader.setup.bootstrap learner
+CI=true python3 -Es -m grader.setup.bootstrap learner

@@ -6,15 +6,14 @@ import json
 import os
 import signal
 import subprocess
-import sys
 from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 from grader.classroom import dask_engine
 from grader.classroom.dask_engine import DaskEngine
+from grader.common.interpreter import interpreter
 from grader.errors import UsageError
 from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
@@ -23,11 +22,10 @@ from grader.tests.classroom.test_run import assert_set_aside, graded, make_four,
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from grader.classroom.engine import Event
     from grader.tests.classroom.conftest import Run
-
-DASK = str(Path(sys.executable).with_name("dask"))
 
 
 class Cluster:
@@ -46,7 +44,7 @@ class Cluster:
         return self._start("worker", f"tcp://{self.address}", "--nthreads", "1", *options)
 
     def _start(self, *arguments: object) -> subprocess.Popen[bytes]:
-        argv = [DASK, *map(str, arguments), "--no-dashboard"]
+        argv = interpreter("-m", "dask", *map(str, arguments), "--no-dashboard").argv
         log = (self._folder / f"{len(self.processes)}.log").open("wb")
         with log:
             child = subprocess.Popen(

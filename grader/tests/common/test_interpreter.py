@@ -1,0 +1,80 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.common.interpreter import clean, interpreter
+
+ROOT = Path(__file__).parents[3]
+GRADER = ROOT / "grader"
+SHOW = (
+    "import sys, os, json, encodings; print(json.__file__, sys.argv[1:], sys.path.count(os.getcwd()), '' in sys.path)"
+)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current folder, whose modules say that they were loaded; `other` holds one that says what it sees."""
+    (tmp_path / "other" / "module_of_ours").mkdir(parents=True)
+    (tmp_path / "other" / "module_of_ours" / "__init__.py").touch()
+    (tmp_path / "other" / "module_of_ours" / "show.py").write_text(SHOW)
+    (tmp_path / "here").mkdir()
+    for name in ("json", "encodings", "runpy", "sitecustomize", "usercustomize", "module_of_ours"):
+        (tmp_path / "here" / f"{name}.py").write_text(f"print('TRAP {name}')\n")
+    monkeypatch.chdir(tmp_path / "here")
+    return tmp_path / "other"
+
+
+def ran(*arguments: str, env: dict[str, str], searches: bool = False, root: Path | None = None) -> str:
+    start = interpreter(*arguments, env=env, searches=searches, root=root)
+    done = subprocess.run(start.argv, env=start.env, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("searched", ["", ".", ":", "here", "..:", "/nowhere::../here"])
+@pytest.mark.parametrize("form", ["code", "module", "module of a folder", "script", "isolated code"])
+def test_nothing_is_imported_from_the_current_folder(folder: Path, form: str, searched: str) -> None:
+    env = {"PYTHONPATH": f"{searched}:{folder}:", "PYTHONHOME": "here", "PYTHONUSERBASE": "."}
+    script = str(folder / "module_of_ours" / "show.py")
+    said = {
+        "code": lambda: ran("-c", SHOW, "one", "two", env=env, searches=True),
+        "module": lambda: ran("-m", "module_of_ours.show", "one", "two", env=env, searches=True),
+        "module of a folder": lambda: ran("-m", "module_of_ours.show", "one", "two", env=env, root=folder),
+        "script": lambda: ran(script, "one", "two", env=env, searches=True),
+        "isolated code": lambda: ran("-c", SHOW, "one", "two", env=env),
+    }[form]()
+    assert said.endswith("json/__init__.py ['one', 'two'] 0 False\n")
+    assert "TRAP" not in said
+
+
+def test_an_isolated_interpreter_has_nothing_of_pythonpath(folder: Path) -> None:
+    with pytest.raises(AssertionError, match="No module named"):
+        ran("-m", "module_of_ours.show", env={"PYTHONPATH": str(folder)})
+
+
+def test_a_script_is_named_by_its_absolute_path() -> None:
+    with pytest.raises(ValueError, match="absolute path"):
+        interpreter("script.py")
+
+
+def test_what_leads_to_the_current_folder_goes_and_the_rest_stays() -> None:
+    env = {
+        "PATH": ":/usr/bin:.:bin",
+        "PYTHONPATH": ":",
+        "LD_LIBRARY_PATH": "/a:/b",
+        "PYTHONSTARTUP": "x.py",
+        "LANG": "C",
+    }
+    assert clean(env) == {"PATH": "/usr/bin", "LD_LIBRARY_PATH": "/a:/b", "LANG": "C"}
+
+
+@pytest.mark.parametrize("name", ["grader", "ros2", "rqt_graph"])
+def test_our_commands_start_isolated(name: str) -> None:
+    lines = (GRADER / "setup/commands" / name).read_text("utf-8").splitlines()
+    assert lines[0] == "#!/bin/sh"
+    assert '/python3" -I ' in lines[1]
+    assert Path(sys.prefix, "bin", name).read_text("utf-8").splitlines() == lines

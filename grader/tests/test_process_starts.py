@@ -1,0 +1,181 @@
+"""Every place in the source that starts a process is known, and those that start a Python do so through one door."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(__file__).parents[2]
+GRADER = ROOT / "grader"
+DOORS = ("interpreter", "interpreter.interpreter", "_start")
+STARTS = {
+    "subprocess": {"run", "Popen", "call", "check_call", "check_output", "getoutput", "getstatusoutput"},
+    "os": {name for name in dir(os) if re.match(r"exec[lv]|spawn|posix_spawn|fork|system$|popen$", name)},
+    "pty": {"spawn", "fork"},
+    "runpy": {"run_module", "run_path"},
+    "asyncio": {"create_subprocess_exec", "create_subprocess_shell"},
+    "multiprocessing": {"Process", "Pool", "Manager", "get_context"},
+    "concurrent.futures": {"ProcessPoolExecutor"},
+    "pexpect": {"spawn", "run"},
+}
+OTHERS = {
+    ("provide", "_quietly"): "sudo, to see whether it asks for a password",
+    ("provide", "_run"): "the package manager",
+    ("browser", "_started"): "xdg-open, or what the door made: the caller gives both command and environment",
+    ("cells", "run_below"): "our command ros2, or what simulator._command made",
+    ("doctor", "_version_of"): "a compiler, make or cmake, in the system's folder for temporary files",
+    ("doctor", "look_at_node"): "sh, with what _talker_and_listener made",
+    ("grade", "_alone"): "our command grader",
+    ("grade", "start"): "made by the door in the same function",
+    ("html", "_making"): "made by the door in the same function",
+    ("install", "_run"): "uv, or pip as _pip made it",
+    ("launcher", "main"): "a node of the student's that is not Python, in its cell",
+    ("lock", "_compile"): "uv, in the course's folder",
+    ("measure", "cost"): "what a benchmark measures",
+    ("node_process", "__init__"): "bubblewrap, with what conductor._command made inside",
+    ("notebooks", "seconds"): "what `nbgrader` below it made",
+    ("pkg_create", "_email"): "git",
+    ("process", "run"): "bubblewrap, with what colcon.workspace.build made inside",
+    ("ros2", "_measure"): "our command ros2",
+    ("ros2", "main"): "our command ros2",
+    ("run", "_run"): "ros2 run: a program of the user's, for the user",
+    ("bubblewrap", "why_unavailable"): "bubblewrap and `true`",
+    ("shell", "open_shell"): "the user's shell",
+    ("simulator", "start"): "a node of the user's, as _command made it",
+    ("start", "hand_over"): "the real ros2, for the user",
+    ("trial", "_start"): "made by the door in the same function, in bubblewrap",
+    ("underlay", "_run"): "cmake and what the door made, in a folder of our own",
+    ("watch", "_save_s"): "our command grader",
+}
+"""Functions that start something else than `NAME.argv`, where the door made NAME, and what that is."""
+NAMED = {
+    ("doctor", "look_at_node"): "shown",
+    ("doctor", "look_at_python"): "shown",
+    ("install", "_uv"): "uv is told where to install",
+    ("interpreter", "interpreter"): "the door itself",
+    ("bootstrap", "look"): "the version of a sourced one",
+    ("notebooks", "seconds"): "its folder, for PATH",
+    ("installation", "environment"): "its folder, for PATH",
+    ("underlay", "_build"): "cmake is told which, and starts it in a folder of our own",
+    ("underlay", "_key_of_sources"): "part of a key",
+}
+"""Functions that name an interpreter outside of the argument `python` of the door, and what for."""
+
+
+def sources() -> Iterator[tuple[Path, ast.Module]]:
+    for path in sorted(GRADER.rglob("*.py")):
+        if "tests" not in path.relative_to(GRADER).parts:
+            yield path, ast.parse(path.read_text("utf-8"))
+
+
+def in_functions(tree: ast.AST, function: str = "") -> Iterator[tuple[str, ast.AST]]:
+    """Every node, with the name of the function around it."""
+    for node in ast.iter_child_nodes(tree):
+        inner = node.name if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) else function
+        yield inner, node
+        yield from in_functions(node, inner)
+
+
+def process_starts(tree: ast.Module) -> Iterator[tuple[str, ast.Call]]:
+    """Calls that start a process, whatever their module is imported as."""
+    names: dict[str, str] = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names |= {alias.asname or alias.name: alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names |= {alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names}
+    for function, node in in_functions(tree):
+        if isinstance(node, ast.Call):
+            first, dot, rest = ast.unparse(node.func).partition(".")
+            module, _, attribute = f"{names.get(first, first)}{dot}{rest}".rpartition(".")
+            if attribute in STARTS.get(module, ()):
+                yield function, node
+
+
+def is_made_by_the_door(call: ast.Call, tree: ast.Module) -> bool:
+    """Whether the command is `NAME.argv`, where NAME is what the door returned."""
+    assigned = [node for node in ast.walk(tree) if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call)]
+    made = {
+        ast.unparse(node.targets[0])
+        for node in assigned
+        if isinstance(node.value, ast.Call) and ast.unparse(node.value.func) in DOORS
+    }
+    command = ast.unparse(call.args[0]) if call.args else ""
+    match = re.fullmatch(r"(\w+)\.argv(?:\[0\])?|\[\*_LIMITS, \*(\w+)\.argv\]", command)
+    return match is not None and (match[1] or match[2]) in made
+
+
+def test_every_process_start_is_known_or_made_by_the_door() -> None:
+    others = {
+        (path.stem, function): f"{path.relative_to(ROOT)}, {function}: {ast.unparse(call)[:80]}"
+        for path, tree in sources()
+        for function, call in process_starts(tree)
+        if not is_made_by_the_door(call, tree)
+    }
+    unknown = [told for where, told in others.items() if where not in OTHERS]
+    assert (unknown, OTHERS.keys() - others.keys()) == ([], set()), "see common/interpreter.py, or tell what it is"
+
+
+def test_no_other_place_names_an_interpreter() -> None:
+    named = {
+        (path.stem, function): f"{path.relative_to(ROOT)}, {function}: {ast.unparse(node)}"
+        for path, tree in sources()
+        for function, node in in_functions(tree)
+        if names_an_interpreter(node) and not is_harmless(node, tree)
+    }
+    unknown = [told for where, told in named.items() if where not in NAMED]
+    assert (unknown, NAMED.keys() - named.keys()) == ([], set())
+
+
+def names_an_interpreter(node: ast.AST) -> bool:
+    """Whether it is `sys.executable` or the interpreter of a Ros."""
+    return isinstance(node, ast.Attribute) and ast.unparse(node) in ("sys.executable", "here.python", "ros.python")
+
+
+def is_harmless(node: ast.AST, tree: ast.Module) -> bool:
+    """Whether it goes to the door, or into the description of a ROS 2, or is only where our own commands are."""
+    for outer in ast.walk(tree):
+        if isinstance(outer, ast.Assign) and ast.unparse(outer.targets[0]) == "python" and node in ast.walk(outer):
+            return True
+        if isinstance(outer, ast.Call) and any(node is inner for inner in ast.walk(outer)):
+            text = ast.unparse(outer)
+            if ast.unparse(outer.func) in (*DOORS, "Ros"):
+                return any(word.arg == "python" and node in list(ast.walk(word)) for word in outer.keywords)
+            if text.endswith(("with_name('grader')", "with_name('ros2')")):
+                return True
+    return False
+
+
+NEW = ("subprocess.run([sys.executable, '-m', 'x'])", "from os import execv\nexecv('/x', [])", "run(['python3'])")
+
+
+@pytest.mark.parametrize("code", NEW)
+def test_a_new_process_start_would_be_found(code: str) -> None:
+    tree = ast.parse(f"import sys, subprocess\nfrom subprocess import run\ndef function():\n    pass\n{code}")
+    assert [is_made_by_the_door(call, tree) for _, call in process_starts(tree)] == [False]
+
+
+IN_THE_COURSES_FOLDER = {"-Es -m grader.setup.bootstrap", "-m pytest"}
+"""Where nothing is installed yet, and what is for developers: with the course as the current folder."""
+
+
+def test_scripts_and_workflows_start_python_isolated() -> None:
+    files = [ROOT / "Makefile", *(ROOT / ".ci").iterdir(), *(ROOT / ".github").rglob("*.yml")]
+    files += [path for path in (GRADER / "classroom/templates").iterdir() if path.is_file()]
+    found = [
+        f"{path.name}: {line.strip()}"
+        for path in files
+        for line in path.read_text("utf-8").splitlines()
+        if not line.lstrip().startswith("#")
+        for match in re.finditer(r"python3? (-\S*(?: -m \S+| \S+)?)", line)
+        if match[1] not in IN_THE_COURSES_FOLDER and not match[1].startswith("-I")
+    ]
+    assert found == []
