@@ -22,6 +22,7 @@ GROUPS: dict[str, dict[str, str]] = {
         "package-name": "package.xml or setup.py has another name than the exercise's",
         "package-folder": "no folder with Python files has the package's name",
         "rejected-file": "something was handed in that is no plain file of the package",
+        "unreadable": "the grader could not read what was handed in, or what it did",
     },
     "setup.py and the build": {
         "setup-py-missing": "there is no setup.py",

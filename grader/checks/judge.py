@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.common.words import shorten
+from grader.errors import MachineError
 from grader.evidence.stage import STAGES
 
 if TYPE_CHECKING:
@@ -115,17 +116,33 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
     made = {"source": True, "build": evidence.build is not None, "trial": evidence.recording is not None}
     fault = evidence.fault
     if fault is not None and STAGES.index(kind.stage) >= STAGES.index(fault.stage) and not made[kind.stage]:
-        return Finding(Status.ERROR, fault.message)
+        return unreadable(fault.message) if fault.unreadable else Finding(Status.ERROR, fault.message)
     if kind.stage == "trial" and evidence.overwhelmed is not None:
         return _overwhelmed(evidence.overwhelmed)
     if not made[kind.stage]:
         return Finding(Status.SKIPPED, "Not judged, since the node was not run.")
     try:
         return kind.judge(evidence, spec.params)
+    except MachineError as error:
+        return Finding(Status.ERROR, str(error))
     except Exception as error:  # (one broken check must not take a class's other outcomes with it)
-        return Finding(
-            Status.ERROR, f"The check itself broke ({type(error).__name__}: {error}). This is a fault of the grader."
-        )
+        return unreadable(in_words(error))
+
+
+def unreadable(how: str) -> Finding:
+    """A failed finding on what the grader could not read: nobody may choose that the grader breaks.
+
+    A check sees nothing but what a submission has made, so whatever breaks it comes from there.
+    """
+    seen = f"The submission could not be read: {shorten(how, 150)}."
+    expected = "The grader can read what is handed in, and what it does."
+    cause = "Very large, very deep or damaged content does this. If yours is none of that, please report it."
+    return failed("unreadable", seen, expected, cause)
+
+
+def in_words(error: Exception) -> str:
+    """An exception on one line."""
+    return f"{type(error).__name__}: {error}".rstrip(" :.")
 
 
 def _overwhelmed(how: str) -> Finding:

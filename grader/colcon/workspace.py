@@ -41,15 +41,25 @@ MOST_FILES = 20_000
 # colcon would look for packages everywhere below; sequential, since there is one package and workers cost time.
 _SCRIPT = r"""
 echo cell-is-ready >&2
-cd "$WS" && mkdir -p src && tar -x -f - -C src || exit 90
+cd "$WS" && mkdir -p src || exit 90
 "$@" build --base-paths src \
-    --executor sequential --event-handlers console_direct+ console_stderr- >&2 </dev/null
+    --executor sequential --event-handlers console_direct+ console_stderr- >&2
 code=$?
 [ -d install ] && tar -c --format=gnu -f - -C install .
 exit $code
 """
-_COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
-_READY = b"cell-is-ready\n"
+# Whether the machine can build is settled before the first byte of the submission is there: from then on nobody's
+# words, nor what they look like, are the machine's.
+_COLCON = r"""
+import os, subprocess, sys
+from colcon_core.command import main
+os.write(2, b"colcon-is-ready\n")
+if subprocess.call(["tar", "-x", "-f", "-", "-C", "src"]):
+    sys.exit(90)
+os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+sys.exit(main())
+"""
+_CELL, _READY = b"cell-is-ready\n", b"cell-is-ready\ncolcon-is-ready\n"
 _LIMITS_HIT = {
     "disk": (b"No space left on device", b"File too large", b"Disk quota exceeded"),
     "processes": (b"Resource temporarily unavailable", b"can't start new thread"),
@@ -133,14 +143,15 @@ def _pack(submission: Submission) -> bytes:
 
 def _read(done: process.Finished) -> Built:
     if not done.stderr.startswith(_READY):
-        said = done.stderr.decode("utf-8", "replace").strip()
-        message = f"The build could not be started: {said or 'no message'}. `grader doctor` tells what is missing."
+        said = done.stderr.removeprefix(_CELL).decode("utf-8", "replace").strip()
+        if "No module named 'colcon_core'" in said:
+            message = "colcon is not installed in this Python: `make demo` in the course's folder installs it."
+        else:
+            message = f"The build could not be started: {said or 'no message'}. `grader doctor` tells what is missing."
         raise MachineError(message)
     lines = done.stderr[len(_READY) :].decode("utf-8", "replace").splitlines(keepends=True)
     # The wheels' prefix is no colcon install tree; that says nothing about the submission.
     log = "".join(line for line in lines if "colcon_ros.prefix_path.ament" not in line)
-    if "No module named 'colcon_core'" in log:
-        raise MachineError("colcon is not installed in this Python: `make demo` in the course's folder installs it.")  # noqa: EM101
     out_of = next((name for name, signs in _LIMITS_HIT.items() if any(sign in done.stderr for sign in signs)), None)
     cut = done.timed_out or done.too_much or done.out_of is not None
     files = {} if cut else read_tar(done.stdout, MOST_FILES)

@@ -26,10 +26,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault of the machine: `stage` and all later ones could not be done. `message` says what to do."""
+    """Why `stage` and all later ones could not be done: a fault of the machine, and what to do.
+
+    `unreadable`: not the machine's, but what the submission has made could not be read.
+    """
 
     stage: Stage
     message: str
+    unreadable: bool = False
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import grader
-from grader.checks.judge import judge, judge_early, near_edge, of_this_trial, wants_trial
+from grader.checks.judge import in_words, judge, judge_early, near_edge, of_this_trial, wants_trial
 from grader.checks.outcome import Report, Status
 from grader.colcon import workspace
 from grader.common.words import printable
@@ -160,6 +160,12 @@ class _Grading:
                             evidence = dataclasses.replace(evidence, others={**evidence.others, spec.id: seen})
         except MachineError as error:
             evidence = dataclasses.replace(evidence, fault=Fault(stage, str(error)))
+        except OSError as error:
+            message = f"The grader could not go on: {in_words(error)}. This is a fault of the machine; try again."
+            evidence = dataclasses.replace(evidence, fault=Fault(stage, message))
+        except Exception as error:
+            # The machine has said that it works; what is left are things that the submission has made.
+            evidence = dataclasses.replace(evidence, fault=Fault(stage, in_words(error), unreadable=True))
         with self._timed("checks"):
             outcomes = judge(evidence)
         self.seconds["in all"] = time.monotonic() - begun
@@ -202,8 +208,11 @@ class _Grading:
     def _first_clock(self, evidence: Evidence) -> tuple[ClockName, str]:
         if self.options.clock != "auto":
             return self.options.clock, f"asked for with --clock {self.options.clock}"
-        entry = evidence.entry_point()
-        clues = wall_clues(self.submission.files, entry.partition(":")[0].strip() if entry else None)
+        try:
+            entry = evidence.entry_point()
+            clues = wall_clues(self.submission.files, entry.partition(":")[0].strip() if entry else None)
+        except Exception as error:  # told by the checks that read the source, too
+            return "wall", f"the source could not be read ({in_words(error)}), so it may follow the wall's clock"
         if clues:
             first = clues[0]
             return "wall", f"{first.name} at {first.file}:{first.line} may follow the wall's clock"

@@ -7,10 +7,11 @@ the same page.
 from __future__ import annotations
 
 import shlex
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
+from grader.errors import GraderError
 from grader.report.code_excerpt import excerpt
 from grader.report.html_run import runs_of
 from grader.report.logs import logs_of
@@ -70,11 +71,29 @@ def save_html(evidence: Evidence, report: Report, file: Path) -> None:
 
 
 def html_page(evidence: Evidence, report: Report) -> str:
-    """The page as text."""
+    """The page as text.
+
+    What a submission has made may be more than can be drawn; its verdict is told all the same, without the drawings.
+    """
+    try:
+        return _page(evidence, report)
+    except GraderError:
+        raise
+    except Exception:
+        return _page(without_content(evidence), report)
+
+
+def without_content(evidence: Evidence) -> Evidence:
+    """The evidence without anything that came from the submission."""
+    nothing = replace(evidence.submission, files={}, rejected=(), executable=frozenset())
+    return replace(evidence, submission=nothing, build=None, recording=None, others={})
+
+
+def _page(evidence: Evidence, report: Report) -> str:
     evidences = [evidence, *evidence.others.values()]
     runs = runs_of(evidences)
     shown = list(_shown(evidence, report))
-    fault = evidence.fault.message if evidence.fault else ""
+    fault = evidence.fault.message if evidence.fault and not evidence.fault.unreadable else ""
     # One fault of the machine is told once, not with every check that it took along.
     unmade = [check for check in shown if check.kind == "error" and check.outcome.finding.seen == fault]
     values = {

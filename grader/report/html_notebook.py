@@ -10,7 +10,8 @@ import hashlib
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
-from grader.report.html import ShownCheck
+from grader.errors import GraderError
+from grader.report.html import ShownCheck, without_content
 from grader.report.html_run import runs_of
 from grader.report.template import fill
 from grader.report.verdict import UNCONFINED, tone, verdict
@@ -21,7 +22,16 @@ if TYPE_CHECKING:
 
 
 def html_fragment(evidence: Evidence, report: Report) -> str:
-    """The piece of HTML."""
+    """The piece of HTML; without drawings where what the submission has made cannot be drawn."""
+    try:
+        return _fragment(evidence, report)
+    except GraderError:
+        raise
+    except Exception:
+        return _fragment(without_content(evidence), report)
+
+
+def _fragment(evidence: Evidence, report: Report) -> str:
     worth = [o for o in report.outcomes if o.max or o.status is not Status.PASSED]
     values = {
         "report": report,

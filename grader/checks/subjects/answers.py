@@ -10,6 +10,7 @@ from grader.checks.kind import Kind, NoParams, choice, number, text, texts
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
 from grader.common.words import a_list, shorten
+from grader.errors import MachineError
 from grader.evidence import observed as seen_in
 from grader.submission.answers import FILE, Answer
 from grader.submission.where import Where
@@ -165,8 +166,9 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
     arrivals = [each.t_s for each in evidence.trial.messages if each.type.endswith(params.type_ends)]
     steps = [later - earlier for earlier, later in pairwise(arrivals)]
     if not any(steps):
-        message = "no message of that type was recorded, so there is no rate to compare with"
-        raise ValueError(message)
+        # Nothing of the student's runs in this trial.
+        message = "No message of that type was recorded, so there is no rate to compare with. Try again."
+        raise MachineError(message)
     truth = len(steps) / sum(steps)
     given = _given(evidence, params.answer, "a number, without quotation marks", float)
     if isinstance(given, Finding):

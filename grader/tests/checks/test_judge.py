@@ -102,13 +102,15 @@ def test_a_students_fault_before_the_machines_is_told_as_the_students() -> None:
     assert outcomes["circle"].status is Status.SKIPPED
 
 
-def test_a_check_that_breaks_is_an_error_and_leaves_the_others_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_breaks_a_check_could_not_be_read_and_the_others_are_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: object) -> Finding:
         raise ZeroDivisionError
 
     monkeypatch.setattr("grader.checks.judge.KINDS", {**KINDS, "values": replace(KINDS["values"], check=broken)})
     outcomes = by_id(evidence(good()))
-    assert outcomes["values"].status is Status.ERROR
+    assert outcomes["values"].status is Status.FAILED
+    assert outcomes["values"].finding.diagnosis == "unreadable"
+    assert "could not be read: ZeroDivisionError" in outcomes["values"].finding.seen
     assert [outcome.id for outcome in outcomes.values() if outcome.status is not Status.PASSED] == ["values"]
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.answers import ANSWERS, GRAPH, LIST, RATE, TEXT
+from grader.errors import MachineError
 from grader.tests.checks.made import evidence, found, recording, submission
 from grader.trial.recording import Endpoint, Graph, Message
 
@@ -164,7 +165,7 @@ def test_a_rate_is_compared_with_the_one_that_was_measured(answer: str, diagnosi
 
 
 def test_without_messages_there_is_no_rate_to_compare_with() -> None:
-    with pytest.raises(ValueError, match="no message of that type"):
+    with pytest.raises(MachineError, match="No message of that type"):
         judged(RATE, "4", type_ends="/Float64")
 
 

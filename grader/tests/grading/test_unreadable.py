@@ -1,0 +1,108 @@
+"""What breaks the grader while it reads a submission has failed; only the machine's own faults are errors."""
+
+from __future__ import annotations
+
+import errno
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import pytest
+
+from grader.colcon.workspace import Built
+from grader.checks.outcome import Status
+from grader.errors import MachineError
+from grader.evidence import evidence as of_evidence
+from grader.grading import grade as of_grading
+from grader.grading.grade import Options, grade
+from grader.report import html, html_notebook
+from grader.tests.checks.made import BUILD, exercise, good, submission
+from grader.tests.grading.test_starved import Trials
+from grader.tests.no_ros import without_ros
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from grader.grading.grade import Graded
+
+
+@pytest.fixture(autouse=True)
+def no_ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    without_ros(tmp_path, monkeypatch)
+
+
+def graded(build: Callable[..., Built] = lambda *_, **__: Built(BUILD, b""), trial: Any = None) -> Graded:  # noqa: ANN401
+    return grade(exercise(), submission(), Options(in_cell=False), build=build, trial=trial or Trials([good()]))
+
+
+def breaks(error: BaseException) -> Callable[..., NoReturn]:
+    def broken(*_: object, **__: object) -> NoReturn:
+        raise error
+
+    return broken
+
+
+def broken_trial(error: BaseException) -> Trials:
+    trials = Trials([])
+    trials.run = breaks(error)  # type: ignore[method-assign]
+    return trials
+
+
+def told(of: Graded) -> dict[str, tuple[Status, str | None]]:
+    return {outcome.id: (outcome.status, outcome.finding.diagnosis) for outcome in of.report.outcomes}
+
+
+@pytest.mark.parametrize("error", [RecursionError("too deep"), ValueError("odd"), MemoryError(), KeyError("x")])
+def test_what_the_build_has_made_and_nobody_can_read_has_failed(error: Exception) -> None:
+    found = graded(build=breaks(error))
+    assert told(found)["build"] == (Status.FAILED, "unreadable")
+    assert found.report.with_status(Status.ERROR) == ()
+    assert (found.report.exit_code, found.report.max) == (1, 100.0)
+
+
+@pytest.mark.parametrize("error", [RecursionError("too deep"), ValueError("odd")])
+def test_what_the_trial_has_seen_and_nobody_can_read_has_failed(error: Exception) -> None:
+    found = graded(trial=broken_trial(error))
+    assert told(found)["build"] == (Status.PASSED, None)
+    assert told(found)["start"] == (Status.FAILED, "unreadable")
+    assert found.report.with_status(Status.ERROR) == ()
+
+
+@pytest.mark.parametrize("error", [MachineError("The disk is full."), OSError(errno.EMFILE, "Too many open files")])
+@pytest.mark.parametrize("where", ["build", "trial"])
+def test_the_machines_faults_are_errors(error: Exception, where: str) -> None:
+    found = graded(build=breaks(error)) if where == "build" else graded(trial=broken_trial(error))
+    assert {outcome.status for outcome in found.report.outcomes if outcome.id == "circle"} == {Status.ERROR}
+    assert found.report.with_status(Status.FAILED) == ()
+    assert found.report.exit_code == 3
+
+
+def test_a_source_that_breaks_its_reader_fails_and_the_node_is_run_in_wall_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(of_evidence, "read_code", breaks(RecursionError("too deep")))
+    monkeypatch.setattr(of_grading, "wall_clues", breaks(RecursionError("too deep")))
+    trials = Trials([good()])
+    found = graded(trial=trials)
+    assert len(trials.alone) == 1
+    assert "could not be read (RecursionError: too deep)" in found.evidence.trial.why
+    assert found.report.with_status(Status.ERROR) == ()
+    assert told(found)["circle"] == (Status.PASSED, None)
+
+
+def test_a_page_that_cannot_be_drawn_tells_the_verdict_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = graded()
+    for module in (html, html_notebook):
+        real = module.runs_of
+
+        def runs_of(evidences: Any, *rest: Any, real: Any = real) -> Any:  # noqa: ANN401
+            if any(evidence.recording for evidence in evidences):
+                raise OverflowError
+            return real(evidences, *rest)
+
+        monkeypatch.setattr(module, "runs_of", runs_of)
+    for page in (
+        html.html_page(found.evidence, found.report),
+        html_notebook.html_fragment(found.evidence, found.report),
+    ):
+        assert "Passed: 100 of 100 points." in page
+        assert "The turtle drives a circle" in page
