@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import pytest
 
-from grader.colcon.workspace import Built
 from grader.checks.outcome import Status
+from grader.colcon.workspace import Built
 from grader.errors import MachineError
 from grader.evidence import evidence as of_evidence
 from grader.grading import grade as of_grading
