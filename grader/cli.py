@@ -118,14 +118,15 @@ def regrade(
     html: Html = None,
 ) -> None:
     """Judge a stored recording again; nothing of the student's is run."""
+    from grader.checks.exercises import find_exercise, load_exercise
     from grader.checks.judge import judge
     from grader.evidence import archive
-    from grader.exercise.model import find_exercise
     from grader.grading.grade import report_of
 
     for file in (json, image, html):
         _writable(file)
-    kept = archive.load(recording, find_exercise(exercise) if exercise else None)
+    other = find_exercise(exercise) if exercise else None
+    kept = archive.load(recording, (lambda _: other) if other else load_exercise)
     report = report_of(kept.evidence, judge(kept.evidence), kept.ros, {})
     _show(report, kept.evidence, json, image, html)
 
@@ -291,7 +292,7 @@ def main() -> None:
 
 
 def _opened(name: str | None, path: Path) -> tuple[Exercise, Submission]:
-    from grader.exercise.model import exercise_of_folder, find_exercise
+    from grader.checks.exercises import exercise_of_folder, find_exercise
     from grader.submission.package import open_answers, open_submission
 
     known = find_exercise(name) if name else exercise_of_folder(path)
@@ -302,7 +303,8 @@ def _opened(name: str | None, path: Path) -> tuple[Exercise, Submission]:
 
 
 def _exercise(name: str | None, package: Path) -> Exercise:
-    from grader.exercise.model import catalogue, exercise_of_folder, find_exercise
+    from grader.checks.exercises import exercise_of_folder, find_exercise
+    from grader.exercise.model import catalogue
 
     found = find_exercise(name) if name else exercise_of_folder(package)
     if found is None:

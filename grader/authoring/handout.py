@@ -6,8 +6,9 @@ import shutil
 from pathlib import Path
 
 from grader.authoring.release import release
+from grader.checks.exercises import find_exercise
 from grader.errors import MachineError, UsageError
-from grader.exercise.model import catalogue, course_folder, find_exercise
+from grader.exercise.model import catalogue, course_folder
 
 _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", "COLCON_IGNORE")
 _NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc")

@@ -17,9 +17,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.checks.exercises import load_exercise
 from grader.errors import GraderError, UsageError
 from grader.exercise.markers import MEANT, stripped, syntax_of
-from grader.exercise.model import FILE_NAME, course_folder, load_exercise
+from grader.exercise.model import FILE_NAME, course_folder
 from grader.notebook.released import released_notebook
 from grader.notebook.source import refreshed
 from grader.submission import tree

@@ -8,10 +8,11 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from grader.authoring.release import stale
+from grader.checks.exercises import load_exercise
 from grader.checks.outcome import Status
 from grader.common.words import a_list
 from grader.errors import UsageError
-from grader.exercise.model import catalogue, course_folder, load_exercise
+from grader.exercise.model import catalogue, course_folder
 from grader.grading.grade import Options, grade
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_answers, open_submission

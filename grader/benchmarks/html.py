@@ -35,10 +35,11 @@ import sys, time
 from pathlib import Path
 from rich.console import Console
 from grader.evidence import archive
+from grader.checks.exercises import load_exercise
 from grader.checks.judge import judge
-from grader.grade import report_of
+from grader.grading.grade import report_of
 from grader.report import json, terminal
-kept = archive.load(Path(sys.argv[1]))
+kept = archive.load(Path(sys.argv[1]), load_exercise)
 report = report_of(kept.evidence, judge(kept.evidence), kept.ros, {})
 json.to_json(report)
 terminal.render(report, Console(file=open("/dev/null", "w")))

@@ -21,9 +21,9 @@ from typing import TYPE_CHECKING
 
 from grader.benchmarks.bare import bare_costs
 from grader.benchmarks.measure import cost, median
+from grader.checks.exercises import find_exercise
 from grader.checks.judge import judge_early
 from grader.evidence.evidence import Evidence
-from grader.exercise.model import find_exercise
 from grader.submission.package import open_answers, open_submission
 from grader.tests.case import ROOT, Case, make_submission, read_cases
 from grader.tests.catalogue import MISTAKES

@@ -25,7 +25,7 @@ _MOST = 0.5
 # Both in a process of its own, as a check is.
 _GRADE = """
 import sys
-from grader.exercise import find_exercise
+from grader.checks.exercises import find_exercise
 from grader.grade import Options, grade
 from grader.submission import open_submission
 options = Options(sys.argv[3] == "cell", "simulated")

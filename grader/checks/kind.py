@@ -12,6 +12,7 @@ from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from grader.common.words import a_list
+from grader.exercise.kind_spec import Allowed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -19,17 +20,7 @@ if TYPE_CHECKING:
     from grader.checks.outcome import Finding
     from grader.evidence.evidence import Evidence
     from grader.evidence.stage import Stage
-
-Value = str | float | int | bool | tuple[str, ...]
-"""What a parameter may be."""
-
-
-@dataclass(frozen=True)
-class Allowed:
-    """What a parameter may be: in words, and as a function from the TOML value to ours (None: not allowed)."""
-
-    words: str
-    accept: Callable[[object], Value | None]
+    from grader.exercise.kind_spec import Param
 
 
 @dataclass(frozen=True)
@@ -60,15 +51,15 @@ class Kind(Generic[P]):
         """Every parameter's name with what it may be."""
         return {each.name: each.metadata["allowed"] for each in fields(self.params)}  # type: ignore[arg-type]
 
-    def defaults(self) -> dict[str, Value]:
+    def defaults(self) -> dict[str, Param]:
         """The parameters that may be left out, with their values."""
         return {each.name: each.default for each in fields(self.params) if each.default is not MISSING}  # type: ignore[arg-type]
 
-    def judge(self, evidence: Evidence, values: Mapping[str, Value]) -> Finding:
+    def judge(self, evidence: Evidence, values: Mapping[str, Param]) -> Finding:
         """What the check finds with these parameter values (as read from exercise.toml, defaults filled in)."""
         return self.check(evidence, self.params(**values))
 
-    def judge_early(self, evidence: Evidence, values: Mapping[str, Value]) -> Finding | None:
+    def judge_early(self, evidence: Evidence, values: Mapping[str, Param]) -> Finding | None:
         """What is certain before anything of the submission's has run."""
         if self.stage == "source":
             return self.judge(evidence, values)

@@ -10,10 +10,11 @@ import stat
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.exercises import find_exercise
 from grader.classroom import archives
 from grader.common.words import a_list
 from grader.errors import UsageError
-from grader.exercise.model import catalogue, find_exercise
+from grader.exercise.model import catalogue
 from grader.submission.search import PACKAGE_FILES
 from grader.submission.tree import shown, sort_key
 

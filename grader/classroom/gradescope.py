@@ -7,8 +7,9 @@ import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.checks.exercises import exercise_from, find_exercise
 from grader.errors import MachineError, UsageError
-from grader.exercise.model import FILE_NAME, course_folder, find_exercise
+from grader.exercise.model import FILE_NAME, course_folder
 from grader.exercise.private_checks import sources_of
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bo
     """
     known = find_exercise(exercise)
     sources = sources_of({known.id}, checks)[known.id]
-    sources.exercise(known.folder)  # mistakes are told here, not by Gradescope
+    exercise_from(sources)  # mistakes are told here, not by Gradescope
     root = course_folder().parent
     if not (root / "Makefile").is_file():
         message = f"The archive is made from a checkout of the course; {root} is none."

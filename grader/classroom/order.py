@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from grader.checks.exercises import exercise_from
 from grader.checks.outcome import Status
 from grader.classroom.content import Refused, fingerprint, read
 from grader.classroom.key import Key, changed, grader_key
-from grader.classroom.task import Task, lesson_folder
+from grader.classroom.task import Task
 from grader.exercise.private_checks import sources_of
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ class Order:
     @cached_property
     def exercises(self) -> dict[str, Exercise]:
         """The exercises, by id. Raises UsageError naming every problem of private checks."""
-        return {name: sources.exercise(lesson_folder(sources)) for name, sources in self.sources.items()}
+        return {name: exercise_from(sources) for name, sources in self.sources.items()}
 
     def key(self, found: Found) -> Key:
         """The key of a submission's result. Raises MachineError where the disk fails."""

@@ -7,10 +7,10 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from grader.checks.exercises import exercise_from
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.classroom.key import grader_key
 from grader.errors import MachineError
-from grader.exercise.model import catalogue
 from grader.grading.grade import Graded, Options, grade, report_of
 from grader.report.hidden import evidence_for_students, for_students
 from grader.submission.package import Submission
@@ -65,11 +65,6 @@ class Done:
     page: bytes
 
 
-def lesson_folder(sources: Sources) -> Path:
-    """The folder of the exercise's lesson on this machine."""
-    return catalogue()[sources.id].parent
-
-
 def perform(
     task: Task, tell: Callable[[str], None] = lambda _: None, now: Callable[[Pace], None] = lambda _: None
 ) -> Done:
@@ -85,7 +80,7 @@ def perform(
         )
         raise MachineError(message)
     in_cell = _confined(trusted=task.trusted)
-    exercise = task.sources.exercise(lesson_folder(task.sources))
+    exercise = exercise_from(task.sources)
     if isinstance(task.content, str):
         return _with_page(_refused(task, exercise, task.content))
 
@@ -115,7 +110,7 @@ def _confined(*, trusted: bool) -> bool:
 
 def set_aside(task: Task, why: str) -> Done:
     """The result of a submission that no worker came back with: an `error`."""
-    exercise = task.sources.exercise(lesson_folder(task.sources))
+    exercise = exercise_from(task.sources)
     return _with_page(_unjudged(task, exercise, Finding(Status.ERROR, why)))
 
 

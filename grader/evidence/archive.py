@@ -24,13 +24,13 @@ from typing import TYPE_CHECKING, Any
 from grader.colcon.build import Build
 from grader.errors import MachineError, UsageError
 from grader.evidence.evidence import Evidence, Fault
-from grader.exercise.model import FILE_NAME, load_exercise
+from grader.exercise.model import FILE_NAME
 from grader.submission.package import Submission, open_answers, open_submission, write_copy
 from grader.submission.search import IGNORE_MARKER
 from grader.trial.recording import from_json, to_json
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
     from pathlib import Path
 
     from grader.exercise.model import Exercise
@@ -102,15 +102,15 @@ def check_free(folder: Path) -> None:
         raise UsageError(message)
 
 
-def load(folder: Path, exercise: Exercise | None = None) -> Archived:
-    """Read an archive; `exercise` judges in place of the one that was kept.
+def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
+    """Read an archive; `read_exercise` gets the path of the exercise.toml that was kept, and says what judges.
 
     Raises:
         UsageError: the folder is no archive of this version of the grader.
     """
     try:
         about = _read(folder / "submission.json")
-        kept = exercise or load_exercise(folder / "exercise" / FILE_NAME)
+        kept = read_exercise(folder / "exercise" / FILE_NAME)
         package = folder / "source" / about["package"]
         opened = open_submission(package) if kept.package else open_answers(package)
         submission = Submission(

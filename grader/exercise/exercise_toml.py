@@ -10,24 +10,19 @@ number, or two to draw from). `[[trial]]` id, executable, node, `[trial.scenario
 from __future__ import annotations
 
 import hashlib
-import math
 import re
-import sys
 from typing import TYPE_CHECKING, Any
 
-from grader.checks.kinds import KINDS
 from grader.common.words import nearest, shorten
 from grader.errors import UsageError
-from grader.exercise.model import CheckSpec, Drive, Exercise, Param, Scenario, TrialSpec
+from grader.exercise.model import CheckSpec, Drive, Exercise, Scenario, TrialSpec
+from grader.exercise.tables import Table, read_toml, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Mapping
     from pathlib import Path
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
+    from grader.exercise.kind_spec import KindSpec, Param
 
 SCHEMA = 1
 ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
@@ -38,122 +33,25 @@ MAX_SPEED = 10.0
 """m/s and rad/s."""
 
 
-def parse_exercise(data: bytes, name: str, folder: Path) -> Exercise:
-    """The exercise in the bytes of an exercise.toml; `name` is the file's name in messages.
+def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
+    """The exercise in the bytes of an exercise.toml; `name` is the file's name in messages, `kinds` by name.
 
     Raises UsageError naming every problem.
     """
-    return parse_tables(read_toml(data, name), name, folder, hashlib.sha256(data).hexdigest())
+    return parse_tables(read_toml(data, name), name, folder, hashlib.sha256(data).hexdigest(), kinds)
 
 
-def read_toml(data: bytes, name: str) -> dict[str, Any]:
-    """The tables of a TOML file. Raises UsageError where it is none."""
-    try:
-        return tomllib.loads(data.decode("utf-8"))
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        message = f"{name}: not TOML: {error}."
-        raise UsageError(message) from error
-
-
-def parse_tables(top: dict[str, Any], name: str, folder: Path, digest: str) -> Exercise:
+def parse_tables(top: dict[str, Any], name: str, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
     """The exercise in the tables of an exercise.toml. Raises UsageError naming every problem."""
     problems: list[str] = []
-    exercise = _exercise(_Table(top, "", problems), folder, digest)
+    exercise = _exercise(Table(top, "", problems), folder, digest, kinds)
     if problems:
         message = "\n".join(f"{name}: {problem}" for problem in problems)
         raise UsageError(message)
     return exercise
 
 
-class _Table:
-    """A table of the file while it is read: what is wrong goes into `problems`, what was asked for is known."""
-
-    def __init__(self, values: dict[str, Any], place: str, problems: list[str]) -> None:
-        self.values = values
-        self.place = place
-        self.problems = problems
-        self.known: list[str] = []
-
-    def problem(self, text: str) -> None:
-        self.problems.append(f"{self.place}: {text}" if self.place else text)
-
-    def _get(self, key: str, allowed: str, good: Callable[[object], bool], *, default: Any) -> Any:  # noqa: ANN401 (whatever `good` lets pass)
-        """The value of the key where `good(value)`, else the default, and the problem noted."""
-        self.known.append(key)
-        if key not in self.values:
-            if default is None:
-                self.problem(f'the key "{key}" is missing; it must be {allowed}.')
-            return default
-        value = self.values[key]
-        if good(value):
-            return value
-        self.problem(f'"{key}" is {_shown(value)}; it must be {allowed}.')
-        return default
-
-    def text(
-        self, key: str, pattern: re.Pattern[str] | None = None, allowed: str = "a text", default: str | None = None
-    ) -> str:
-        """A text that is not blank, and is all of `pattern`."""
-
-        def good(value: object) -> bool:
-            return (
-                isinstance(value, str) and bool(value.strip()) and (pattern is None or bool(pattern.fullmatch(value)))
-            )
-
-        return str(self._get(key, allowed, good, default=default) or "")
-
-    def number(self, key: str, low: float, high: float, allowed: str, default: float | None = None) -> float:
-        """A finite number, low <= number <= high."""
-
-        def good(value: object) -> bool:
-            is_number = isinstance(value, int | float) and not isinstance(value, bool)
-            return is_number and math.isfinite(value) and low <= value <= high  # type: ignore[arg-type, operator]
-
-        return float(self._get(key, allowed, good, default=default) or 0.0)
-
-    def limits(self, key: str, most: float) -> tuple[float, float]:
-        """Two finite numbers from -most to most, in order; one number stands for both."""
-
-        def good(value: object) -> bool:
-            pair = value if isinstance(value, list) else [value, value]
-            numbers = [n for n in pair if isinstance(n, int | float) and not isinstance(n, bool) and abs(n) <= most]
-            return len(pair) == len(numbers) == 2 and numbers[0] <= numbers[1]
-
-        value = self._get(key, f"a number from {-most:g} to {most:g}, or a list of two in order", good, default=None)
-        low, high = value if isinstance(value, list) else (value or 0.0, value or 0.0)
-        return float(low), float(high)
-
-    def flag(self, key: str) -> bool:
-        return bool(self._get(key, "true or false", lambda value: isinstance(value, bool), default=False))
-
-    def texts(self, key: str) -> tuple[str, ...]:
-        def good(value: object) -> bool:
-            return isinstance(value, list) and all(isinstance(item, str) for item in value)
-
-        return tuple(self._get(key, "a list of texts", good, default=[]))
-
-    def table(self, key: str) -> _Table:
-        value = self._get(key, f"a table [{key}]", lambda value: isinstance(value, dict), default=None)
-        return _Table(value or {}, f"[{key}]", self.problems if value is not None else [])
-
-    def tables(self, key: str) -> list[_Table]:
-        def good(value: object) -> bool:
-            return isinstance(value, list) and all(isinstance(item, dict) for item in value)
-
-        values = self._get(key, f"tables [[{key}]]", good, default=[])
-        return [_Table(value, f"[[{key}]] {place}", self.problems) for place, value in enumerate(values, start=1)]
-
-    def finish(self, also: Iterable[str] = ()) -> None:
-        """Note every key that nobody asked for."""
-        allowed = [*self.known, *also]
-        for key in self.values:
-            if key not in allowed:
-                guess = nearest(key, allowed)
-                hint = f' Did you mean "{guess}"?' if guess else ""
-                self.problem(f'unknown key "{shorten(key)}".{hint} Allowed: {", ".join(allowed)}.')
-
-
-def _exercise(top: _Table, folder: Path, digest: str) -> Exercise:
+def _exercise(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
     if top.number("schema", SCHEMA, SCHEMA, f"{SCHEMA}, the version of this format") != SCHEMA:
         return Exercise("", "", "", "", "", Scenario(0.0), (), (), folder)
     head = top.table("exercise")
@@ -172,7 +70,7 @@ def _exercise(top: _Table, folder: Path, digest: str) -> Exercise:
         executable=head.text("executable", ROS_NAME, name, default=default),
         node=head.text("node", ROS_NAME, name, default=default),
         scenario=_scenario(top.table("scenario")),
-        checks=_checks(top, tuple(trial.id for trial in trials)),
+        checks=_checks(top, tuple(trial.id for trial in trials), kinds),
         hints=tuple(_hint(table) for table in top.tables("hint")),
         unsolved=head.texts("starting_point_fails"),
         folder=folder,
@@ -184,7 +82,7 @@ def _exercise(top: _Table, folder: Path, digest: str) -> Exercise:
     return exercise
 
 
-def _trial(table: _Table) -> TrialSpec:
+def _trial(table: Table) -> TrialSpec:
     name = "letters, digits and _, beginning with a letter"
     spec = TrialSpec(
         id=table.text("id", ID, "small letters, digits and single dashes, as in figure-eight"),
@@ -196,7 +94,7 @@ def _trial(table: _Table) -> TrialSpec:
     return spec
 
 
-def _scenario(table: _Table) -> Scenario:
+def _scenario(table: Table) -> Scenario:
     start = table.text("start", re.compile("turtlesim|anywhere"), '"turtlesim" or "anywhere"', default="turtlesim")
     scenario = Scenario(
         duration_s=table.number("duration_s", 0.1, MAX_DURATION_S, f"from 0.1 to {MAX_DURATION_S:g} (s)"),
@@ -212,7 +110,7 @@ def _scenario(table: _Table) -> Scenario:
     return scenario
 
 
-def _drive(table: _Table) -> Drive:
+def _drive(table: Table) -> Drive:
     drive = Drive(
         table.number("from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)"),
         table.limits("linear_x_m_s", MAX_SPEED),
@@ -222,17 +120,17 @@ def _drive(table: _Table) -> Drive:
     return drive
 
 
-def _hint(table: _Table) -> str:
+def _hint(table: Table) -> str:
     hint = table.text("text").strip()
     table.finish()
     return hint
 
 
-def _checks(top: _Table, trials: tuple[str, ...]) -> tuple[CheckSpec, ...]:
+def _checks(top: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) -> tuple[CheckSpec, ...]:
     tables = top.tables("check")
     if not tables:
         top.problem("there is no [[check]], so nothing would be judged.")
-    specs = tuple(_check(table, trials) for table in tables)
+    specs = tuple(_check(table, trials, kinds) for table in tables)
     ids = [spec.id for spec in specs]
     for table, spec in zip(tables, specs, strict=True):
         if spec.id and ids.count(spec.id) > 1:
@@ -248,7 +146,7 @@ def _checks(top: _Table, trials: tuple[str, ...]) -> tuple[CheckSpec, ...]:
     return specs
 
 
-def _check(table: _Table, trials: tuple[str, ...]) -> CheckSpec:
+def _check(table: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) -> CheckSpec:
     id_ = table.text("id", ID, "small letters, digits and single dashes, as in circle-radius")
     if id_:
         table.place += f" ({id_})"
@@ -257,20 +155,20 @@ def _check(table: _Table, trials: tuple[str, ...]) -> CheckSpec:
         table.problem(
             f'"trial" is "{shorten(trial)}"; it must be the id of a [[trial]]: {", ".join(trials) or "none"}.'
         )
-    name = table.text("kind", allowed=f"one of {', '.join(KINDS)}")
+    name = table.text("kind", allowed=f"one of {', '.join(kinds)}")
     points = table.number("points", 0.0, 1000.0, "a number from 0 to 1000")
     needs, hidden = table.texts("needs"), table.flag("hidden")
-    kind = KINDS.get(name)
+    kind = kinds.get(name)
     title = table.text("title", default=kind.title if kind else "?")
     if kind is None:
         if name:
-            guess = nearest(name, KINDS)
+            guess = nearest(name, kinds)
             hint = f' Did you mean "{guess}"?' if guess else ""
-            table.problem(f'unknown kind "{shorten(name)}".{hint} Allowed: {", ".join(KINDS)}.')
+            table.problem(f'unknown kind "{shorten(name)}".{hint} Allowed: {", ".join(kinds)}.')
         return CheckSpec(id_, name, title, points, needs, hidden, {}, trial)
     if kind.advice and points != 0.0:
         table.problem(f'"points" is {points:g}; the kind "{name}" is advice, which is worth 0.')
-    params: dict[str, Param] = kind.defaults()
+    params: dict[str, Param] = dict(kind.defaults())
     for key, allowed in kind.parameters().items():
         if key not in table.values:
             if key not in params:
@@ -278,7 +176,7 @@ def _check(table: _Table, trials: tuple[str, ...]) -> CheckSpec:
             continue
         value = allowed.accept(table.values[key])
         if value is None:
-            table.problem(f'"{key}" is {_shown(table.values[key])}; it must be {allowed.words}.')
+            table.problem(f'"{key}" is {shown(table.values[key])}; it must be {allowed.words}.')
         else:
             params[key] = value
     table.finish(also=kind.parameters())
@@ -308,14 +206,3 @@ def _circle(specs: tuple[CheckSpec, ...]) -> list[str]:
         if found:
             return found
     return []
-
-
-def _shown(value: object) -> str:
-    """A TOML value as its author wrote it, nearly."""
-    if isinstance(value, str):
-        return f'"{shorten(value)}"'
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, dict | list):
-        return "a table" if isinstance(value, dict) else "a list"
-    return shorten(str(value))

@@ -17,13 +17,15 @@ from typing import TYPE_CHECKING, Any
 
 from grader.common.words import a_list, nearest
 from grader.errors import UsageError
-from grader.exercise.exercise_toml import SCHEMA, parse_tables, read_toml
+from grader.exercise.exercise_toml import SCHEMA, parse_tables
 from grader.exercise.model import FILE_NAME, catalogue
+from grader.exercise.tables import read_toml
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
+    from grader.exercise.kind_spec import KindSpec
     from grader.exercise.model import Exercise
 
 ALLOWED = ("schema", "scenario", "check", "trial")
@@ -39,18 +41,18 @@ class Sources:
     private_name: str = ""
     """What messages call the private file."""
 
-    def exercise(self, folder: Path) -> Exercise:
-        """The exercise; `folder` is that of the lesson. Raises UsageError naming every problem."""
+    def exercise(self, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
+        """The exercise; `folder` is that of the lesson, `kinds` by name. Raises UsageError naming every problem."""
         name = f"{self.id}/{FILE_NAME}"
         public = read_toml(self.public, name)
         digest = hashlib.sha256(self.public).hexdigest()
         if self.private is None:
-            return parse_tables(public, name, folder, digest)
+            return parse_tables(public, name, folder, digest, kinds)
         private = read_toml(self.private, self.private_name)
         merged = merge(public, private, self.private_name)
         both = f"{digest} {hashlib.sha256(self.private).hexdigest()}"
         named = f"{self.private_name}, laid over the course's"
-        return parse_tables(merged, named, folder, hashlib.sha256(both.encode()).hexdigest())
+        return parse_tables(merged, named, folder, hashlib.sha256(both.encode()).hexdigest(), kinds)
 
 
 def sources_of(ids: set[str], checks: Path | None) -> dict[str, Sources]:

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from grader.checks.exercises import find_exercise
 from grader.errors import MachineError, UsageError
-from grader.exercise.model import catalogue, find_exercise
+from grader.exercise.model import catalogue
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -12,13 +12,13 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
 from grader.classroom.found import Found
 from grader.classroom.grade_class import Asked, grade_found
 from grader.classroom.results import Results
 from grader.common.words import shorten
 from grader.errors import UsageError
-from grader.exercise.model import find_exercise
 from grader.gradebook.confirmed import (
     Unconfirmed,
     outcome_of,

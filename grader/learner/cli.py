@@ -88,7 +88,7 @@ def place(path: Path | None, exercise: str | None, workspace: Path | None = None
     Raises:
         UsageError: neither path nor progress says it.
     """
-    from grader.exercise.model import exercise_of_folder, find_exercise
+    from grader.checks.exercises import exercise_of_folder, find_exercise
     from grader.learner import steps
 
     current = steps.current(workspace)

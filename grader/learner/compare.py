@@ -5,10 +5,10 @@ from __future__ import annotations
 import difflib
 from typing import TYPE_CHECKING
 
+from grader.checks.exercises import find_exercise
 from grader.common.words import printable
 from grader.errors import UsageError
 from grader.exercise.markers import MEANT, solved, syntax_of
-from grader.exercise.model import find_exercise
 from grader.learner import progress, workspace
 from grader.submission import tree
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from grader.checks.exercises import find_exercise
 from grader.common.words import count
 from grader.errors import UsageError
-from grader.exercise.model import catalogue, find_exercise
+from grader.exercise.model import catalogue
 from grader.learner import progress, workspace
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.checks.exercises import find_exercise
 from grader.common.words import a_list
 from grader.errors import UsageError
-from grader.exercise.model import find_exercise
 from grader.notebook import place
 from grader.notebook.mode import grading
 

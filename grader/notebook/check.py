@@ -16,9 +16,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.checks.exercises import find_exercise
 from grader.common.interpreter import interpreter
 from grader.errors import MachineError, UsageError
-from grader.exercise.model import find_exercise
 from grader.notebook.mode import grading
 
 if TYPE_CHECKING:

@@ -15,9 +15,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
 from grader.errors import GraderError
-from grader.exercise.model import find_exercise
 from grader.grading.grade import Graded, Options, grade
 from grader.notebook.mode import confined
 from grader.report.plain import plain_line

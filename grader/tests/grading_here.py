@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
+from grader.checks.exercises import find_exercise
 from grader.colcon import workspace
 from grader.errors import UsageError
-from grader.exercise.model import find_exercise
 from grader.grading.grade import Options, grade
 from grader.learner.rebuild import renewed
 from grader.report import terminal

@@ -10,9 +10,10 @@ from pathlib import Path, PurePosixPath
 import pytest
 
 from grader.authoring.handout import hand_out
+from grader.checks.exercises import find_exercise
 from grader.evidence.archive import save
 from grader.evidence.evidence import Evidence
-from grader.exercise.model import catalogue, find_exercise
+from grader.exercise.model import catalogue
 from grader.gradebook.class_folder import make_class
 from grader.submission.package import open_submission
 from grader.submission.search import IGNORE_MARKER, PACKAGE_FILES

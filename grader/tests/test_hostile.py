@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.checks.exercises import load_exercise
 from grader.checks.judge import judge
 from grader.checks.outcome import Status
 from grader.evidence import archive
@@ -47,7 +48,7 @@ class Run:
 
     @property
     def evidence(self) -> Evidence:
-        return archive.load(self.work / "recording").evidence
+        return archive.load(self.work / "recording", load_exercise).evidence
 
     @property
     def points(self) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.exercise.model import load_exercise
+from grader.checks.exercises import load_exercise
 from grader.grading.grade import Options, grade
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_answers

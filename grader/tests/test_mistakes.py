@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.checks.diagnoses import DIAGNOSES
+from grader.checks.exercises import find_exercise
 from grader.checks.judge import judge_early
 from grader.evidence.evidence import Evidence
-from grader.exercise.model import find_exercise
 from grader.submission.package import open_submission
 from grader.tests.case import ROOT, Case, make_submission, read_cases
 from grader.tests.catalogue import MISTAKES, PAGE, SHOWN_BY_TESTS, TESTS, cases, page

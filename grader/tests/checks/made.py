@@ -8,10 +8,10 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from grader.checks.exercises import find_exercise
 from grader.checks.judge import judge
 from grader.colcon.build import Build
 from grader.evidence.evidence import Evidence
-from grader.exercise.model import Exercise, find_exercise
 from grader.submission.package import Submission
 from grader.trial.recording import (
     Command,
@@ -30,8 +30,10 @@ from grader.turtlesim.turtle import FRAME_S, Pen, Rgb, Start, Turtle
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from grader.checks.kind import Kind, Value
+    from grader.checks.kind import Kind
     from grader.checks.outcome import Finding
+    from grader.exercise.kind_spec import Param
+    from grader.exercise.model import Exercise
 
 TOPIC = "/turtle1/cmd_vel"
 TWIST = "geometry_msgs/msg/Twist"
@@ -256,6 +258,6 @@ def finding(check: str, given: Evidence) -> Finding:
     return judge(replace(given, exercise=alone))[0].finding
 
 
-def found(kind: Kind[Any], given: Evidence, **values: Value) -> Finding:
+def found(kind: Kind[Any], given: Evidence, **values: Param) -> Finding:
     """What a check of this kind finds with these parameters, the others at their defaults."""
     return kind.judge(given, {**kind.defaults(), **values})

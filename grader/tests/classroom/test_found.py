@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.checks.exercises import find_exercise
 from grader.classroom.content import Refused, fingerprint, read
 from grader.classroom.found import Found, find_submissions, passed_over
 from grader.errors import UsageError
-from grader.exercise.model import find_exercise
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import zipped
 

@@ -1,11 +1,15 @@
 from __future__ import annotations
 
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.checks.exercises import load_exercise
 from grader.errors import UsageError
-from grader.exercise.model import Exercise, catalogue, course_folder, exercise_of_folder, find_exercise, load_exercise
+from grader.exercise.model import Exercise, catalogue
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 GOOD = """\
 schema = 1
@@ -199,41 +203,3 @@ def test_every_exercise_of_the_course_is_valid_and_named_as_its_folder() -> None
         exercise = load_exercise(file)
         assert exercise.id == id_
         assert sum(check.points for check in exercise.checks) == 100
-
-
-def test_an_exercise_is_found_by_its_id_or_its_beginning() -> None:
-    assert find_exercise("03-circle-publisher") == find_exercise("03")
-
-
-@pytest.mark.parametrize(
-    ("name", "hint"),
-    [
-        ("03-circle-publsher", "did you mean 03-circle-publisher?"),
-        ("99", "there is no exercise '99'"),
-        ("", "there is no exercise ''"),
-    ],
-)
-def test_an_unknown_exercise_names_those_that_there_are(name: str, hint: str) -> None:
-    with pytest.raises(UsageError) as raised:
-        find_exercise(name)
-    assert hint in str(raised.value)
-    assert "03-circle-publisher" in str(raised.value)
-
-
-def test_several_exercises_that_begin_alike_are_named(tmp_path: Path) -> None:
-    for name in ("03-a", "03-b"):
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "exercise.toml").write_text(GOOD)
-    with pytest.raises(UsageError, match=r"several exercises begin with '03'.*03-a and 03-b"):
-        find_exercise("03", tmp_path)
-
-
-def test_the_exercise_follows_from_a_folder_below_solutions_and_exercises() -> None:
-    root = course_folder().parent
-    inside = root / "solutions" / "03-circle-publisher" / "my_robot_controller"
-    found = exercise_of_folder(inside)
-    assert found is not None
-    assert found.id == "03-circle-publisher"
-    assert exercise_of_folder(root / "exercises" / "03-circle-publisher") == found
-    assert exercise_of_folder(root / "grader") is None
-    assert exercise_of_folder(Path("/tmp/03-circle-publisher")) is None

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.checks.exercises import exercise_from, load_exercise
 from grader.errors import UsageError
-from grader.exercise.model import catalogue, load_exercise
+from grader.exercise.model import catalogue
 from grader.exercise.private_checks import Sources, sources_of
 from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
@@ -51,7 +52,7 @@ hidden = false
 
 
 def merged(private: str) -> Exercise:
-    return Sources(STEP, PUBLIC.read_bytes(), private.encode(), "mine/exercise.toml").exercise(PUBLIC.parent)
+    return exercise_from(Sources(STEP, PUBLIC.read_bytes(), private.encode(), "mine/exercise.toml"))
 
 
 def test_the_same_id_replaces_and_a_new_one_is_added() -> None:

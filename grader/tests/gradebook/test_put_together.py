@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.exercise.model import course_folder, find_exercise
+from grader.checks.exercises import find_exercise
+from grader.exercise.model import course_folder
 from grader.gradebook.put_together import graded_folder
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
 from grader.colcon.workspace import Built
 from grader.errors import MachineError
-from grader.exercise.model import find_exercise
 from grader.grading.grade import Options, grade
 from grader.submission.package import open_submission
 from grader.tests.case import ROOT

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pexpect
 
-from grader.exercise.model import catalogue, find_exercise
+from grader.checks.exercises import find_exercise
+from grader.exercise.model import catalogue
 from grader.exercise.own_numbers import OwnNumbers, from_toml
 from grader.learner.workspace import work_folder
 

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
+from grader.checks.exercises import find_exercise
 from grader.errors import UsageError
-from grader.exercise.model import find_exercise
 from grader.grading.grade import Options
 from grader.learner.rebuild import Rebuild
 from grader.learner.screen import _Screen

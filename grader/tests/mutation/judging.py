@@ -61,11 +61,12 @@ class Job:
 
 def load(recorded: Iterable[Recorded]) -> list[Material]:
     """Read recordings; then forget the checks, so that whoever imports them next gets them fresh."""
+    from grader.checks.exercises import load_exercise
     from grader.evidence.archive import load as open_archive
 
     loaded = []
     for each in recorded:
-        archived = open_archive(each.folder)
+        archived = open_archive(each.folder, load_exercise)
         loaded.append(Material(each.name, each.case, archived.evidence, archived.ros))
     # What checks import late is imported here, once for all mutants.
     import catkin_pkg.package  # type: ignore[import-untyped]  # noqa: F401

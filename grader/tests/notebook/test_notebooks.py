@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
+from grader.checks.exercises import find_exercise
 from grader.errors import UsageError
-from grader.exercise.model import catalogue, course_folder, find_exercise
+from grader.exercise.model import catalogue, course_folder
 from grader.notebook.released import released_notebook, without_hidden_tests
 from grader.notebook.source import refreshed
 

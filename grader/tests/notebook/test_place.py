@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import pytest
 
+from grader.checks.exercises import find_exercise
 from grader.errors import UsageError
-from grader.exercise.model import find_exercise
 from grader.notebook.place import Part, counts, part_path, parts_of
 
 CIRCLE = find_exercise("03")

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Finding, Outcome, Status
-from grader.exercise.model import find_exercise
 from grader.report.html import html_page, save_html
 from grader.report.verdict import verdict
 from grader.tests.case import ROOT

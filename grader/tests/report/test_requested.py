@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.exercise.model import CheckSpec, find_exercise
+from grader.checks.exercises import find_exercise
 from grader.report.requested import asked_shapes
 from grader.report.shapes import Line, Ring
 from grader.tests.checks.made import every, evidence, legs, recording
@@ -16,6 +16,7 @@ from grader.trial.recording import Pose
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
+    from grader.exercise.model import CheckSpec
     from grader.tests.checks.made import Timed
 
 NORTH = Pose(4.0, 5.0, math.pi / 2)
