@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING, Annotated, Optional
 
 import typer
 
+from grader.authoring import cli as authoring
 from grader.classroom import cli as classroom
 from grader.common.interpreter import clean_own
 from grader.errors import GraderError, UsageError
 from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
+from grader.setup import cli as setup
+from grader.view import cli as view
 
 if TYPE_CHECKING:
-    from contextlib import AbstractContextManager
-
     from grader.checks.outcome import Report
     from grader.evidence.evidence import Evidence
     from grader.exercise.model import Exercise
-    from grader.report.progress import Progress
     from grader.submission.package import Submission
 
 app = typer.Typer(
@@ -35,6 +35,10 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+LEARN, TEACH = learner.PANEL, classroom.PANEL
+# The learner's verbs stand first in --help.
+learner.add_to(app)
 
 
 class Clock(str, Enum):
@@ -57,7 +61,10 @@ ExerciseId = Annotated[
 ]
 
 
-@app.command(epilog="Example: grader check ~/ros2_ws/src/my_robot_controller --exercise 03-circle-publisher")
+@app.command(
+    rich_help_panel=LEARN,
+    epilog="Example: grader check ~/ros2_ws/src/my_robot_controller --exercise 03-circle-publisher",
+)
 def check(
     submission: Annotated[
         Optional[Path],  # noqa: UP045
@@ -82,11 +89,13 @@ def check(
     """Build and run one submission, and say what is right and what is not."""
     from grader.evidence import archive
     from grader.grading.grade import Options, grade
+    from grader.report.files import check_writable
+    from grader.report.progress import progress
     from grader.report.terminal import early
     from grader.sandbox import bubblewrap
 
     for file in (json, image, html):
-        _writable(file)
+        check_writable(file)
     if recording:
         archive.check_free(recording)
     if submission is None:
@@ -96,7 +105,7 @@ def check(
         exercise = known.id
     asked, opened = _opened(exercise, submission)
     options = Options(in_cell=bubblewrap.require() if confined else bubblewrap.usable(), clock=clock.value, seed=seed)
-    with _progress() as tell:
+    with progress() as tell:
         graded = grade(asked, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)))
         if recording:
             archive.save(recording, graded.evidence, graded.report.ros, graded.prefixes)
@@ -106,7 +115,7 @@ def check(
     _show(graded.report, graded.evidence, json, image, html)
 
 
-@app.command(epilog="Example: grader regrade my-recording --image path.png")
+@app.command(rich_help_panel=TEACH, epilog="Example: grader regrade my-recording --image path.png")
 def regrade(
     recording: Annotated[Path, typer.Argument(help="What `grader check --recording` wrote.", metavar="RECORDING")],
     exercise: Annotated[
@@ -122,16 +131,17 @@ def regrade(
     from grader.checks.judge import judge
     from grader.evidence import archive
     from grader.grading.grade import report_of
+    from grader.report.files import check_writable
 
     for file in (json, image, html):
-        _writable(file)
+        check_writable(file)
     other = find_exercise(exercise) if exercise else None
     kept = archive.load(recording, (lambda _: other) if other else load_exercise)
     report = report_of(kept.evidence, judge(kept.evidence), kept.ros, {})
     _show(report, kept.evidence, json, image, html)
 
 
-@app.command("class-page", epilog="Example: grader class-page reports")
+@app.command("class-page", rich_help_panel=TEACH, epilog="Example: grader class-page reports")
 def class_page(
     folder: Annotated[
         Path, typer.Argument(help="Holds the reports of a class, as --json writes them; pages beside them.")
@@ -149,123 +159,11 @@ def class_page(
     typer.echo(f"The class page: {file}")
 
 
-@app.command(epilog="Example: grader doctor")
-def doctor() -> None:
-    """See whether this machine can grade: which ROS 2, colcon, compiler, sandbox; and what to do about the rest."""
-    from rich.console import Console
-
-    from grader.setup.doctor import exit_code, render, run_doctor
-
-    with _progress() as tell:
-        lines = run_doctor(tell=tell)
-    render(lines, Console(highlight=False))
-    raise typer.Exit(exit_code(lines))
-
-
-@app.command(
-    context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
-    epilog="Examples: grader sim --view; in a terminal without a browser: grader sim --view terminal",
-)
-def sim(
-    context: typer.Context,
-    image: Image = None,
-    view: Annotated[
-        bool,
-        typer.Option("--view", help="See it move, on a page of this machine; `--view terminal`: in this terminal."),
-    ] = False,
-    port: Annotated[Optional[int], typer.Option(help="Of the page; the one of the last time when left out.")] = None,  # noqa: UP045
-) -> None:
-    """Run turtlesim as a node, at wall time, until Ctrl-C; it has no window, so --view shows it."""
-    from grader.common.interpreter import interpreter
-    from grader.ros import underlay
-    from grader.ros.installation import find_ros, users_environment
-
-    _writable(image)
-    here = find_ros()
-    with _progress() as tell:
-        extra = underlay.ensure(here, tell)
-    # typer has no option that may stand with and without a value.
-    where = context.args.pop(0) if view and context.args[:1] in (["page"], ["terminal"]) else "page"
-    given = [("--image", image), ("--view", where if view else None), ("--port", port)]
-    options = [text for name, value in given if value is not None for text in (name, str(value))]
-    env = users_environment(here, extra)
-    start = interpreter(
-        "-m", "grader.view.turtlesim_node", *options, *context.args, python=str(here.python), env=env, searches=True
-    )
-    os.execve(start.argv[0], start.argv, start.env)
-
-
-Domain = Annotated[
-    Optional[int],  # noqa: UP045
-    typer.Option(help="Which ROS domain: 0 to 101. Without it the one that is set, else one of your own."),
-]
-
-
-@app.command(epilog="Example: source <(grader env)")
-def env(domain: Domain = None) -> None:
-    """Print shell code that puts ROS 2 into this shell: for `source <(grader env)`, in bash and zsh."""
-    from grader.ros import shell
-
-    try:
-        with _progress() as tell:
-            wanted = shell.users_environment(domain, tell)
-    except GraderError:
-        # Whoever sources this sees nothing of our exit code.
-        print("false")
-        raise
-    sys.stdout.write(shell.code(wanted))
-
-
-@app.command(epilog="Example: grader shell --domain 7")
-def shell(domain: Domain = None) -> None:
-    """Open a shell in which ROS 2 is there, until you type exit."""
-    from grader.ros import shell as shells
-
-    with _progress() as tell:
-        wanted = shells.users_environment(domain, tell)
-    print(f"A shell with ROS 2, in domain {wanted['ROS_DOMAIN_ID']}. To leave it: exit")
-    sys.stdout.flush()
-    shells.open_shell(wanted)
-
-
-@app.command(epilog="Example: grader release --to ../for-students")
-def release(
-    check: Annotated[bool, typer.Option("--check", help="Change nothing; fail when exercises/ is stale.")] = False,
-    to: Annotated[
-        Optional[Path],  # noqa: UP045
-        typer.Option(help="Write the students' repository, without solutions, into this new folder.", metavar="DIR"),
-    ] = None,
-) -> None:
-    """Make exercises/ from solutions/, for authors."""
-    from grader.authoring.release import main as make_exercises
-
-    if to:
-        from grader.authoring.handout import hand_out
-
-        hand_out(to)
-        typer.echo(f"The students' repository: {to}")
-        return
-    raise typer.Exit(make_exercises(["--check"] if check else []))
-
-
-@app.command(epilog="Example: grader validate 03-circle-publisher")
-def validate(
-    exercises: Annotated[list[str] | None, typer.Argument(help="Which ones; all when left out.", metavar="ID")] = None,
-) -> None:
-    """See whether exercises, solutions, starting points and lessons are as they should be, for authors."""
-    from grader.authoring.validate import validate as problems_of
-
-    with _progress() as tell:
-        problems = problems_of(exercises or [], tell)
-    for problem in problems:
-        typer.echo(f"- {problem}")
-    typer.echo(f"{len(problems)} problems." if problems else "Everything is as it should be.")
-    raise typer.Exit(1 if problems else 0)
-
-
-learner.add_to(app)
+view.add_to(app)
+setup.add_to(app)
 classroom.add_to(app)
 gradebook.add_to(app)
+authoring.add_to(app)
 
 
 def main() -> None:
@@ -322,9 +220,10 @@ def _show(report: Report, evidence: Evidence, json: Path | None, image: Path | N
     from grader.report import terminal
 
     if json:
+        from grader.report.files import write
         from grader.report.json import to_json
 
-        _write(json, to_json(report).encode())
+        write(json, to_json(report).encode())
     if image:
         from grader.report.picture import save_picture
 
@@ -336,30 +235,6 @@ def _show(report: Report, evidence: Evidence, json: Path | None, image: Path | N
     console = Console(highlight=False)
     terminal.render(report, console)
     raise typer.Exit(report.exit_code)
-
-
-def _progress() -> AbstractContextManager[Progress]:
-    from grader.report.progress import progress
-
-    return progress()
-
-
-def _writable(file: Path | None) -> None:
-    """See that a file can be written before time is spent on what goes into it."""
-    if file is not None and not file.absolute().parent.is_dir():
-        message = f"There is no folder {file.absolute().parent} to write {file.name} to."
-        raise UsageError(message)
-    if file is not None and file.is_dir():
-        message = f"{file} is a folder; name a file."
-        raise UsageError(message)
-
-
-def _write(file: Path, content: bytes) -> None:
-    try:
-        file.write_bytes(content)
-    except OSError as error:
-        message = f"{file} could not be written: {error.strerror}."
-        raise UsageError(message) from error
 
 
 if __name__ == "__main__":

@@ -10,6 +10,9 @@ import typer
 
 from grader.errors import UsageError
 
+PANEL = "Teach"
+"""The heading in --help."""
+
 gradescope = typer.Typer(name="gradescope", help="Grade with Gradescope.", no_args_is_help=True)
 
 
@@ -24,11 +27,14 @@ class Clock(str, Enum):
 def add_to(app: typer.Typer) -> None:
     """Add these verbs to the command."""
     app.command(
+        rich_help_panel=PANEL,
         epilog="Example: grader grade submitted --exercise 03-circle-publisher --out grades  (then open "
-        "grades/summary.csv)"
+        "grades/summary.csv)",
     )(grade)
-    gradescope.command(epilog="Example: grader gradescope build 03-circle-publisher autograder.zip")(build)
-    app.add_typer(gradescope)
+    gradescope.command(
+        rich_help_panel=PANEL, epilog="Example: grader gradescope build 03-circle-publisher autograder.zip"
+    )(build)
+    app.add_typer(gradescope, rich_help_panel=PANEL)
 
 
 def grade(

@@ -7,6 +7,8 @@ from typing import Annotated, Optional
 
 import typer
 
+from grader.classroom.cli import PANEL
+
 gradebook = typer.Typer(name="gradebook", help="nbgrader's gradebook.", no_args_is_help=True)
 classes = typer.Typer(name="class", help="A class that hands in notebooks.", no_args_is_help=True)
 kernel = typer.Typer(name="kernel", help="The course's kernel for Jupyter.", no_args_is_help=True)
@@ -21,7 +23,7 @@ def add_to(app: typer.Typer) -> None:
     for each in (gradebook, classes, kernel):
         # Without this a group of one verb would be that verb.
         each.callback()(_group)
-        app.add_typer(each)
+        app.add_typer(each, rich_help_panel=PANEL)
 
 
 def _group() -> None:

@@ -9,6 +9,9 @@ import typer
 
 from grader.errors import UsageError
 
+PANEL = "Learn"
+"""The heading in --help."""
+
 if TYPE_CHECKING:
     from grader.exercise.model import Exercise
 
@@ -21,11 +24,11 @@ Step = Annotated[Optional[str], typer.Argument(help="A step, as in 03-circle-pub
 
 def add_to(app: typer.Typer) -> None:
     """Add these verbs to the command."""
-    app.command(epilog="Example: grader start 01")(start)
-    app.command(epilog="Example: grader watch")(watch)
-    app.command(epilog="Example: grader hint")(hint)
-    app.command(epilog="Example: grader status")(status)
-    app.command(epilog="Example: grader solution 01")(solution)
+    app.command(rich_help_panel=PANEL, epilog="Example: grader start 01")(start)
+    app.command(rich_help_panel=PANEL, epilog="Example: grader watch")(watch)
+    app.command(rich_help_panel=PANEL, epilog="Example: grader hint")(hint)
+    app.command(rich_help_panel=PANEL, epilog="Example: grader status")(status)
+    app.command(rich_help_panel=PANEL, epilog="Example: grader solution 01")(solution)
 
 
 def start(

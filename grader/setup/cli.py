@@ -1,0 +1,65 @@
+"""The verbs for a machine and its shells: doctor, env, shell. No logic."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated, Optional
+
+import typer
+
+from grader.errors import GraderError
+
+PANEL = "Your machine"
+
+
+def add_to(app: typer.Typer) -> None:
+    """Add these verbs to the command."""
+    app.command(epilog="Example: source <(grader env)", rich_help_panel=PANEL)(env)
+    app.command(epilog="Example: grader shell --domain 7", rich_help_panel=PANEL)(shell)
+    app.command(epilog="Example: grader doctor", rich_help_panel=PANEL)(doctor)
+
+
+def doctor() -> None:
+    """See whether this machine can grade: which ROS 2, colcon, compiler, sandbox; and what to do about the rest."""
+    from rich.console import Console
+
+    from grader.report.progress import progress
+    from grader.setup.doctor import exit_code, render, run_doctor
+
+    with progress() as tell:
+        lines = run_doctor(tell=tell)
+    render(lines, Console(highlight=False))
+    raise typer.Exit(exit_code(lines))
+
+
+Domain = Annotated[
+    Optional[int],  # noqa: UP045
+    typer.Option(help="Which ROS domain: 0 to 101. Without it the one that is set, else one of your own."),
+]
+
+
+def env(domain: Domain = None) -> None:
+    """Print shell code that puts ROS 2 into this shell: for `source <(grader env)`, in bash and zsh."""
+    from grader.report.progress import progress
+    from grader.ros import shell
+
+    try:
+        with progress() as tell:
+            wanted = shell.users_environment(domain, tell)
+    except GraderError:
+        # Whoever sources this sees nothing of our exit code.
+        print("false")
+        raise
+    sys.stdout.write(shell.code(wanted))
+
+
+def shell(domain: Domain = None) -> None:
+    """Open a shell in which ROS 2 is there, until you type exit."""
+    from grader.report.progress import progress
+    from grader.ros import shell as shells
+
+    with progress() as tell:
+        wanted = shells.users_environment(domain, tell)
+    print(f"A shell with ROS 2, in domain {wanted['ROS_DOMAIN_ID']}. To leave it: exit")
+    sys.stdout.flush()
+    shells.open_shell(wanted)

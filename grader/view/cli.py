@@ -1,0 +1,55 @@
+"""The verb `grader sim`: turtlesim without a workspace. No logic."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+PANEL = "Learn"
+Image = Annotated[
+    Optional[Path],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
+    typer.Option(help="Draw the turtle's path as a PNG.", metavar="FILE.png"),
+]
+
+
+def add_to(app: typer.Typer) -> None:
+    """Add these verbs to the command."""
+    app.command(
+        context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
+        epilog="Examples: grader sim --view; in a terminal without a browser: grader sim --view terminal",
+        rich_help_panel=PANEL,
+    )(sim)
+
+
+def sim(
+    context: typer.Context,
+    image: Image = None,
+    view: Annotated[
+        bool,
+        typer.Option("--view", help="See it move, on a page of this machine; `--view terminal`: in this terminal."),
+    ] = False,
+    port: Annotated[Optional[int], typer.Option(help="Of the page; the one of the last time when left out.")] = None,  # noqa: UP045
+) -> None:
+    """Run turtlesim as a node, at wall time, until Ctrl-C; it has no window, so --view shows it."""
+    from grader.common.interpreter import interpreter
+    from grader.report.files import check_writable
+    from grader.report.progress import progress
+    from grader.ros import underlay
+    from grader.ros.installation import find_ros, users_environment
+
+    check_writable(image)
+    here = find_ros()
+    with progress() as tell:
+        extra = underlay.ensure(here, tell)
+    # typer has no option that may stand with and without a value.
+    where = context.args.pop(0) if view and context.args[:1] in (["page"], ["terminal"]) else "page"
+    given = [("--image", image), ("--view", where if view else None), ("--port", port)]
+    options = [text for name, value in given if value is not None for text in (name, str(value))]
+    env = users_environment(here, extra)
+    start = interpreter(
+        "-m", "grader.view.turtlesim_node", *options, *context.args, python=str(here.python), env=env, searches=True
+    )
+    os.execve(start.argv[0], start.argv, start.env)
