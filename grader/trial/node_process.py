@@ -27,15 +27,28 @@ READY = b"\x00ready\n"
 KEPT = 256 * 1024
 """Bytes kept of each stream."""
 PIPE = 1024 * 1024
-"""Bytes that a pipe of the node's holds."""
-FULL = PIPE // 4
-"""Bytes: who was kept waiting by a full pipe has written more. The kernel fills every page to a half at least."""
+"""Bytes that a pipe of the node's should hold: what it writes at one instant should not make it wait."""
+FULL = 0.25
+"""Share of a pipe: who was kept waiting by a full one has written more. The kernel fills every page to a half."""
 STOP_S = 3.0
 """How long SIGINT has, by the exercise; SIGTERM follows, for 1 s, then SIGKILL."""
 
 
 class LaunchError(Exception):
     """The launcher itself failed: the machine's fault, since nothing of the student's had run."""
+
+
+def enlarge(pipe: int) -> int:
+    """Make a pipe as large as the kernel allows, up to PIPE; return its size (bytes).
+
+    The kernel refuses when all pipes of a user hold too much together (fs.pipe-user-pages-soft, pipe(7)).
+    """
+    size = PIPE
+    while size > (given := fcntl.fcntl(pipe, fcntl.F_GETPIPE_SZ)):
+        with suppress(OSError):
+            return fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, size)
+        size //= 2
+    return given
 
 
 @dataclass
@@ -97,8 +110,7 @@ class NodeProcess:
         self._info = info
         self._in_cell = in_cell
         self._streams = [Stream(self._process.stdout.fileno()), Stream(self._process.stderr.fileno())]
-        for stream in self._streams:
-            fcntl.fcntl(stream.fd, fcntl.F_SETPIPE_SZ, PIPE)
+        self._full = FULL * min(enlarge(stream.fd) for stream in self._streams)
         self.pid = 0
         self._interrupted: float | None = None
         self._by = "itself"
@@ -149,6 +161,10 @@ class NodeProcess:
     def read_output(self, now_s: float) -> int:
         """Keep what the node wrote, as of `now_s`; how many bytes it was."""
         return sum(stream.read(now_s) for stream in self._streams)
+
+    def waited_to_write(self, size: int) -> bool:
+        """Whether a node that wrote so many bytes may have had to wait for somebody to read them."""
+        return size >= self._full
 
     def output(self) -> tuple[Output, Output]:
         """Return standard output and standard error so far."""

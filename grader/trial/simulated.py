@@ -16,7 +16,6 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from rosgraph_msgs.msg import Clock
 
-from grader.trial.node_process import FULL
 from grader.trial.patience import HandshakePatience, TickPatience
 from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, only_sends, receives
 from grader.trial.stage import Stage
@@ -142,7 +141,7 @@ class SimulatedTrial(Stage):
                     equal += 1
                     if equal < (1 if node.counted else 3):
                         continue
-                    if self.node.read_output(self._now_s) < FULL:
+                    if not self.node.waited_to_write(self.node.read_output(self._now_s)):
                         self._received = receivers.runs
                         return True
                 before, equal = runs, 0

@@ -3,22 +3,56 @@ from __future__ import annotations
 import fcntl
 import os
 from contextlib import suppress
+from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.trial.node_process import FULL, PIPE, Stream
+from grader.trial.node_process import FULL, PIPE, Stream, enlarge
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
-@pytest.mark.parametrize("size", [1, 100, 2049, 4095, 4097, 100_000])
-def test_whom_a_full_pipe_keeps_waiting_has_written_enough_to_be_noticed(size: int) -> None:
+@pytest.fixture
+def pipe() -> Iterator[tuple[int, int]]:
     reads, writes = os.pipe2(os.O_NONBLOCK)
-    try:
-        fcntl.fcntl(writes, fcntl.F_SETPIPE_SZ, PIPE)
-        with suppress(BlockingIOError):
-            while True:
-                os.write(writes, b"x" * size)
-        assert Stream(reads).read(0.0) >= FULL
-        assert Stream(reads).read(0.0) == 0
-    finally:
-        os.close(reads)
-        os.close(writes)
+    yield reads, writes
+    os.close(reads)
+    os.close(writes)
+
+
+@pytest.mark.parametrize("capacity", [PAGE, 16 * PAGE, PIPE])
+@pytest.mark.parametrize("size", [1, 100, 2049, 4095, 4097, 100_000])
+def test_whom_a_full_pipe_keeps_waiting_has_written_enough_to_be_noticed(
+    pipe: tuple[int, int], size: int, capacity: int
+) -> None:
+    reads, writes = pipe
+    fcntl.fcntl(writes, fcntl.F_SETPIPE_SZ, capacity)
+    with suppress(BlockingIOError):
+        while True:
+            os.write(writes, b"x" * size)
+    assert Stream(reads).read(0.0) >= FULL * capacity
+    assert Stream(reads).read(0.0) == 0
+
+
+def test_a_pipe_is_made_large(pipe: tuple[int, int]) -> None:
+    assert enlarge(pipe[0]) == PIPE == fcntl.fcntl(pipe[1], fcntl.F_GETPIPE_SZ)
+
+
+@pytest.mark.parametrize(("most", "size"), [(0, PAGE), (PIPE // 2, PIPE // 2), (PIPE // 4 + 1, PIPE // 4)])
+def test_a_pipe_that_may_not_grow_is_used_as_it_is(
+    monkeypatch: pytest.MonkeyPatch, pipe: tuple[int, int], most: int, size: int
+) -> None:
+    """As where all pipes of a user hold more than fs.pipe-user-pages-soft."""
+    fcntl.fcntl(pipe[0], fcntl.F_SETPIPE_SZ, PAGE)
+    real = fcntl.fcntl
+
+    def refuses(fd: int, command: int, value: int = 0) -> int:
+        if command == fcntl.F_SETPIPE_SZ and value > most:
+            raise PermissionError
+        return real(fd, command, value)
+
+    monkeypatch.setattr(fcntl, "fcntl", refuses)
+    assert enlarge(pipe[0]) == size == real(pipe[1], fcntl.F_GETPIPE_SZ)
