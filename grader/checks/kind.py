@@ -35,7 +35,8 @@ P = TypeVar("P")
 class Kind(Generic[P]):
     """A sort of check. `check` is pure: the same evidence and parameters give the same finding.
 
-    `title` is the line a student reads when exercise.toml gives none. `advice`: worth no points, fails no run.
+    `title` is the line a student reads when exercise.toml gives none. `about` says to the author of an exercise what is
+    checked (docs/kinds.md). `advice`: worth no points, fails no run.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Kind(Generic[P]):
     title: str
     params: type[P]
     check: Callable[[Evidence, P], Finding]
+    about: str
     advice: bool = False
     early: Callable[[Evidence, P], Finding | None] | None = None
     """What the files alone tell of a check that needs more: a failed finding that stands whatever comes, else None."""
@@ -69,6 +71,7 @@ class Kind(Generic[P]):
 def number(
     default: float | None = None,
     *,
+    about: str,
     above: float | None = None,
     at_least: float | None = None,
     at_most: float | None = None,
@@ -91,37 +94,38 @@ def number(
         if limit is not None
     ]
     words = f"a number {' and '.join(limits)}".rstrip()
-    return _field(Allowed(words, accept), MISSING if default is None else default)
+    return _field(Allowed(words, accept, about), MISSING if default is None else default)
 
 
-def text(words: str = "a text", *, start: str = "", default: str | None = None) -> Any:
+def text(words: str = "a text", *, about: str, start: str = "", default: str | None = None) -> Any:
     """A text that is not empty and begins with `start`; without a default it must be given."""
 
     def accept(value: object) -> str | None:
         return value if isinstance(value, str) and value.strip() and value.startswith(start) else None
 
     return _field(
-        Allowed(f"{words} beginning with {start}" if start else words, accept), MISSING if default is None else default
+        Allowed(f"{words} beginning with {start}" if start else words, accept, about),
+        MISSING if default is None else default,
     )
 
 
-def texts() -> Any:
+def texts(*, about: str) -> Any:
     """A list of at least one text."""
 
     def accept(value: object) -> tuple[str, ...] | None:
         good = isinstance(value, list) and value and all(isinstance(item, str) and item for item in value)
         return tuple(value) if good else None  # type: ignore[arg-type]
 
-    return _field(Allowed("a list of texts, at least one", accept))
+    return _field(Allowed("a list of texts, at least one", accept, about))
 
 
-def choice(*options: str) -> Any:
+def choice(*options: str, about: str) -> Any:
     """One of the options; the first is the default."""
 
     def accept(value: object) -> str | None:
         return value if isinstance(value, str) and value in options else None
 
-    return _field(Allowed(a_list([f'"{option}"' for option in options], "or"), accept), options[0])
+    return _field(Allowed(a_list([f'"{option}"' for option in options], "or"), accept, about), options[0])
 
 
 def _field(allowed: Allowed, default: Any = MISSING) -> Any:

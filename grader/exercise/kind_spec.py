@@ -14,10 +14,14 @@ Param = str | float | int | bool | tuple[str, ...]
 
 @dataclass(frozen=True)
 class Allowed:
-    """What a parameter may be: in words, and as a function from the TOML value to ours (None: not allowed)."""
+    """What a parameter may be: in words, and as a function from the TOML value to ours (None: not allowed).
+
+    `about` says what the parameter means, for the author of an exercise (docs/kinds.md).
+    """
 
     words: str
     accept: Callable[[object], Param | None]
+    about: str
 
 
 class KindSpec(Protocol):

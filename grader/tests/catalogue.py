@@ -37,22 +37,26 @@ SHOWN_BY_TESTS = {
 HEAD = """\
 # The catalogue of mistakes
 
-A check that fails names its cause by a stable id. This page lists them all, with the cases that show each:
-folders in `grader/tests/mistakes/` and `grader/tests/cases/`, a submission with what must be said about it. A few
-are shown by a test on made recordings, which stands in their place. The ids and meanings stand in
-[diagnoses.py](diagnoses.py); this page is made from them and from the cases by `python -m grader.tests.catalogue`,
-and a test fails when it is stale.
+A failed check names its cause by a stable id, the diagnosis. This page lists all diagnoses with the cases that show them.
+A case is a folder in `grader/tests/mistakes/` or `grader/tests/cases/`: a submission and what the report must say about
+it. A few diagnoses are shown by a test instead. [diagnoses.py](diagnoses.py) holds the ids and their meanings.
+`python -m grader.tests.catalogue` generates this page, and a test fails when the page is stale.
 
-A new mistake is a folder `grader/tests/mistakes/NNN-name/` with the submission and an expected.toml (its keys
-are the fields of `Case` in [case.py](../tests/case.py)), and, where none of the ids fits, a new one: the code
-that recognises it, in the module of its subject, and its line in diagnoses.py. What it says has at most 60
-words, tells what was seen, what was expected and where, and never has a line of the solution in it; tests hold
-that, too. One that the evidence does not support is worse than none: `never` in expected.toml lists what must
-not be said.
+To add a mistake:
+
+1. Make a folder `grader/tests/mistakes/NNN-name/` with the submission and a file `expected.toml`. The keys of that file
+   are the fields of `Case` in [case.py](../tests/case.py).
+2. If no id fits, add one to [diagnoses.py](diagnoses.py), and write the code that recognises the mistake in the module
+   of its subject.
+3. Run the case:
 
 ```text
 python -m pytest grader/tests/test_mistakes.py -k NNN
 ```
+
+A message has at most 60 words. It says what was observed, what was expected and where, and it never contains a line of
+the solution. Tests check this. A false diagnosis is worse than none: list in `never` of `expected.toml` what the report
+must not say.
 """
 
 

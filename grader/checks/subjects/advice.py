@@ -32,4 +32,12 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
     )
 
 
-USES_TIMER = Kind("uses_timer", "source", "A timer gives the rhythm", NoParams, uses_timer, advice=True)
+USES_TIMER = Kind(
+    "uses_timer",
+    "source",
+    "A timer gives the rhythm",
+    NoParams,
+    uses_timer,
+    advice=True,
+    about="Advises the student to use `create_timer` if the submission calls it nowhere.",
+)

@@ -52,9 +52,9 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
 class OneOf:
     """The texts that are right, whatever their capitals and blanks."""
 
-    answer: str = text(KEY)
-    accepts: tuple[str, ...] = texts()
-    cause: str = text("a reason", default=" ")
+    answer: str = text(KEY, about="The name of the answer in answers.toml.")
+    accepts: tuple[str, ...] = texts(about="The right answers; capitals and spaces do not matter.")
+    cause: str = text("a reason", default=" ", about="What the student reads as the reason when the answer is wrong.")
 
 
 def answer_text(evidence: Evidence, params: OneOf) -> Finding:
@@ -71,9 +71,9 @@ def answer_text(evidence: Evidence, params: OneOf) -> Finding:
 class AllOf:
     """The texts that must all be in the list, in any order, and no others."""
 
-    answer: str = text(KEY)
-    items: tuple[str, ...] = texts()
-    cause: str = text("a reason", default=" ")
+    answer: str = text(KEY, about="The name of the answer in answers.toml.")
+    items: tuple[str, ...] = texts(about="All items of the right answer, in any order.")
+    cause: str = text("a reason", default=" ", about="What the student reads as the reason when the answer is wrong.")
 
 
 def answer_list(evidence: Evidence, params: AllOf) -> Finding:
@@ -89,14 +89,18 @@ class Asked:
     `heard_by`: only topics on which this node has the other end. `many`: the answer is a list.
     """
 
-    answer: str = text(KEY)
-    find: str = choice("topic", "type", "node")
-    among: str = choice("publisher", "subscription", "all")
-    node: str = text("a node's full name", start="/", default="")
-    type_starts: str = text("the beginning of a type's name", default="")
-    type_ends: str = text("the end of a type's name", default="")
-    heard_by: str = text("a node's full name", start="/", default="")
-    form: str = choice("text", "list")
+    answer: str = text(KEY, about="The name of the answer in answers.toml.")
+    find: str = choice("topic", "type", "node", about="Which name of an endpoint is the answer.")
+    among: str = choice("publisher", "subscription", "all", about="Which endpoints count.")
+    node: str = text("a node's full name", start="/", default="", about="Only endpoints of this node count.")
+    type_starts: str = text(
+        "the beginning of a type's name", default="", about="Only types that begin with this string count."
+    )
+    type_ends: str = text("the end of a type's name", default="", about="Only types that end with this string count.")
+    heard_by: str = text(
+        "a node's full name", start="/", default="", about="Only topics on which this node has the other end count."
+    )
+    form: str = choice("text", "list", about="Whether the answer is a single string or a list of all that fit.")
 
 
 def answer_graph(evidence: Evidence, params: Asked) -> Finding:
@@ -156,9 +160,11 @@ def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]
 class AnswerRate:
     """The mean rate of the messages whose type ends so, in Hz."""
 
-    answer: str = text(KEY)
-    type_ends: str = text("the end of a type's name")
-    tolerance_percent: float = number(5.0, above=0, at_most=100)
+    answer: str = text(KEY, about="The name of the answer in answers.toml.")
+    type_ends: str = text(
+        "the end of a type's name", about="The messages whose type ends with this string are measured."
+    )
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="How far the answer may be off.")
 
 
 def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
@@ -230,8 +236,38 @@ def _shown(answer: Answer) -> str:
     return f'"{shorten(answer)}"' if isinstance(answer, str) else f"{answer:g}"
 
 
-ANSWERS = Kind("answers", "source", "answers.toml can be read", NoParams, answers)
-TEXT = Kind("answer_text", "source", "The answer is right", OneOf, answer_text)
-LIST = Kind("answer_list", "source", "The answers are right", AllOf, answer_list)
-GRAPH = Kind("answer_graph", "trial", "The answer is what ROS 2 says", Asked, answer_graph)
-RATE = Kind("answer_rate", "trial", "The rate is what was measured", AnswerRate, answer_rate)
+ANSWERS = Kind(
+    "answers",
+    "source",
+    "answers.toml can be read",
+    NoParams,
+    answers,
+    about="`answers.toml` exists, is valid TOML, and answers nothing that was not asked.",
+)
+TEXT = Kind(
+    "answer_text", "source", "The answer is right", OneOf, answer_text, about="The answer is one of the given strings."
+)
+LIST = Kind(
+    "answer_list",
+    "source",
+    "The answers are right",
+    AllOf,
+    answer_list,
+    about="The answer is a list of exactly the given strings, in any order.",
+)
+GRAPH = Kind(
+    "answer_graph",
+    "trial",
+    "The answer is what ROS 2 says",
+    Asked,
+    answer_graph,
+    about="The answer is what the ROS graph said while the trial ran.",
+)
+RATE = Kind(
+    "answer_rate",
+    "trial",
+    "The rate is what was measured",
+    AnswerRate,
+    answer_rate,
+    about="The answer is the rate (Hz) that was measured in the trial.",
+)

@@ -163,6 +163,28 @@ def _package_name(evidence: Evidence) -> str:
     return (setup.name if setup is not None else None) or evidence.exercise.package
 
 
-PLAIN_FILES = Kind("plain_files", "source", "The package is plain files", NoParams, plain_files)
-BUILDS = Kind("builds", "build", "colcon builds the package", NoParams, builds, early=early)
-INSTALLS = Kind("installs", "build", "The package can be found once it is installed", NoParams, installs)
+PLAIN_FILES = Kind(
+    "plain_files",
+    "source",
+    "The package is plain files",
+    NoParams,
+    plain_files,
+    about="The submission holds only files and folders: no link that leads out of it, no device, no huge file.",
+)
+BUILDS = Kind(
+    "builds",
+    "build",
+    "colcon builds the package",
+    NoParams,
+    builds,
+    early=early,
+    about="`colcon build` ends without an error and installs the package's Python modules.",
+)
+INSTALLS = Kind(
+    "installs",
+    "build",
+    "The package can be found once it is installed",
+    NoParams,
+    installs,
+    about="package.xml and the marker for the resource index are installed, so that ROS 2 finds the package.",
+)

@@ -28,12 +28,14 @@ SMALL_RAD = 0.3
 class Eight:
     """Both lobes have this radius, and turn by 360 degrees; the first one to the left, or to the right."""
 
-    radius_m: float = number(above=0, at_most=2.5)
-    radius_tolerance_m: float = number(0.1, above=0)
-    residual_m: float = number(0.03, above=0)
-    angle_tolerance_deg: float = number(12.0, above=0)
-    closing_m: float = number(0.2, above=0)
-    first: str = choice("left", "right", "either")
+    radius_m: float = number(above=0, at_most=2.5, about="The radius of both lobes.")
+    radius_tolerance_m: float = number(0.1, above=0, about="How far a radius may be off.")
+    residual_m: float = number(
+        0.03, above=0, about="How far a lobe may stray from its fitted circle (root mean square)."
+    )
+    angle_tolerance_deg: float = number(12.0, above=0, about="How far a lobe may be from 360 degrees.")
+    closing_m: float = number(0.2, above=0, about="How far from the start the first lobe may end.")
+    first: str = choice("left", "right", "either", about="To which side the first lobe goes.")
 
 
 @dataclass(frozen=True)
@@ -140,4 +142,11 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
     return None, near
 
 
-EIGHT = Kind("figure_eight", "trial", "The turtle drives a figure eight", Eight, eight)
+EIGHT = Kind(
+    "figure_eight",
+    "trial",
+    "The turtle drives a figure eight",
+    Eight,
+    eight,
+    about="The turtle drives two round lobes of the same size, one to each side, that meet where it started.",
+)

@@ -176,4 +176,12 @@ def _binds(node: ast.stmt, name: str) -> bool:
     return isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and node.target.id == name
 
 
-ENTRY_POINT = Kind("entry_point", "build", "The entry point leads to a function", NoParams, entry_point, early=early)
+ENTRY_POINT = Kind(
+    "entry_point",
+    "build",
+    "The entry point leads to a function",
+    NoParams,
+    entry_point,
+    early=early,
+    about="`ros2 run` finds the executable, and its entry point leads to a function in a module that Python can read.",
+)

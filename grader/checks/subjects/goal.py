@@ -24,9 +24,9 @@ REST_M = 0.02
 class Goal:
     """Where the turtle is to be at the end (m), and how near."""
 
-    x_m: float = number()
-    y_m: float = number()
-    tolerance_m: float = number(0.1, above=0)
+    x_m: float = number(about="x of the goal.")
+    y_m: float = number(about="y of the goal.")
+    tolerance_m: float = number(0.1, above=0, about="How far from the goal the turtle may stop.")
 
 
 def goal(evidence: Evidence, params: Goal) -> Finding:
@@ -66,4 +66,11 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     return passed(f"The turtle drove to its goal, {start:.1f} m away, and stopped.", near_edge=near)
 
 
-GOAL = Kind("goal", "trial", "The turtle drives to its goal", Goal, goal)
+GOAL = Kind(
+    "goal",
+    "trial",
+    "The turtle drives to its goal",
+    Goal,
+    goal,
+    about="The turtle drives to the goal by commands and stands still there at the end.",
+)

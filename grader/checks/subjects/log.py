@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 LOG_LINE = Subject("log line", "info")
+FORMAT = "The format of a line, with its numbers in braces, as in `Hello {counter}` or `x={x:.2f}`."
 LEVELS = ("info", "warning", "warn", "error", "fatal")
 
 
@@ -29,7 +30,7 @@ LEVELS = ("info", "warning", "warn", "error", "fatal")
 class LogFormat:
     """The format of a line, its numbers in braces: "Hello {counter}", "x={x:.2f}"."""
 
-    format: str = text("a line of the log, with its numbers in braces")
+    format: str = text("a line of the log, with its numbers in braces", about=FORMAT)
 
 
 def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
@@ -95,7 +96,7 @@ def _same_words(line: str, format_: str) -> bool:
 class LogRate(Rate):
     """As the rate of commands, for lines in the format."""
 
-    format: str = text("a line of the log, with its numbers in braces")
+    format: str = text("a line of the log, with its numbers in braces", about=FORMAT)
 
 
 def log_rate(evidence: Evidence, params: LogRate) -> Finding:
@@ -108,9 +109,9 @@ def log_rate(evidence: Evidence, params: LogRate) -> Finding:
 class Counter:
     """The number in the line that counts, by the name that it has in the format, and where it begins."""
 
-    format: str = text("a line of the log, with its numbers in braces")
-    counts: str = text("the name of a number in the format")
-    first: float = number(0.0)
+    format: str = text("a line of the log, with its numbers in braces", about=FORMAT)
+    counts: str = text("the name of a number in the format", about="The number in the format that counts.")
+    first: float = number(0.0, about="Where the counter begins.")
 
 
 def log_counter(evidence: Evidence, params: Counter) -> Finding:
@@ -138,6 +139,27 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
     return passed(f"The counter rises from {params.first:.0f}, by one a line.")
 
 
-LOG_LINES = Kind("log_lines", "trial", "The log has the lines", LogFormat, log_lines)
-LOG_RATE = Kind("log_rate", "trial", "Log lines come at the right rate", LogRate, log_rate)
-LOG_COUNTER = Kind("log_counter", "trial", "The counter rises", Counter, log_counter)
+LOG_LINES = Kind(
+    "log_lines",
+    "trial",
+    "The log has the lines",
+    LogFormat,
+    log_lines,
+    about="The node logs lines in the given format.",
+)
+LOG_RATE = Kind(
+    "log_rate",
+    "trial",
+    "Log lines come at the right rate",
+    LogRate,
+    log_rate,
+    about="Lines in the given format arrive at the given rate, from soon after the start until the end.",
+)
+LOG_COUNTER = Kind(
+    "log_counter",
+    "trial",
+    "The counter rises",
+    Counter,
+    log_counter,
+    about="A number in the lines begins as given and rises by one from line to line.",
+)

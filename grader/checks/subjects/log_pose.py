@@ -27,18 +27,22 @@ FEWEST = 3
 class LogPosition:
     """A line's x and y may be that old (`lag_s`), and off by the tolerance."""
 
-    format: str = text("a line of the log, with x and y in it")
-    tolerance_m: float = number(0.02, above=0)
-    lag_s: float = number(0.15, above=0)
+    format: str = text(
+        "a line of the log, with x and y in it", about="The format of a line; its numbers `x` and `y` count."
+    )
+    tolerance_m: float = number(0.02, above=0, about="How far x and y may be off.")
+    lag_s: float = number(0.15, above=0, about="How old the position in a line may be.")
 
 
 @dataclass(frozen=True, kw_only=True)
 class LogDistance:
     """A line's distance, the way driven since the start, may be that old (`lag_s`), and off by the tolerance."""
 
-    format: str = text("a line of the log, with distance in it")
-    tolerance_m: float = number(0.05, above=0)
-    lag_s: float = number(0.15, above=0)
+    format: str = text(
+        "a line of the log, with distance in it", about="The format of a line; its number `distance` counts."
+    )
+    tolerance_m: float = number(0.05, above=0, about="How far the distance may be off.")
+    lag_s: float = number(0.15, above=0, about="How old the distance in a line may be.")
 
 
 def log_position(evidence: Evidence, params: LogPosition) -> Finding:
@@ -155,5 +159,19 @@ def _one_step_too_many(said: list[Line], way: Floats, recording: Recording) -> b
     return all(abs(line.numbers["distance"] - _at(recording, line.t_s, way) - first) < 0.5 for line in said)
 
 
-LOG_POSITION = Kind("log_position", "trial", "The log says where the turtle is", LogPosition, log_position)
-LOG_DISTANCE = Kind("log_distance", "trial", "The log says how far it has come", LogDistance, log_distance)
+LOG_POSITION = Kind(
+    "log_position",
+    "trial",
+    "The log says where the turtle is",
+    LogPosition,
+    log_position,
+    about="Every line in the format says where the turtle was when it was logged.",
+)
+LOG_DISTANCE = Kind(
+    "log_distance",
+    "trial",
+    "The log says how far it has come",
+    LogDistance,
+    log_distance,
+    about="Every line in the format says how far the turtle had driven when it was logged.",
+)

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class NoCalls:
     """The last names of functions that the node's file must not call, and why."""
 
-    names: tuple[str, ...] = texts()
-    cause: str = text("a reason")
+    names: tuple[str, ...] = texts(about="The last names of the functions, as `sleep` for `time.sleep`.")
+    cause: str = text("a reason", about="What the student reads as the reason.")
 
 
 def no_calls(evidence: Evidence, params: NoCalls) -> Finding:
@@ -32,4 +32,11 @@ def no_calls(evidence: Evidence, params: NoCalls) -> Finding:
     return passed(f"The node does not call {a_list(params.names, 'or')}.")
 
 
-NO_CALLS = Kind("no_calls", "source", "The node does without certain functions", NoCalls, no_calls)
+NO_CALLS = Kind(
+    "no_calls",
+    "source",
+    "The node does without certain functions",
+    NoCalls,
+    no_calls,
+    about="The node's file calls none of the given functions.",
+)

@@ -64,5 +64,19 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     return failed("node-name", seen, expected, cause, where=where)
 
 
-STARTS = Kind("node_starts", "trial", "The node starts", NoParams, starts)
-NAME = Kind("node_name", "trial", "The node has the right name", NoParams, name)
+STARTS = Kind(
+    "node_starts",
+    "trial",
+    "The node starts",
+    NoParams,
+    starts,
+    about="The executable starts, its node appears in the ROS graph, and it lives until the scenario begins.",
+)
+NAME = Kind(
+    "node_name",
+    "trial",
+    "The node has the right name",
+    NoParams,
+    name,
+    about="The node has the name that `node` in `[exercise]` or `[[trial]]` gives.",
+)

@@ -62,10 +62,12 @@ def _drawn(evidence: Evidence) -> OwnNumbers | Finding:
 class OwnCircle:
     """As for the kind `circle`; radius and sense are the student's own."""
 
-    radius_tolerance_m: float = number(0.05, above=0)
-    centre_tolerance_m: float = number(0.05, above=0)
-    residual_m: float = number(0.02, above=0)
-    turns: float = number(1.0, above=0)
+    radius_tolerance_m: float = number(0.05, above=0, about="How far the radius may be off.")
+    centre_tolerance_m: float = number(0.05, above=0, about="How far the centre may be off.")
+    residual_m: float = number(
+        0.02, above=0, about="How far the trajectory may stray from the fitted circle (root mean square)."
+    )
+    turns: float = number(1.0, above=0, about="How many turns the turtle must drive at least.")
 
 
 def own_circle(evidence: Evidence, params: OwnCircle) -> Finding:
@@ -93,7 +95,7 @@ def own_circle_params(evidence: Evidence, params: OwnCircle) -> CircleParams | F
 class OwnRate:
     """As for the kind `rate`; the rate is the student's own."""
 
-    tolerance_percent: float = number(5.0, above=0, at_most=100)
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="How far the mean rate may be off.")
 
 
 def own_rate(evidence: Evidence, params: OwnRate) -> Finding:
@@ -111,6 +113,27 @@ def own_rate(evidence: Evidence, params: OwnRate) -> Finding:
     return rate(evidence, asked)
 
 
-NUMBERS = Kind("own_numbers", "source", "The numbers are your own", NoParams, own_numbers)
-CIRCLE = Kind("own_circle", "trial", "The turtle drives your own circle", OwnCircle, own_circle)
-RATE = Kind("own_rate", "trial", "Commands arrive at your own rate", OwnRate, own_rate)
+NUMBERS = Kind(
+    "own_numbers",
+    "source",
+    "The numbers are your own",
+    NoParams,
+    own_numbers,
+    about="`my_numbers.toml` holds the numbers that are drawn from the id of the student who handed it in.",
+)
+CIRCLE = Kind(
+    "own_circle",
+    "trial",
+    "The turtle drives your own circle",
+    OwnCircle,
+    own_circle,
+    about="As the kind `circle`. Radius and direction are the student's own numbers.",
+)
+RATE = Kind(
+    "own_rate",
+    "trial",
+    "Commands arrive at your own rate",
+    OwnRate,
+    own_rate,
+    about="As the kind `rate`. The rate is the student's own number.",
+)

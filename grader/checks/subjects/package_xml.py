@@ -93,7 +93,7 @@ def _unreadable(evidence: Evidence, manifest: Manifest, expected: str) -> Findin
 class Dependencies:
     """`packages`: the names that must be declared for running."""
 
-    packages: tuple[str, ...] = texts()
+    packages: tuple[str, ...] = texts(about="The packages that must be declared.")
 
 
 def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
@@ -164,6 +164,27 @@ def _dash(name: str) -> str:
     return "A ROS 2 package's name has underscores, not dashes." if "-" in name else ""
 
 
-VALID = Kind("package_xml", "source", "package.xml is valid", NoParams, valid)
-DEPENDENCIES = Kind("dependencies", "source", "package.xml declares what the node uses", Dependencies, dependencies)
-NAME = Kind("package_name", "source", "The package's name is the same everywhere", NoParams, name)
+VALID = Kind(
+    "package_xml",
+    "source",
+    "package.xml is valid",
+    NoParams,
+    valid,
+    about="package.xml exists, is valid, and has the build type ament_python.",
+)
+DEPENDENCIES = Kind(
+    "dependencies",
+    "source",
+    "package.xml declares what the node uses",
+    Dependencies,
+    dependencies,
+    about="package.xml declares the packages for running, with `<depend>` or `<exec_depend>`.",
+)
+NAME = Kind(
+    "package_name",
+    "source",
+    "The package's name is the same everywhere",
+    NoParams,
+    name,
+    about="package.xml, setup.py and the folder of the modules have the name that `package` in `[exercise]` gives.",
+)

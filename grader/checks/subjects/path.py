@@ -41,12 +41,18 @@ class CircleParams:
     `residual_m`: root of the mean squared distance of the way from the fitted circle. `turns`: at least so many.
     """
 
-    radius_m: float = number(above=0, at_most=5.5)
-    radius_tolerance_m: float = number(0.05, above=0)
-    centre_tolerance_m: float = number(0.05, above=0)
-    residual_m: float = number(0.02, above=0)
-    turns: float = number(1.0, above=0)
-    sense: str = choice("counter-clockwise", "clockwise")
+    radius_m: float = number(
+        above=0,
+        at_most=5.5,
+        about="The radius. The centre lies this far to the left of the start (clockwise: to the right).",
+    )
+    radius_tolerance_m: float = number(0.05, above=0, about="How far the radius may be off.")
+    centre_tolerance_m: float = number(0.05, above=0, about="How far the centre may be off.")
+    residual_m: float = number(
+        0.02, above=0, about="How far the trajectory may stray from the fitted circle (root mean square)."
+    )
+    turns: float = number(1.0, above=0, about="How many turns the turtle must drive at least.")
+    sense: str = choice("counter-clockwise", "clockwise", about="The direction of the turn.")
 
 
 def expected_centre(start: Pose, params: CircleParams) -> tuple[float, float]:
@@ -221,5 +227,14 @@ def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     return passed("The turtle stayed clear of the walls.")
 
 
-CIRCLE = Kind("circle", "trial", "The turtle drives the circle", CircleParams, circle)
-NO_WALL = Kind("no_wall", "trial", "The turtle touches no wall", NoParams, no_wall)
+CIRCLE = Kind(
+    "circle",
+    "trial",
+    "The turtle drives the circle",
+    CircleParams,
+    circle,
+    about="The turtle drives a circle by commands: round, in the right direction, of the right size and place.",
+)
+NO_WALL = Kind(
+    "no_wall", "trial", "The turtle touches no wall", NoParams, no_wall, about="The turtle never touches a wall."
+)

@@ -36,11 +36,13 @@ class Rate:
     The first command may come `first_within_s` after the start, the last one `max_interval_s` before the end.
     """
 
-    rate_hz: float = number(above=0, at_most=1000)
-    tolerance_percent: float = number(5.0, above=0, at_most=100)
-    min_interval_s: float = number(at_least=0)
-    max_interval_s: float = number(above=0)
-    first_within_s: float = number(3.0, above=0)
+    rate_hz: float = number(above=0, at_most=1000, about="The mean rate, from the first to the last arrival.")
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="How far the mean rate may be off.")
+    min_interval_s: float = number(at_least=0, about="The shortest interval between two arrivals.")
+    max_interval_s: float = number(
+        above=0, about="The longest interval between two arrivals, and from the last one to the end."
+    )
+    first_within_s: float = number(3.0, above=0, about="How long after the start the first one may arrive.")
 
 
 @dataclass(frozen=True)
@@ -208,4 +210,11 @@ def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: st
     )
 
 
-RATE = Kind("rate", "trial", "Commands arrive at the right rate", Rate, rate)
+RATE = Kind(
+    "rate",
+    "trial",
+    "Commands arrive at the right rate",
+    Rate,
+    rate,
+    about="Commands arrive at the given rate: on average, each one, and from soon after the start until the end.",
+)

@@ -34,11 +34,11 @@ SHORT_M = 0.05
 class Square:
     """Sides of this length, corners of 90 degrees, the turtle back at its start after the fourth side."""
 
-    side_m: float = number(above=0, at_most=5)
-    side_tolerance_m: float = number(0.15, above=0)
-    corner_tolerance_deg: float = number(7.0, above=0)
-    closing_m: float = number(0.4, above=0)
-    sense: str = choice("counter-clockwise", "clockwise", "either")
+    side_m: float = number(above=0, at_most=5, about="The length of a side.")
+    side_tolerance_m: float = number(0.15, above=0, about="How far a side may be off.")
+    corner_tolerance_deg: float = number(7.0, above=0, about="How far a corner may be from 90 degrees.")
+    closing_m: float = number(0.4, above=0, about="How far from the start the fourth side may end.")
+    sense: str = choice("counter-clockwise", "clockwise", "either", about="The direction of the turn.")
 
 
 @dataclass(frozen=True)
@@ -128,4 +128,11 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
     return passed(f"The turtle drove a square of {params.side_m:.1f} m.", near_edge=near or closed.near(gap))
 
 
-SQUARE = Kind("square", "trial", "The turtle drives a square", Square, square)
+SQUARE = Kind(
+    "square",
+    "trial",
+    "The turtle drives a square",
+    Square,
+    square,
+    about="The turtle drives four straight sides with four corners of 90 degrees, and is back at its start.",
+)

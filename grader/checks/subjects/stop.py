@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class Stop:
     """How long after SIGINT the node may take to end (s of wall time)."""
 
-    within_s: float = number(3.0, above=0, at_most=60)
+    within_s: float = number(3.0, above=0, at_most=60, about="How long after Ctrl-C the node may run (wall time).")
 
 
 def stop(evidence: Evidence, params: Stop) -> Finding:
@@ -51,4 +51,11 @@ def _too_early(evidence: Evidence, expected: str) -> Finding:
     return failed(why.diagnosis, end_seen(evidence), expected, why.text, where=why.where)
 
 
-STOP = Kind("stops", "trial", "The node stops on Ctrl-C", Stop, stop)
+STOP = Kind(
+    "stops",
+    "trial",
+    "The node stops on Ctrl-C",
+    Stop,
+    stop,
+    about="The node runs until Ctrl-C and ends soon after it. Its exit code does not matter.",
+)

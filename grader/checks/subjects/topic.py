@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 class Topic:
     """The topic's full name, and its type as in "geometry_msgs/msg/Twist"."""
 
-    topic: str = text("a topic's full name", start="/")
-    type: str = text("a message type, as in geometry_msgs/msg/Twist")
+    topic: str = text("a topic's full name", start="/", about="The topic.")
+    type: str = text("a message type, as in geometry_msgs/msg/Twist", about="The type of its messages.")
 
 
 COMMANDS = Topic(topic="/turtle1/cmd_vel", type="geometry_msgs/msg/Twist")
@@ -185,6 +185,27 @@ def subscribes(evidence: Evidence, params: Topic) -> Finding:
     return failed("no-subscription", "The node has no subscription.", expected, cause, where=where)
 
 
-PUBLISHES = Kind("publishes", "trial", "Messages arrive on the topic", Topic, publishes)
-ONLY_TYPE = Kind("topic_type", "trial", "The topic carries one type", Topic, only_type)
-SUBSCRIBES = Kind("subscribes", "trial", "The node listens on the topic", Topic, subscribes)
+PUBLISHES = Kind(
+    "publishes",
+    "trial",
+    "Messages arrive on the topic",
+    Topic,
+    publishes,
+    about="Messages of the type arrive on the topic.",
+)
+ONLY_TYPE = Kind(
+    "topic_type",
+    "trial",
+    "The topic carries one type",
+    Topic,
+    only_type,
+    about="The student's node publishes nothing but this type on the topic.",
+)
+SUBSCRIBES = Kind(
+    "subscribes",
+    "trial",
+    "The node listens on the topic",
+    Topic,
+    subscribes,
+    about="The student's node has a subscription of this type on the topic.",
+)

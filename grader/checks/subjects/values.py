@@ -29,14 +29,14 @@ Six = tuple[float, ...]
 class Values:
     """What each command must say; the fields that are left out must be 0."""
 
-    linear_x_m_s: float = number(0.0)
-    linear_y_m_s: float = number(0.0)
-    linear_z_m_s: float = number(0.0)
-    angular_x_rad_s: float = number(0.0)
-    angular_y_rad_s: float = number(0.0)
-    angular_z_rad_s: float = number(0.0)
-    linear_tolerance_m_s: float = number(1e-6, above=0)
-    angular_tolerance_rad_s: float = number(1e-6, above=0)
+    linear_x_m_s: float = number(0.0, about="linear.x of each command.")
+    linear_y_m_s: float = number(0.0, about="linear.y of each command.")
+    linear_z_m_s: float = number(0.0, about="linear.z of each command.")
+    angular_x_rad_s: float = number(0.0, about="angular.x of each command.")
+    angular_y_rad_s: float = number(0.0, about="angular.y of each command.")
+    angular_z_rad_s: float = number(0.0, about="angular.z of each command.")
+    linear_tolerance_m_s: float = number(1e-6, above=0, about="How far a linear value may be off.")
+    angular_tolerance_rad_s: float = number(1e-6, above=0, about="How far an angular value may be off.")
 
     @property
     def wanted(self) -> Six:
@@ -150,4 +150,11 @@ def _scaled(six: Six, wanted: Six, off: list[int]) -> tuple[str, str, str] | Non
     return None
 
 
-VALUES = Kind("values", "trial", "The commands say the right values", Values, values)
+VALUES = Kind(
+    "values",
+    "trial",
+    "The commands say the right values",
+    Values,
+    values,
+    about="Each command has the given values; a value that is not given must be 0.",
+)

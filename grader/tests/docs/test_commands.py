@@ -1,0 +1,105 @@
+"""The commands that README and docs/ show are run, and their output is compared."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+import typer
+
+from grader.cli import app
+from grader.tests.console import Block, blocks, differs, run
+from grader.tests.docs.pages import BESIDE_THE_CODE, PAGES, ROOT, prose_of, text_of
+
+CONSOLE = {page: [block for block in blocks(text_of(page)) if block.language == "console"] for page in PAGES}
+SET_UP = re.compile(r"make \w+|source \.venv/bin/activate")
+"""Set-up is what has brought these tests here; running it from them would run them again."""
+FAILS = re.compile(r"grader check exercises/\S+|grader check$")
+"""A starting point does not pass; every other command ends with 0."""
+ELSEWHERE = {"--security-opt", "--privileged", "--ros-args"}
+"""Options of programs that are not ours."""
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    """What the pages are about, as it stands now, where their commands may leave things behind."""
+    for name in ("course", "exercises", "solutions"):
+        shutil.copytree(ROOT / name, tmp_path / name)
+    (tmp_path / "home").mkdir()
+    return tmp_path
+
+
+def without_set_up(block: Block) -> Block:
+    kept: list[str] = []
+    for step in block.steps():
+        if not SET_UP.fullmatch(step.command):
+            kept += [f"$ {step.command}", *step.printed]
+    return Block(block.language, block.about, "\n".join(kept))
+
+
+@pytest.mark.parametrize(("page", "number"), [(page, n) for page in PAGES for n in range(len(CONSOLE[page]))])
+def test_commands_do_what_the_page_shows(page: str, number: int, checkout: Path) -> None:
+    environment = {
+        **os.environ,
+        "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
+        # A reader's workspace and progress are not those of whoever runs the tests; what is built once is.
+        "HOME": str(checkout / "home"),
+        "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache"),
+    }
+    for earlier in CONSOLE[page][:number]:  # a reader has done what stands above
+        copies = [f"$ {step.command}" for step in earlier.steps() if step.command.startswith(("cp ", "mkdir "))]
+        run(Block("console", "", "\n".join(copies)), checkout, environment, 60.0)
+    for step, printed, exit_code in run(without_set_up(CONSOLE[page][number]), checkout, environment, 300.0):
+        assert exit_code == bool(FAILS.match(step.command)), f"{step.command}\n{printed}"
+        assert "Traceback" not in printed
+        assert differs(step.printed, printed) is None, f"{step.command}\n{printed}"
+
+
+def test_every_door_has_commands_that_are_run() -> None:
+    for page in ("README.md", "docs/learner.md", "docs/instructor.md"):
+        assert sum(len(without_set_up(block).steps()) for block in CONSOLE[page]) >= 3, page
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_make_target_is_there(page: str) -> None:
+    makefile = (ROOT / "Makefile").read_text("utf-8")
+    targets = set(re.findall(r"(?:`|^\$ |^)make ([a-z-]+)(?=`|\s)", text_of(page), re.MULTILINE))
+    assert {target for target in targets if not re.search(rf"^{target}:", makefile, re.MULTILINE)} == set()
+
+
+def test_make_targets_are_found_in_the_readme() -> None:
+    assert {"demo", "test", "notebooks"} <= set(re.findall(r"`make ([a-z-]+)`", text_of("README.md")))
+
+
+@pytest.mark.parametrize("page", [*PAGES, *BESIDE_THE_CODE])
+def test_every_module_that_a_page_runs_is_there(page: str) -> None:
+    modules = set(re.findall(r"python3? -m (grader[\w.]*)", text_of(page)))
+    assert {module for module in modules if importlib.util.find_spec(module) is None} == set()
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_grader_command_and_option_is_there(page: str) -> None:
+    commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    named = re.findall(r"(?:`|^\$ |^|<\()grader ([a-z-]+)", text_of(page), re.MULTILINE)
+    assert set(named) - set(commands) == set()
+    options = set(re.findall(r"`(--[a-z-]+)", prose_of(page)))
+    assert options - options_of(commands) - ELSEWHERE == set()
+
+
+def options_of(commands: dict[str, object]) -> set[str]:
+    found: set[str] = set()
+    for command in commands.values():
+        found |= {name for each in command.params for name in each.opts}  # type: ignore[attr-defined]
+        found |= options_of(getattr(command, "commands", {}))
+    return found
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_no_command_with_a_prompt_stands_outside_of_a_block(page: str) -> None:
+    """It would be run by no test."""
+    assert re.findall(r"^ *\$ .*", prose_of(page), re.MULTILINE) == []
