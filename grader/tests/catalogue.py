@@ -37,9 +37,9 @@ SHOWN_BY_TESTS = {
 HEAD = """\
 # The catalogue of mistakes
 
-A failed check names its cause by a stable id, the diagnosis. This page lists all diagnoses with the cases that show them.
-A case is a folder in `grader/tests/mistakes/` or `grader/tests/cases/`: a submission and what the report must say about
-it. A few diagnoses are shown by a test instead. [diagnoses.py](diagnoses.py) holds the ids and their meanings.
+A failed check names its cause by a stable id, the diagnosis. This page lists all diagnoses with the cases that show
+them. A case is a folder in `grader/tests/mistakes/` or `grader/tests/cases/`: a submission and what the report must say
+about it. A few diagnoses are shown by a test instead. [diagnoses.py](diagnoses.py) holds the ids and their meanings.
 `python -m grader.tests.catalogue` generates this page, and a test fails when the page is stale.
 
 To add a mistake:
