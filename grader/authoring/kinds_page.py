@@ -12,9 +12,10 @@ import json
 import sys
 from typing import TYPE_CHECKING, Any
 
+from grader.checks.exercises import load_exercise
 from grader.checks.kinds import KINDS
 from grader.errors import MachineError, UsageError
-from grader.exercise.model import catalogue, course_folder, load_exercise
+from grader.exercise.model import catalogue, course_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

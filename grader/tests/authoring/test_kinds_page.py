@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.authoring.kinds_page import UNITS, main, page, unit_of
+from grader.checks.exercises import load_exercise
 from grader.checks.kinds import KINDS
-from grader.exercise.model import catalogue, course_folder, load_exercise
+from grader.exercise.model import catalogue, course_folder
 from grader.tests.console import blocks
 
 if TYPE_CHECKING:
