@@ -20,9 +20,9 @@ from grader.setup import cli as setup
 from grader.view import cli as view
 
 if TYPE_CHECKING:
-    from grader.checks.outcome import Report
     from grader.evidence.evidence import Evidence
     from grader.exercise.model import Exercise
+    from grader.report.report import Report
     from grader.submission.package import Submission
 
 app = typer.Typer(

@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
     from pathlib import Path
 
-    from grader.checks.outcome import Outcome, Report
+    from grader.checks.outcome import Outcome
     from grader.exercise.model import Exercise
+    from grader.report.report import Report
 
 LESSON_WORDS = (1200, 2000)
 _LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")

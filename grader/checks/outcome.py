@@ -1,8 +1,8 @@
-"""Outcome: what a check found. Report: all outcomes of one submission."""
+"""Outcome: what a check found."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
@@ -74,52 +74,3 @@ class Outcome:
     def status(self) -> Status:
         """The finding's status."""
         return self.finding.status
-
-
-@dataclass(frozen=True)
-class Report:
-    """All outcomes of one submission, and what is needed to make it again."""
-
-    exercise: str
-    exercise_title: str
-    submission: str
-    """The submission as the user named it."""
-    digest: str
-    """sha256 of the submission's files."""
-    grader: str
-    ros: str
-    clock: str
-    clock_why: str
-    seed: int | None
-    outcomes: tuple[Outcome, ...]
-    seconds: dict[str, float] = field(default_factory=dict)
-    """Wall time of each stage; not compared between two reports."""
-    recording: str | None = None
-    confined: bool = True
-    """False where a student's code ran with resource limits only, outside of a sandbox."""
-    exercise_digest: str = ""
-    """sha256 of exercise.toml: the checks and numbers that this report was judged by."""
-
-    @property
-    def points(self) -> float:
-        """The points of all checks together."""
-        return sum(outcome.points for outcome in self.outcomes)
-
-    @property
-    def max(self) -> float:
-        """The points of all checks if each had passed, those included that the machine could not judge.
-
-        Else a submission that makes the grading fail in the right place would have all points of what is left.
-        """
-        return sum(outcome.max for outcome in self.outcomes)
-
-    def with_status(self, status: Status) -> tuple[Outcome, ...]:
-        """The outcomes with this status, advice left out."""
-        return tuple(o for o in self.outcomes if o.status is status and not o.advice)
-
-    @property
-    def exit_code(self) -> int:
-        """0 all passed, 1 some check did not pass, 3 the grader or the machine is broken."""
-        if self.with_status(Status.ERROR):
-            return 3
-        return 1 if self.with_status(Status.FAILED) or self.with_status(Status.SKIPPED) else 0

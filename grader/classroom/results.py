@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from grader.checks.outcome import Report
     from grader.classroom.key import Key
+    from grader.report.report import Report
 
 REPORTS = "reports"
 _LOCK = ".grader-results"

@@ -19,10 +19,10 @@ from grader.trial.trial import Trial
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from grader.checks.outcome import Report
     from grader.exercise.model import Exercise
     from grader.exercise.private_checks import Sources
     from grader.grading.grade import ClockChoice
+    from grader.report.report import Report
     from grader.trial.recording import Recording
 
 

@@ -18,8 +18,9 @@ from grader.exercise.model import catalogue
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from grader.checks.outcome import Outcome, Report
+    from grader.checks.outcome import Outcome
     from grader.classroom.results import Results
+    from grader.report.report import Report
 
 NOT_SYNCED = "not confirmed by `grader gradebook sync`"
 NOT_JUDGED = "the grader could not judge it"

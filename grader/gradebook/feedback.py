@@ -17,7 +17,7 @@ from grader.report.hidden import for_students
 if TYPE_CHECKING:
     from nbformat import NotebookNode
 
-    from grader.checks.outcome import Report
+    from grader.report.report import Report
 
 Resources = dict[str, Any]
 BEGIN = ClearHiddenTests.begin_test_delimeter.default_value

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Literal
 
 import grader
 from grader.checks.judge import in_words, judge, judge_early, near_edge, of_this_trial, wants_trial
-from grader.checks.outcome import Report, Status
+from grader.checks.outcome import Status
 from grader.colcon import workspace
 from grader.common.words import printable
 from grader.errors import MachineError
 from grader.evidence.evidence import Evidence, Fault
 from grader.grading.turns import Turns
 from grader.grading.turns import folder as turns_folder
+from grader.report.report import Report
 from grader.ros import underlay
 from grader.ros.installation import find_ros
 from grader.trial.ahead import Ahead

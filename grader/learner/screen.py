@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from grader.checks.outcome import Report
     from grader.exercise.model import Exercise
+    from grader.report.report import Report
 
 BELOW = 5
 """Lines below a report: where it watches, the keys, what a key answers."""

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
-    from grader.checks.outcome import Report
     from grader.exercise.model import Exercise
     from grader.learner.workspace import Started
+    from grader.report.report import Report
 
 
 @dataclass(frozen=True)

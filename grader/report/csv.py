@@ -30,7 +30,7 @@ from grader.report.verdict import tone
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from grader.checks.outcome import Report
+    from grader.report.report import Report
 
 COLUMNS = (
     "submission",

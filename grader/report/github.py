@@ -18,7 +18,8 @@ from grader.report.verdict import verdict
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from grader.checks.outcome import Outcome, Report
+    from grader.checks.outcome import Outcome
+    from grader.report.report import Report
 
 MOST_SUMMARY = 900_000
 """Bytes; GitHub takes a MiB a step."""

@@ -14,7 +14,8 @@ from grader.report.hidden import for_students
 from grader.report.verdict import verdict
 
 if TYPE_CHECKING:
-    from grader.checks.outcome import Outcome, Report
+    from grader.checks.outcome import Outcome
+    from grader.report.report import Report
 
 
 def to_gradescope(report: Report) -> str:

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 from grader.checks.outcome import Finding, Status
 
 if TYPE_CHECKING:
-    from grader.checks.outcome import Outcome, Report
+    from grader.checks.outcome import Outcome
     from grader.evidence.evidence import Evidence
+    from grader.report.report import Report
 
 
 def for_students(report: Report) -> Report:

@@ -23,9 +23,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from grader.checks.outcome import Outcome, Report
+    from grader.checks.outcome import Outcome
     from grader.evidence.evidence import Evidence
     from grader.report.code_excerpt import Excerpt
+    from grader.report.report import Report
     from grader.submission.where import Where
 
 CODE_BYTES = 50_000

@@ -13,7 +13,7 @@ from urllib.parse import quote
 
 from markupsafe import Markup
 
-from grader.checks.outcome import Report, Status
+from grader.checks.outcome import Status
 from grader.errors import UsageError
 from grader.report.json import from_json
 from grader.report.page import make_page, save_page
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.checks.outcome import Outcome
+    from grader.report.report import Report
 
 LARGEST = 4_000_000
 """Bytes: no report is as large."""

@@ -17,8 +17,8 @@ from grader.report.template import fill
 from grader.report.verdict import UNCONFINED, tone, verdict
 
 if TYPE_CHECKING:
-    from grader.checks.outcome import Report
     from grader.evidence.evidence import Evidence
+    from grader.report.report import Report
 
 
 def html_fragment(evidence: Evidence, report: Report) -> str:

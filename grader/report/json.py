@@ -22,8 +22,9 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from grader.checks.outcome import Finding, Outcome, Report, Status
+from grader.checks.outcome import Finding, Outcome, Status
 from grader.errors import UsageError
+from grader.report.report import Report
 from grader.submission.where import Where
 
 SCHEMA = 3

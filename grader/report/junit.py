@@ -16,7 +16,8 @@ from grader.report.verdict import verdict
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from grader.checks.outcome import Outcome, Report
+    from grader.checks.outcome import Outcome
+    from grader.report.report import Report
 
 TAGS = {Status.FAILED: "failure", Status.SKIPPED: "skipped", Status.ERROR: "error"}
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from PIL import Image, ImageDraw, ImageFont
 
-from grader.checks.outcome import Report, Status
+from grader.checks.outcome import Status
 from grader.common.words import printable
 from grader.errors import UsageError
 from grader.report.canvas import paint
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.evidence.evidence import Evidence
+    from grader.report.report import Report
 
 SIDE_PX = 640
 LEFT, TOP, RIGHT, BOTTOM = 64, 72, 300, 60

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 from rich.text import Text
 
-from grader.checks.outcome import Outcome, Report, Status
+from grader.checks.outcome import Outcome, Status
 from grader.common.words import count, printable
 from grader.report.verdict import UNCONFINED, tone, verdict
 
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rich.console import Console
+
+    from grader.report.report import Report
 
 NARROW = 50
 """Columns: below, texts are not indented under their labels."""

@@ -8,7 +8,7 @@ from grader.checks.outcome import Status
 from grader.common.words import count
 
 if TYPE_CHECKING:
-    from grader.checks.outcome import Report
+    from grader.report.report import Report
 
 UNCONFINED = (
     "The code ran without a sandbox, with limits on time, memory, processes and file size only: "

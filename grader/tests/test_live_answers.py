@@ -17,7 +17,7 @@ from grader.tests.case import copy_solution
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from grader.checks.outcome import Report
+    from grader.report.report import Report
 
 ROOT = Path(__file__).parent.parent.parent
 STEP = "02-discover-topics"

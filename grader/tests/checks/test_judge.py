@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from grader.checks.judge import judge, near_edge, wants_trial
 from grader.checks.kinds import KINDS
-from grader.checks.outcome import Finding, Outcome, Report, Status
+from grader.checks.outcome import Finding, Outcome, Status
 from grader.evidence.evidence import Evidence, Fault
+from grader.report.report import Report
 from grader.tests.checks.made import BUILD, NODE_FILE, every, evidence, exercise, good, recording, submission
 from grader.tests.checks.shapes import SHAPES
 from grader.trial.recording import Command, Output

@@ -14,8 +14,8 @@ import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.outcome import Report
 from grader.report.json import to_data
+from grader.report.report import Report
 from grader.tests.case import ROOT
 from grader.tests.gradings import Graded, compare
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from grader.checks.judge import judge
-from grader.checks.outcome import Report
 from grader.evidence.evidence import Fault
+from grader.report.report import Report
 from grader.tests.checks.made import BUILD, evidence, exercise, good
 from grader.tests.checks.shapes import SHAPES
 

@@ -17,7 +17,7 @@ import pytest
 from junitparser import Error, Failure, JUnitXml, Skipped, TestCase
 from markdown_it import MarkdownIt
 
-from grader.checks.outcome import Finding, Outcome, Report, Status
+from grader.checks.outcome import Finding, Outcome, Status
 from grader.report.csv import COLUMNS, to_csv
 from grader.report.github import MOST_ANNOTATIONS, MOST_SUMMARY, to_annotations, to_summary
 from grader.report.gradescope import to_gradescope
@@ -30,6 +30,8 @@ from grader.tests.report.reports import report
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from grader.report.report import Report
 
 STATUSES = ("passed", "failed", "skipped", "error")
 FORMULA = '=HYPERLINK("http://evil.example","click")'

@@ -2,17 +2,21 @@ from __future__ import annotations
 
 import io
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from grader.checks.outcome import Report, Status, failed, passed
+from grader.checks.outcome import Status, failed, passed
 from grader.report.terminal import render
 from grader.report.verdict import UNCONFINED
 from grader.submission.where import Where
 from grader.tests.report.reports import report
+
+if TYPE_CHECKING:
+    from grader.report.report import Report
 
 ESCAPE = "\x1b"
 
