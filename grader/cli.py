@@ -167,7 +167,7 @@ authoring.add_to(app)
 
 
 def main() -> None:
-    """Run the command; an error of ours is a sentence, and its exit code is that of design.md."""
+    """Run the command; an error of ours is a sentence, and its exit code is that of docs/design.md, decision 9."""
     clean_own()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's threads, as in ros.environment
     try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class GraderError(Exception):
-    """Base of all errors of the grader; `exit_code` is what a command ends with (design: exit codes)."""
+    """Base of all errors of the grader; `exit_code` is what a command ends with (docs/design.md, decision 9)."""
 
     exit_code = 3
 

@@ -39,6 +39,7 @@ def hand_out(to: Path) -> None:
             shutil.copyfile(files / name, to / name)
         shutil.copytree(root / "course", to / "course", ignore=shutil.ignore_patterns(*_NOT_FOR_STUDENTS))
         shutil.copytree(package, to / "grader", ignore=skipped)
+        shutil.copytree(files / "docs", to / "docs", ignore=shutil.ignore_patterns(*_NOT_FOR_STUDENTS))
         for name in catalogue():
             release(root / "solutions" / name, to / "exercises" / name)
         (to / "README.md").write_text(_readme(), encoding="utf-8")
@@ -65,7 +66,7 @@ Then, step by step:
     grader watch         # a verdict after every save; h is for a hint
     grader start next    # when the step has passed
 
-Or in notebooks: `make notebooks`, then `jupyter lab exercises`.
+Or in notebooks: `make notebooks`, then `jupyter lab exercises`. More: [docs/learner.md](docs/learner.md).
 
 {steps}
 """

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 NEAR = 0.2
-"""A value is near an edge when this share of the tolerance or less lies between (design, decision 3)."""
+"""A value is near an edge when this share of the tolerance or less lies between (docs/design.md, decision 3)."""
 
 
 @dataclass(frozen=True)

@@ -212,10 +212,9 @@ def why_unavailable() -> str | None:
         return None
     said = done.stderr.strip().splitlines()[-1:] or ["no message"]
     return (
-        f"bubblewrap cannot make its namespaces ({said[0]}). On Ubuntu 24.04 an ordinary user is refused them by "
-        "AppArmor: `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows them until the next start, and "
-        'README.md, "The sandbox", has the rule that allows bubblewrap alone and for good; '
-        "in a container, start it with `--security-opt seccomp=unconfined --security-opt apparmor=unconfined`"
+        f"bubblewrap cannot create its namespaces ({said[0]}). Ubuntu 24.04 forbids them to ordinary users: "
+        "`sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows them until the next start. "
+        'docs/security.md, "Without a sandbox", has a permanent rule, and the options that a container needs'
     )
 
 

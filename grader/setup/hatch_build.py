@@ -20,4 +20,4 @@ class CourseHook(BuildHookInterface):  # type: ignore[type-arg]
             # (An instructor's copy for students has no solutions.)
             there = [name for name in _FOLDERS if Path(self.root, name).is_dir()]
             build_data["force_include"] |= {name: f"grader/{name}" for name in there}
-            build_data["force_include"] |= {name: f"grader/repository/{name}" for name in _FILES}
+            build_data["force_include"] |= {name: f"grader/repository/{name}" for name in (*_FILES, "docs")}

@@ -2,7 +2,7 @@
 
 The clock stands at 0 until both sides have found each other (the handshake), then goes in frames of 16 ms. What
 follows wall time instead shows in its threads; every such sign becomes a doubt, and a doubt makes a trial in wall
-time (design, decision 3).
+time (docs/design.md, decision 3).
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ _NOTHING = (
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns the exit code: 0 drawn, 1 no node is running, else as in design.md."""
+    """Run the command; returns the exit code: 0 drawn, 1 no node is running, else docs/design.md, decision 9."""
     argv = list(sys.argv[1:] if arguments is None else arguments)
     for number in (signal.SIGTERM, signal.SIGHUP):
         # As Ctrl-C does, so that the node leaves the graph in order.

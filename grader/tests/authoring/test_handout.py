@@ -29,7 +29,13 @@ def test_students_get_lessons_starting_points_and_the_grader(students: Path) -> 
         assert given == set(released(ROOT / "solutions" / name))
         assert f"course/{name}/lesson.md" in (students / "README.md").read_text()
     files_of_the_top = ("Makefile", "pyproject.toml", "requirements.lock", "LICENSE", "COLCON_IGNORE")
-    for name in (*files_of_the_top, "grader/cli.py", "grader/setup/bootstrap.py"):
+    for name in (
+        *files_of_the_top,
+        "grader/cli.py",
+        "grader/setup/bootstrap.py",
+        "docs/learner.md",
+        "docs/security.md",
+    ):
         assert (students / name).is_file()
 
 

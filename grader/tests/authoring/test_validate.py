@@ -1,4 +1,4 @@
-"""The course is valid, and so is an exercise that an author adds by what README says; what is amiss in one is told."""
+"""The course is valid, and so is the exercise that docs/authors.md shows; what is amiss in one is told."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ TASK = """\
 
 @pytest.fixture
 def root(tmp_path: Path) -> Path:
-    """A course of the one exercise that README's page for authors shows."""
-    text = (ROOT / "README.md").read_text("utf-8").split("## For authors", 1)[1]
+    """A course of the one exercise that docs/authors.md shows."""
+    text = (ROOT / "docs/authors.md").read_text("utf-8")
     exercise = next(block.text for block in blocks(text) if block.language == "toml")
     (tmp_path / "course" / NEW).mkdir(parents=True)
     (tmp_path / "course" / NEW / "exercise.toml").write_text(exercise)

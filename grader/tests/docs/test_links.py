@@ -65,3 +65,12 @@ def test_the_learners_page_leads_to_every_lesson_in_order() -> None:
     for title, name in named:
         heading = (ROOT / "course" / name / "lesson.md").read_text("utf-8").splitlines()[0]
         assert heading.lower().endswith(f": {title.lower()}")
+
+
+def test_the_decisions_that_the_code_names_are_there() -> None:
+    decisions = set(re.findall(r"^(\d+)\. \*\*", text_of("docs/design.md"), re.MULTILINE))
+    sources = [path.read_text("utf-8") for path in (ROOT / "grader").rglob("*.py") if "tests/mistakes" not in str(path)]
+    named = {number for text in sources for number in re.findall(r"docs/design\.md, decision (\d+)", text)}
+    assert named
+    assert named <= decisions
+    assert [text for text in sources if re.search(r"\(design[,:]|of design\.md", text)] == []
