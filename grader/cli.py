@@ -13,7 +13,7 @@ import typer
 from grader.authoring import cli as authoring
 from grader.classroom import cli as classroom
 from grader.common.interpreter import clean_own
-from grader.errors import GraderError, UsageError
+from grader.errors import GraderError
 from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
 from grader.setup import cli as setup
@@ -55,6 +55,7 @@ Html = Annotated[
     Optional[Path],  # noqa: UP045
     typer.Option("--html", help="Write a page to look at: checks, code, replay, graph, logs.", metavar="FILE.html"),
 ]
+Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Also tell which clock judged, and why.")]
 ExerciseId = Annotated[
     Optional[str],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
     typer.Option("--exercise", help="Which exercise; in exercises/ and solutions/ it follows from the folder."),
@@ -68,7 +69,9 @@ ExerciseId = Annotated[
 def check(
     submission: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Argument(help="A package's folder, or a folder with one below it; your current step's when left out."),
+        typer.Argument(
+            help="A package's folder, a folder with one below it, or a step, as in 03; your current step when left out."
+        ),
     ] = None,
     exercise: ExerciseId = None,
     clock: Annotated[
@@ -85,6 +88,7 @@ def check(
     confined: Annotated[
         bool, typer.Option("--sandbox", help="Run nothing unless it is confined; else that is done where it can be.")
     ] = False,
+    verbose: Verbose = False,
 ) -> None:
     """Build and run one submission, and say what is right and what is not."""
     from grader.evidence import archive
@@ -98,12 +102,7 @@ def check(
         check_writable(file)
     if recording:
         archive.check_free(recording)
-    if submission is None:
-        from grader.learner.cli import place
-
-        known, submission = place(None, exercise)
-        exercise = known.id
-    asked, opened = _opened(exercise, submission)
+    asked, opened = _opened(submission, exercise)
     options = Options(in_cell=bubblewrap.require() if confined else bubblewrap.usable(), clock=clock.value, seed=seed)
     with progress() as tell:
         graded = grade(asked, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)))
@@ -111,8 +110,8 @@ def check(
             archive.save(recording, graded.evidence, graded.report.ros, graded.prefixes)
     from grader.learner import steps
 
-    steps.note(asked, opened.package_dir, graded.report)
-    _show(graded.report, graded.evidence, json, image, html)
+    following = steps.note(asked, opened.package_dir, graded.report)
+    _show(graded.report, graded.evidence, json, image, html, verbose=verbose, following=following)
 
 
 @app.command(rich_help_panel=TEACH, epilog="Example: grader regrade my-recording --image path.png")
@@ -125,6 +124,7 @@ def regrade(
     json: Json = None,
     image: Image = None,
     html: Html = None,
+    verbose: Verbose = False,
 ) -> None:
     """Judge a stored recording again; nothing of the student's is run."""
     from grader.checks.exercises import find_exercise, load_exercise
@@ -138,7 +138,7 @@ def regrade(
     other = find_exercise(exercise) if exercise else None
     kept = archive.load(recording, (lambda _: other) if other else load_exercise)
     report = report_of(kept.evidence, judge(kept.evidence), kept.ros, {})
-    _show(report, kept.evidence, json, image, html)
+    _show(report, kept.evidence, json, image, html, verbose=verbose)
 
 
 @app.command("class-page", rich_help_panel=TEACH, epilog="Example: grader class-page reports")
@@ -189,32 +189,28 @@ def main() -> None:
         sys.exit(3)
 
 
-def _opened(name: str | None, path: Path) -> tuple[Exercise, Submission]:
-    from grader.checks.exercises import exercise_of_folder, find_exercise
+def _opened(path: Path | None, name: str | None) -> tuple[Exercise, Submission]:
+    """Open what was named; where the folder alone does not tell the exercise, the package found below it may."""
+    from grader.learner.meant import guessed, meant
     from grader.submission.package import open_answers, open_submission
 
-    known = find_exercise(name) if name else exercise_of_folder(path)
+    known, place = guessed(path, name)
     if known is not None and not known.package:
-        return known, open_answers(path)
-    opened = open_submission(path)
-    return known or _exercise(name, opened.package_dir), opened
+        return known, open_answers(place)
+    opened = open_submission(place)
+    return known or meant(opened.package_dir, None)[0], opened
 
 
-def _exercise(name: str | None, package: Path) -> Exercise:
-    from grader.checks.exercises import exercise_of_folder, find_exercise
-    from grader.exercise.model import catalogue
-
-    found = find_exercise(name) if name else exercise_of_folder(package)
-    if found is None:
-        message = (
-            f"Which exercise is {package.name} for? Say it with --exercise, one of: {', '.join(catalogue())}. "
-            "(In exercises/ and solutions/ it follows from the folder.)"
-        )
-        raise UsageError(message)
-    return found
-
-
-def _show(report: Report, evidence: Evidence, json: Path | None, image: Path | None, html: Path | None) -> None:
+def _show(
+    report: Report,
+    evidence: Evidence,
+    json: Path | None,
+    image: Path | None,
+    html: Path | None,
+    *,
+    verbose: bool,
+    following: str = "",
+) -> None:
     from rich.console import Console
 
     from grader.report import terminal
@@ -233,7 +229,9 @@ def _show(report: Report, evidence: Evidence, json: Path | None, image: Path | N
 
         save_html(evidence, report, html)
     console = Console(highlight=False)
-    terminal.render(report, console)
+    terminal.render(report, console, verbose=verbose)
+    if following:
+        console.print(following, soft_wrap=True)
     raise typer.Exit(report.exit_code)
 
 

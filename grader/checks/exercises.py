@@ -16,8 +16,9 @@ if TYPE_CHECKING:
 
 
 def find_exercise(name: str, course: Path | None = None) -> Exercise:
-    """The exercise with this id, or the only one whose id begins with `name` (as in "03"). Raises UsageError."""
+    """The exercise with this id, or the only one whose id begins with `name`, as in "03" or "3". Raises UsageError."""
     files = catalogue(course)
+    name = f"{int(name):02}" if name.isascii() and name.isdigit() else name
     begin = [each for each in files if name and each.startswith(name)]
     if name in files:
         return load_exercise(files[name])
@@ -26,7 +27,8 @@ def find_exercise(name: str, course: Path | None = None) -> Exercise:
     guess = nearest(name, files)
     hint = f"did you mean {guess}? " if guess else ""
     several = f"several exercises begin with {name!r}" if begin else f"there is no exercise {name!r}"
-    message = f"{several}: {hint}The exercises are {a_list(begin or list(files))}."
+    named = begin or list(files)
+    message = f"{several}: {hint}The exercises are {a_list(named, most=len(named))}."
     raise UsageError(message)
 
 

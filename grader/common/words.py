@@ -35,9 +35,9 @@ def nearest(name: str, candidates: Iterable[str], alike: float = 0.6) -> str | N
     return found[0] if found else None
 
 
-def a_list(items: Sequence[str], last: str = "and") -> str:
-    """'a', 'a and b', 'a, b and c'; at most six are named."""
-    shown = list(items[:6])
+def a_list(items: Sequence[str], last: str = "and", *, most: int = 6) -> str:
+    """'a', 'a and b', 'a, b and c'; at most `most` are named."""
+    shown = list(items[:most])
     if len(items) > len(shown):
         shown.append(f"{len(items) - len(shown)} more")
     if len(shown) < 2:

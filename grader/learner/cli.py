@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Optional
 
 import typer
 
-from grader.errors import UsageError
-
 PANEL = "Learn"
 """The heading in --help."""
 
@@ -50,7 +48,7 @@ def hint(step: Step = None, workspace: Workspace = None) -> None:
     """Show the next hint for the step you are at: from a nudge to nearly the answer."""
     from grader.learner import steps
 
-    typer.echo(steps.hint(step, workspace))
+    _print(steps.hint(step, workspace))
 
 
 def status(workspace: Workspace = None) -> None:
@@ -85,24 +83,20 @@ def watch(
     run(*place(path, exercise, workspace), workspace)
 
 
+def _print(text: str) -> None:
+    """Print sentences: wrapped at words on a terminal, whole where another program reads them."""
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    console.print(text, markup=False, soft_wrap=not console.is_terminal)
+
+
 def place(path: Path | None, exercise: str | None, workspace: Path | None = None) -> tuple[Exercise, Path]:
-    """Which exercise is meant, and where the work on it lies.
+    """Return the exercise that is meant, and where the work on it lies.
 
     Raises:
-        UsageError: neither path nor progress says it.
+        UsageError: neither the path nor the learner's progress tells it.
     """
-    from grader.checks.exercises import exercise_of_folder, find_exercise
-    from grader.learner import steps
+    from grader.learner.meant import meant
 
-    current = steps.current(workspace)
-    if path is None and current is not None and exercise in (None, current[0].id):
-        return current
-    folder = path or Path()
-    known = find_exercise(exercise) if exercise else exercise_of_folder(folder)
-    if known is None and current is not None and current[1].resolve() == folder.resolve():
-        known = current[0]
-    if known is None:
-        name = folder.resolve().name
-        message = f"Which exercise is {name} for? Say it with --exercise, or begin a step: `grader start 01`."
-        raise UsageError(message)
-    return known, folder
+    return meant(path, exercise, workspace)

@@ -95,7 +95,9 @@ class _Screen:
             self._say(str(error))
         else:
             self._render(graded.report, len(told.splitlines()))
-            steps.note(self._exercise, self.watched.folder, graded.report, self._workspace)
+            following = steps.note(self._exercise, self.watched.folder, graded.report, self._workspace)
+            if following:
+                self._say(following)
         if told:
             self._say(f"\n{told}")
         self._say(f"\nWatching {self.watched.folder}   {KEYS if self._console.is_terminal else ''}".rstrip())

@@ -78,13 +78,18 @@ def current(folder: Path | None) -> tuple[Exercise, Path] | None:
     return exercise, workspace.work_folder(exercise, root)
 
 
-def note(exercise: Exercise, submission: Path, report: Report, folder: Path | None = None) -> None:
-    """Remember a verdict, if it is on the work in the learner's workspace."""
+def note(exercise: Exercise, submission: Path, report: Report, folder: Path | None = None) -> str:
+    """Remember a verdict on the work in the learner's workspace; return what to do next once it has passed, else ""."""
     root = progress.workspace_of(folder)
     if not submission.resolve().is_relative_to(root) or progress.load(root).current is None:
-        return
+        return ""
     passed = report.exit_code == 0
-    progress.update(root, lambda before: before.graded(exercise.id, report.points, report.max, passed=passed))
+    known = progress.update(root, lambda before: before.graded(exercise.id, report.points, report.max, passed=passed))
+    if not passed:
+        return ""
+    if all(known.step(name).passed for name in catalogue()):
+        return "That was the last one: you have passed every step."
+    return f"The next step: grader start next   (our solution: grader solution {exercise.id[:2]})"
 
 
 def hint(step: str | None, folder: Path | None) -> str:

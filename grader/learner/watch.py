@@ -31,6 +31,10 @@ DEBOUNCE_MS = 50
 """An editor that saves by renaming makes several events; they count as one."""
 
 
+_LOOK_MS = 200
+"""How often to look whether the path still leads to the folder that is watched."""
+
+
 @dataclass(frozen=True)
 class Happened:
     """What the loop waits for: a save (perhaps one that changed nothing), a key, or the end."""
@@ -43,6 +47,15 @@ class _Sources(DefaultFilter):
     """What a verdict may depend on: not what colcon and Python make."""
 
     ignore_dirs = (*DefaultFilter.ignore_dirs, "build", "install", "log")
+
+
+def _identity(folder: Path) -> tuple[int, int] | None:
+    """Which folder has this path now; None while none has."""
+    try:
+        status = folder.stat()
+    except OSError:
+        return None
+    return status.st_dev, status.st_ino
 
 
 class Events:
@@ -75,21 +88,36 @@ class Events:
         self._queue.put(Happened("end"))
 
     def _watch(self, folder: Path, stop: Event) -> None:
+        """Watch whatever folder has this path: one that is renamed takes its watch along, and another may follow."""
+        while not stop.is_set():
+            watched = _identity(folder)
+            if watched is None or not self._watch_one(folder, watched, stop):
+                stop.wait(_LOOK_MS / 1000)
+
+    def _watch_one(self, folder: Path, watched: tuple[int, int], stop: Event) -> bool:
+        """Watch the folder until the path leads to another one; False if it could not be watched."""
         begins = True
-        for changes in watch(
-            folder,
-            watch_filter=_Sources(),
-            debounce=DEBOUNCE_MS,
-            step=10,
-            rust_timeout=200,
-            yield_on_timeout=True,
-            stop_event=stop,
-            raise_interrupt=False,
-        ):
-            if (changes or begins) and not stop.is_set() and not self._saved.is_set():
-                self._saved.set()
-                self._queue.put(Happened("saved"))
-            begins = False
+        try:
+            for changes in watch(
+                folder,
+                watch_filter=_Sources(),
+                debounce=DEBOUNCE_MS,
+                step=10,
+                rust_timeout=_LOOK_MS,
+                yield_on_timeout=True,
+                stop_event=stop,
+                raise_interrupt=False,
+            ):
+                replaced = _identity(folder) != watched
+                if (changes or begins or replaced) and not stop.is_set() and not self._saved.is_set():
+                    self._saved.set()
+                    self._queue.put(Happened("saved"))
+                begins = False
+                if replaced:
+                    return True
+        except FileNotFoundError:
+            pass
+        return False
 
     def _keys(self, read_key: Callable[[], str]) -> None:
         while key := read_key():

@@ -30,8 +30,8 @@ ASCII_SIGNS = {"passed": "ok", "failed": "FAIL", "skipped": "skip", "error": "ER
 STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "error": "bold magenta", "advice": "cyan"}
 
 
-def render(report: Report, console: Console, *, brief: bool = False) -> None:
-    """Print the report; when `brief`, of the checks only those with something to mend."""
+def render(report: Report, console: Console, *, brief: bool = False, verbose: bool = False) -> None:
+    """Print the report: of the checks only those that did not pass when `brief`, the clock always when `verbose`."""
     _line(console, Text(printable(f"{report.exercise_title}: {report.submission}"), style="bold"))
     told = ""
     for outcome in report.outcomes:
@@ -45,7 +45,7 @@ def render(report: Report, console: Console, *, brief: bool = False) -> None:
             console, Text(f"{amount} passed. In a higher window, or with `grader check`, all are listed.", style="dim")
         )
     _line(console, _verdict(report))
-    for text in _footnotes(report):
+    for text in _footnotes(report, verbose=verbose):
         _line(console, Text(text, style="dim"))
 
 
@@ -107,10 +107,12 @@ def _verdict(report: Report) -> Text:
     return Text(verdict(report), style="bold green" if meant == "passed" else STYLES[meant])
 
 
-def _footnotes(report: Report) -> list[str]:
+def _footnotes(report: Report, *, verbose: bool) -> list[str]:
     clock = {"simulated": "Judged in simulated time", "wall": "Judged in wall time"}.get(report.clock, "")
     why = printable(report.clock_why)
-    notes = [f"{clock}: {why}" if clock and why else clock or why]
+    # Simulated time judges nearly all nodes: told where somebody wants to know, or where it was not so.
+    simulated_alone = report.clock == "simulated" and "in wall time: " not in why
+    notes = [] if simulated_alone and not verbose else [f"{clock}: {why}" if clock and why else clock or why]
     if report.seed is not None:
         notes.append(f"The turtle's start was drawn with seed {report.seed}.")
     if not report.confined:

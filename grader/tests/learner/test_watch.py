@@ -122,6 +122,21 @@ def test_a_save_is_heard_however_the_editor_saves(package: Path, how: str) -> No
     events.close()
 
 
+def test_it_follows_the_path_when_the_folder_is_renamed_and_another_takes_its_place(package: Path) -> None:
+    events = Events(None)
+    events.watch(package)
+    happened = iter(events)
+    assert next(happened).kind == "saved"
+    kept = package.with_name("kept-aside")
+    package.rename(kept)
+    assert next(happened).kind == "saved"  # it is gone
+    shutil.copytree(kept, package.with_name("another")).rename(package)
+    assert next(happened).kind == "saved"  # another one is there
+    node_of(package).write_text("x = 1\n")
+    assert next(happened).kind == "saved"
+    events.close()
+
+
 def test_keys_come_in_order_and_the_end_of_the_terminal_ends_the_loop() -> None:
     keys = iter(["h", "r", ""])
     assert [happened.key for happened in Events(lambda: next(keys))] == ["h", "r"]

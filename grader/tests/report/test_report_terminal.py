@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import dataclasses
 import io
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -27,10 +28,17 @@ class Latin1(io.StringIO):
     encoding = "latin-1"
 
 
-def told(made: Report, *, width: int = 80, terminal: bool = False, stream: io.StringIO | None = None) -> str:
+def told(
+    made: Report,
+    *,
+    width: int = 80,
+    terminal: bool = False,
+    stream: io.StringIO | None = None,
+    verbose: bool = False,
+) -> str:
     file = stream or io.StringIO()
     console = Console(file=file, width=width, force_terminal=terminal, color_system="truecolor" if terminal else None)
-    render(made, console)
+    render(made, console, verbose=verbose)
     return file.getvalue()
 
 
@@ -43,8 +51,16 @@ def test_piped_there_is_no_escape_sequence_and_no_wrapping() -> None:
 def test_the_verdict_stands_at_the_end() -> None:
     lines = told(report("failed")).splitlines()
     assert lines[0] == "Draw a circle: alice/my_robot_controller"
-    assert lines[-2] == "Not passed yet: 55 of 100 points, 2 checks failed."
-    assert lines[-1] == "Judged in simulated time: The node waits only for ROS time."
+    assert lines[-1] == "Not passed yet: 55 of 100 points, 2 checks failed."
+
+
+def test_simulated_time_is_told_to_whom_asks_and_wall_time_to_all() -> None:
+    simulated = report("failed")
+    assert "Judged in" not in told(simulated)
+    assert told(simulated, verbose=True).endswith("\nJudged in simulated time: The node waits only for ROS time.\n")
+    assert "Judged in wall time" in told(dataclasses.replace(simulated, clock="wall"))
+    other = dataclasses.replace(simulated, clock_why="it waits for ROS time; eight in wall time: it sleeps")
+    assert "eight in wall time" in told(other)
 
 
 def test_what_ran_without_a_sandbox_is_told_in_one_line() -> None:

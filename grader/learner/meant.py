@@ -1,0 +1,67 @@
+"""What a learner means by the words behind `grader check` and `grader watch`: which exercise, and which folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.checks.exercises import exercise_of_folder, find_exercise
+from grader.errors import UsageError
+from grader.exercise.model import catalogue
+from grader.learner import progress, steps, workspace
+
+if TYPE_CHECKING:
+    from grader.exercise.model import Exercise
+
+
+def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise, Path]:
+    """Return the exercise that is meant, and where the work on it lies; arguments as for `guessed`.
+
+    Raises:
+        UsageError: neither path, name nor progress tells which exercise, or the step was never begun.
+    """
+    known, place = guessed(path, exercise, folder)
+    if known is None:
+        message = (
+            f"Which exercise is {place.resolve().name} for? Name it with --exercise, one of: {', '.join(catalogue())}. "
+            "Or begin a step in your workspace: `grader start 01`."
+        )
+        raise UsageError(message)
+    return known, place
+
+
+def guessed(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise | None, Path]:
+    """Return the exercise if anything tells which one it is, and where the work lies.
+
+    `path` is what was typed: a package, a step ("03", "3"), the workspace (then the current step is meant), or None;
+    `exercise` is the one named by --exercise; `folder` is the workspace, the learner's own when None.
+
+    Raises:
+        UsageError: there is no exercise of that name, or the step was never begun.
+    """
+    root = progress.workspace_of(folder)
+    if path is not None and not path.exists() and _is_step(str(path)):
+        return _step(str(path), root)
+    current = steps.current(folder)
+    of_workspace = path is None or path.resolve() in (root, root / "src")
+    if of_workspace and current is not None and exercise in (None, current[0].id):
+        return current
+    place = path or Path()
+    known = find_exercise(exercise) if exercise else exercise_of_folder(place)
+    if known is None and current is not None and current[1].resolve() == place.resolve():
+        known = current[0]
+    return known, place
+
+
+def _is_step(name: str) -> bool:
+    """Whether this is a step's id or number, and no path."""
+    return name.isdigit() or name in catalogue()
+
+
+def _step(name: str, root: Path) -> tuple[Exercise, Path]:
+    exercise = find_exercise(name)
+    place = workspace.work_folder(exercise, root)
+    if not place.is_dir():
+        message = f"{exercise.id} was not begun in {root} yet: `grader start {exercise.id[:2]}`."
+        raise UsageError(message)
+    return exercise, place
