@@ -81,10 +81,3 @@ def clean_own() -> None:
     for name in [name for name in os.environ if name not in cleaned]:
         del os.environ[name]
     os.environ.update(cleaned)
-
-
-def search_users_folders() -> None:
-    """Look for modules in PYTHONPATH's folders too, in an interpreter that was started isolated; cleans it before."""
-    clean_own()
-    folders = [folder for folder in os.environ.get("PYTHONPATH", "").split(os.pathsep) if folder]
-    sys.path[:0] = [folder for folder in folders if folder not in sys.path]

@@ -8,8 +8,8 @@ import pytest
 
 from grader.common.interpreter import clean, interpreter
 
-ROOT = Path(__file__).parents[3]
-GRADER = ROOT / "grader"
+GRADER = Path(__file__).parents[2]
+COMMAND = Path(sys.prefix, "bin")
 SHOW = (
     "import sys, os, json, encodings; print(json.__file__, sys.argv[1:], sys.path.count(os.getcwd()), '' in sys.path)"
 )
@@ -72,9 +72,19 @@ def test_what_leads_to_the_current_folder_goes_and_the_rest_stays() -> None:
     assert clean(env) == {"PATH": "/usr/bin", "LD_LIBRARY_PATH": "/a:/b", "LANG": "C"}
 
 
-@pytest.mark.parametrize("name", ["grader", "ros2", "rqt_graph"])
-def test_our_commands_start_isolated(name: str) -> None:
-    lines = (GRADER / "setup/commands" / name).read_text("utf-8").splitlines()
-    assert lines[0] == "#!/bin/sh"
-    assert '/python3" -I ' in lines[1]
-    assert Path(sys.prefix, "bin", name).read_text("utf-8").splitlines() == lines
+COMMANDS = ("grader", "ros2", "rqt_graph")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_our_commands_import_nothing_from_the_current_folder(folder: Path, name: str) -> None:
+    (folder.parent / "here" / "grader.py").write_text("print('TRAP grader')\n")
+    listed = {"PYTHONPATH": f":{folder}:x y", "PYTHONHOME": "here", "LD_LIBRARY_PATH": ":", "PYTHONIOENCODING": "ascii"}
+    env = {"PATH": ":/usr/bin:/bin", "HOME": str(folder), **listed}
+    done = subprocess.run([COMMAND / name, "--help"], env=env, capture_output=True, text=True, check=False)
+    assert (done.returncode, "TRAP" in done.stdout + done.stderr) == (0, False)
+
+
+def test_our_commands_are_installed_as_they_are_and_differ_in_what_they_call() -> None:
+    texts = [(GRADER / "setup/commands" / name).read_text("utf-8") for name in COMMANDS]
+    assert [(COMMAND / name).read_text("utf-8") for name in COMMANDS] == texts
+    assert len({text.partition("import sys")[0] for text in texts}) == 1
