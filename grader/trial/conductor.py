@@ -110,7 +110,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             end=node.end(sigint_s),
             interventions=tuple(stage.interventions),
             doubts=doubts,
-            stalls=tuple(stall for stall in stage.stalls if not _own_doing(stall, node, stage.now())),
+            stalls=tuple(stall for stall in stage.stalls if not _own_doing(stall, node, stage)),
             crowded=stage.crowded(),
             seconds=stage.seconds,
         )
@@ -128,12 +128,15 @@ def _run(stage: SimulatedTrial | WallTrial, duration_s: float) -> float:
         raise Overwhelmed(message[:500]) from error
 
 
-def _own_doing(stall: tuple[float, float], node: NodeProcess, now_s: float) -> bool:
+def _own_doing(stall: tuple[float, float], node: NodeProcess, stage: SimulatedTrial | WallTrial) -> bool:
+    """Whether the node has made the stall itself: by its own work, or by what it had the simulator do."""
+    now_s = stage.now()
     offset = time.monotonic() - now_s
     begin, end = stall
-    if node.worked_s(offset, time.monotonic()) >= BUSY * now_s:
+    if node.worked_s(offset, time.monotonic()) + stage.worked_for_node_s(0.0, now_s) >= BUSY * now_s:
         return True
-    return node.worked_s(begin + offset, end + offset) >= max(BUSY_S, BUSY * (end - begin))
+    worked_s = node.worked_s(begin + offset, end + offset) + stage.worked_for_node_s(begin, end)
+    return worked_s >= max(BUSY_S, BUSY * (end - begin))
 
 
 def _command(

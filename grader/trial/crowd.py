@@ -11,7 +11,11 @@ from grader.trial.rest import GoneError, Threads
 STALL_S = 0.03
 """Time that the machine owed to simulator or node between two frames: from here on, arrivals are not to be trusted."""
 OWN_DOING = 0.5
-"""A node that itself used this share of the time and more kept itself waiting: that is no stall."""
+"""A node that itself used this share of the time and more kept itself waiting: that is no stall. What it has the
+simulator do for it is the node's: a simulator that answers thousands of calls is late, and the machine owes it nothing.
+"""
+SIMULATOR = 0.3
+"""The share of a processor that the simulator may use for itself; a tenth was measured. The rest is for the node."""
 OTHERS = 0.2
 """Others use the machine when they take this share of one processor and more ..."""
 WAITED = 0.05
@@ -32,29 +36,40 @@ class Stalls:
         self._before = [(0.0, 0.0), (0.0, 0.0)]
         self._stolen_s = _stolen_s()
         self._since_s = 0.0
+        self._for_node: list[tuple[float, float]] = []
         self.waited_s = 0.0
-        self.look(0.0, late_s=0.0)
+        self.look(0.0)
+        self._for_node = [(0.0, 0.0)]
         self.waited_s = 0.0
         """How long simulator and node have waited for a processor since (s), all threads together."""
 
-    def look(self, now_s: float, *, late_s: float) -> tuple[float, float] | None:
-        """Look at the time since the last look; the stall that fell into it, if any. `late_s`: of this frame."""
+    def look(self, now_s: float) -> tuple[float, float] | None:
+        """Look at the time since the last look; the stall that fell into it, if any.
+
+        A stall is what threads waited for a processor, or what was stolen from the machine. That a frame comes late is
+        none by itself: whoever keeps the simulator busy could bring it about.
+        """
         passed_s = max(now_s - self._since_s, 1e-3)
-        owed = [late_s]
-        for index, threads in enumerate(self._parts):
-            ran_s, waited_s = _times(threads)
-            before_ran_s, before_waited_s = self._before[index]
-            self.waited_s += waited_s - before_waited_s
-            if ran_s - before_ran_s <= OWN_DOING * passed_s:
-                owed.append(waited_s - before_waited_s)
-            elif index == 0:
-                owed[0] = 0.0
-            self._before[index] = (ran_s, waited_s)
+        now = [_times(threads) for threads in self._parts]
+        (node_s, node_waited_s), (simulator_s, simulator_waited_s) = (
+            (ran - before_ran, waited - before_waited)
+            for (ran, waited), (before_ran, before_waited) in zip(now, self._before, strict=True)
+        )
+        self._before = now
+        self.waited_s += node_waited_s + simulator_waited_s
+        for_node_s = max(0.0, simulator_s - SIMULATOR * passed_s)
+        if for_node_s > 0.0:
+            self._for_node.append((now_s, for_node_s))
+        own_doing = max(node_s + for_node_s, simulator_s) > OWN_DOING * passed_s
         stolen_s = _stolen_s()
-        owed.append(stolen_s - self._stolen_s)
+        owed = [stolen_s - self._stolen_s, *([] if own_doing else [node_waited_s, simulator_waited_s])]
         self._stolen_s = stolen_s
         begun_s, self._since_s = self._since_s, now_s
         return (begun_s, now_s) if max(owed) > STALL_S else None
+
+    def worked_for_node_s(self, begin_s: float, end_s: float) -> float:
+        """CPU time that the simulator spent for the node between two looks, beyond what it needs by itself (s)."""
+        return sum(spent_s for at_s, spent_s in self._for_node if begin_s < at_s <= end_s)
 
 
 class Others:

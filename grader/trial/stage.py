@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
+    from grader.trial.crowd import Stalls
     from grader.trial.inputs import Inputs
     from grader.trial.node_process import NodeProcess
     from grader.trial.recording import Pose
@@ -61,6 +62,7 @@ class Stage:
         self.frames: list[tuple[float, float, float, float, float, float, bool]] = []
         self.doubts: list[str] = []
         self.stalls: list[tuple[float, float]] = []
+        self.watch: Stalls | None = None
         self.seconds: dict[str, float] = {}
         self._since = time.monotonic()
         self._services: list[str] = []
@@ -82,6 +84,10 @@ class Stage:
     def crowded(self) -> bool:
         """Whether other programs kept simulator and node from running; in simulated time that changes nothing."""
         return False
+
+    def worked_for_node_s(self, begin_s: float, end_s: float) -> float:
+        """CPU time that the simulator spent for the node between two times on the trial's clock, in wall time (s)."""
+        return 0.0 if self.watch is None else self.watch.worked_for_node_s(begin_s, end_s)
 
     def frame(self, now_s: float) -> None:
         """Let the simulator make one frame, and keep it."""

@@ -28,7 +28,7 @@ class WallTrial(Stage):
         self._discover()
         self.lap("discovery")
         self._begun = time.monotonic()
-        watch = Stalls(self.node.pid)
+        watch = self.watch = Stalls(self.node.pid)
         others = Others()
         frame = 0
         while frame * FRAME_S < duration_s and not self.node.ended():
@@ -37,7 +37,7 @@ class WallTrial(Stage):
                 self.spin(early_s)
                 self.node.read_output(self.now())
                 continue
-            stall = watch.look(self.now(), late_s=-early_s)
+            stall = watch.look(self.now())
             if stall is not None:
                 self.stalls.append(stall)
             self.frame(frame * FRAME_S)

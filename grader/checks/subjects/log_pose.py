@@ -51,7 +51,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
     said = _trusted(recording, params.format)
     expected = "Each line says where the turtle is at that moment, to two digits behind the point."
     if len(said) < FEWEST:
-        return _too_few(evidence)
+        return _too_few(evidence, params.format)
 
     def off(line: Line, x: float, y: float) -> float:
         near = _window(recording, line.t_s, params.lag_s)
@@ -80,7 +80,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     said = _trusted(recording, params.format)
     expected = "The distance is the length of the way driven so far, in metres; it never gets less."
     if len(said) < FEWEST:
-        return _too_few(evidence)
+        return _too_few(evidence, params.format)
     x, y = np.append(recording.start.x, frames.x), np.append(recording.start.y, frames.y)
     way = np.cumsum(np.hypot(np.diff(x), np.diff(y)))
 
@@ -127,8 +127,8 @@ def _trusted(recording: Recording, text_: str) -> list[Line]:
     return [line for line in lines.in_format(recording, text_) if not recording.stalled(line.t_s)]
 
 
-def _too_few(evidence: Evidence) -> Finding:
-    if evidence.trial.stalls:
+def _too_few(evidence: Evidence, text_: str) -> Finding:
+    if len(lines.in_format(evidence.trial, text_)) >= FEWEST:
         return Finding(Status.ERROR, "The machine was too busy in wall time. Try again when it is not.")
     expected = f"At least {FEWEST} lines in the format."
     where = evidence.place("info")

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from grader.tests.trial.program import python
-from grader.trial import crowd
+from grader.trial import conductor, crowd
 from grader.trial.crowd import Others, Stalls, is_crowded
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def test_a_node_that_shares_its_processor_waits_and_is_seen_waiting() -> None:
         watch = Stalls(node.pid)
         begin(rival)
         work(node)
-        watch.look(1.0, late_s=0.0)
+        watch.look(1.0)
         assert watch.waited_s >= WORK_S / 5
 
 
@@ -89,24 +89,72 @@ Counts = tuple[tuple[float, float], tuple[float, float], float]
 
 
 @pytest.mark.parametrize(
-    ("late_s", "counts", "stall"),
+    ("counts", "stall"),
     [
-        (0.0, ((0.01, 0.0), (0.01, 0.0), 0.0), False),
-        (0.05, ((0.01, 0.0), (0.01, 0.0), 0.0), True),
-        (0.02, ((0.01, 0.0), (0.01, 0.0), 0.0), False),
-        (0.0, ((0.01, 0.05), (0.01, 0.0), 0.0), True),
-        (0.0, ((0.01, 0.0), (0.01, 0.05), 0.0), True),
-        (0.0, ((0.01, 0.0), (0.01, 0.0), 0.05), True),
-        (0.05, ((0.09, 0.05), (0.01, 0.0), 0.0), False),
+        (((0.01, 0.0), (0.01, 0.0), 0.0), False),
+        (((0.01, 0.05), (0.01, 0.0), 0.0), True),
+        (((0.01, 0.0), (0.01, 0.05), 0.0), True),
+        (((0.01, 0.0), (0.01, 0.0), 0.05), True),
+        (((0.09, 0.05), (0.01, 0.0), 0.0), False),
+        (((0.01, 0.05), (0.09, 0.05), 0.0), False),
+        (((0.04, 0.05), (0.05, 0.05), 0.0), False),
+        (((0.04, 0.05), (0.03, 0.05), 0.0), True),
+        (((0.09, 0.05), (0.09, 0.05), 0.05), True),
     ],
-    ids=["all in time", "late", "hardly late", "the node waited", "ours waited", "stolen", "the node's own doing"],
+    ids=[
+        "all in time",
+        "the node waited",
+        "ours waited",
+        "stolen",
+        "the node's own doing",
+        "the simulator was busy for the node",
+        "the two together",
+        "the simulator's own share",
+        "stolen while they worked",
+    ],
 )
-def test_a_stall_is_what_the_machine_owes(
-    late_s: float, counts: Counts, monkeypatch: pytest.MonkeyPatch, *, stall: bool
-) -> None:
+def test_a_stall_is_what_the_machine_owes(counts: Counts, monkeypatch: pytest.MonkeyPatch, *, stall: bool) -> None:
+    assert looked(counts, monkeypatch).look(0.1) == ((0.0, 0.1) if stall else None)
+
+
+def looked(counts: Counts, monkeypatch: pytest.MonkeyPatch) -> Stalls:
+    """Stalls whose next look finds these counts."""
     node, simulator, stolen_s = counts
     times = iter([(0.0, 0.0), (0.0, 0.0), node, simulator])
     stolen = iter([0.0, 0.0, stolen_s])
     monkeypatch.setattr(crowd, "_times", lambda _: next(times))
     monkeypatch.setattr(crowd, "_stolen_s", lambda: next(stolen))
-    assert Stalls(os.getpid()).look(0.1, late_s=late_s) == ((0.0, 0.1) if stall else None)
+    return Stalls(os.getpid())
+
+
+def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    watch = looked(((0.01, 0.0), (0.08, 0.0), 0.0), monkeypatch)
+    watch.look(0.1)
+    assert watch.worked_for_node_s(0.0, 0.1) == pytest.approx(0.08 - crowd.SIMULATOR * 0.1)
+    assert watch.worked_for_node_s(0.1, 0.2) == 0.0
+
+
+class Busy:
+    """A node whose processes have worked so long, and a stage whose simulator has, whenever one asks."""
+
+    def __init__(self, node_s: float, simulator_s: float) -> None:
+        self._node_s, self._simulator_s = node_s, simulator_s
+
+    def worked_s(self, *_: float) -> float:
+        return self._node_s
+
+    def worked_for_node_s(self, *_: float) -> float:
+        return self._simulator_s
+
+    def now(self) -> float:
+        return 10.0
+
+
+@pytest.mark.parametrize(
+    ("node_s", "simulator_s", "own"), [(0.0, 0.0, False), (0.06, 0.0, True), (0.0, 0.06, True), (0.03, 0.03, True)]
+)
+def test_a_stall_while_node_and_its_requests_take_the_time_is_the_nodes(
+    node_s: float, simulator_s: float, *, own: bool
+) -> None:
+    of: Any = Busy(node_s, simulator_s)
+    assert conductor._own_doing((1.0, 1.1), of, of) == own

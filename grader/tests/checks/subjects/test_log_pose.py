@@ -188,3 +188,5 @@ def test_lines_that_a_stall_delayed_do_not_count_and_without_others_nobody_is_bl
     assert found(LOG_POSITION, evidence(stalled), format=FORMAT).status is Status.PASSED
     all_of_it = logged((x, y, way), stalls=((0.0, 10.0),))
     assert found(LOG_POSITION, evidence(all_of_it), format=FORMAT).status is Status.ERROR
+    silent = replace(all_of_it, log=())
+    assert found(LOG_POSITION, evidence(silent), format=FORMAT).status is Status.FAILED
