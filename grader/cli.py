@@ -169,6 +169,10 @@ authoring.add_to(app)
 def main() -> None:
     """Run the command; an error of ours is a sentence, and its exit code is that of docs/design.md, decision 9."""
     clean_own()
+    if "_GRADER_COMPLETE" in os.environ:  # a shell asks which words may follow (grader.ros.shell)
+        from typer.completion import completion_init  # type: ignore[attr-defined]
+
+        completion_init()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's threads, as in ros.environment
     try:
         app()

@@ -58,7 +58,7 @@ def _readme() -> str:
 You need Linux on x86-64 and Python 3.10 or newer; nothing of ROS. Once:
 
     make demo
-    source .venv/bin/activate
+    source .venv/setup.bash
 
 Then, step by step:
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import find_exercise
@@ -12,8 +15,6 @@ from grader.exercise.model import catalogue
 from grader.learner import progress, workspace
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from rich.console import Console
 
     from grader.exercise.model import Exercise
@@ -64,8 +65,20 @@ def told(begun: Begun) -> str:
     for path, lacking in started.lacking.items():
         lines += [f"This step begins with more in {path}; write into yours:", *(f"    {line}" for line in lacking)]
     lesson = begun.exercise.folder / "lesson.md"
-    lines += ["", f"The lesson:       {lesson}", "A verdict:        grader check", "After every save: grader watch"]
+    lines += [
+        "",
+        f"The lesson:           {lesson}",
+        "A verdict:            grader check",
+        "After every save:     grader watch",
+        f"In each new terminal: source {_setup_file()}",
+    ]
     return "\n".join(lines)
+
+
+def _setup_file() -> Path:
+    """What brings ROS 2 and `grader` into a new terminal of the user's own shell."""
+    shell = "zsh" if Path(os.environ.get("SHELL", "")).name == "zsh" else "bash"
+    return Path(sys.prefix, f"setup.{shell}")
 
 
 def current(folder: Path | None) -> tuple[Exercise, Path] | None:

@@ -6,6 +6,7 @@ own process never imports rclpy: all of ROS 2 lives in child processes with the 
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import sys
@@ -64,14 +65,33 @@ def find_ros(env: Mapping[str, str] = os.environ) -> Ros:
     """
     ros = _sourced(env) or _wheels(Path(sys.prefix))
     if ros is None:
-        seen = env.get("ROS_DISTRO")
-        found = f"ROS 2 {seen.capitalize()} is sourced, and no" if seen and seen != DISTRO else "No"
-        message = (
-            f"{found} ROS 2 Jazzy was found. Run `make demo` in the course's folder, which installs it into .venv, "
-            "and `source .venv/bin/activate`; or source your own: `source /opt/ros/jazzy/setup.bash`."
-        )
-        raise MachineError(message)
+        raise MachineError(_why_none(env))
     return ros
+
+
+def _why_none(env: Mapping[str, str]) -> str:
+    """Why there is no ROS 2 Jazzy, and what to type."""
+    made_for = _made_for(Path(sys.prefix))
+    if made_for is not None:
+        return (
+            f"This course was set up for the ROS 2 in {made_for}, which is not sourced in this terminal. "
+            f"Type: source {made_for}/setup.bash"
+        )
+    seen = env.get("ROS_DISTRO")
+    found = f"ROS 2 {seen.capitalize()} is sourced, and no" if seen and seen != DISTRO else "No"
+    return (
+        f"{found} ROS 2 Jazzy was found. Run `make demo` in the course's folder, which installs it into .venv, "
+        "and `source .venv/setup.bash`; or source your own: `source /opt/ros/jazzy/setup.bash`."
+    )
+
+
+def _made_for(prefix: Path) -> str | None:
+    """The sourced ROS 2 that this environment was set up for (grader.setup.bootstrap); None for the wheels."""
+    try:
+        ros = json.loads((prefix / "course-setup.json").read_text(encoding="utf-8"))["ros"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    return ros if isinstance(ros, str) and ros.startswith("/") else None
 
 
 def environment(

@@ -48,6 +48,8 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> str:
         'if [ -n "${ZSH_VERSION-}" ] || { [ -n "${BASH_VERSION-}" ] && ! complete -p ros2 > /dev/null 2>&1; }; then',
         f"  eval {shlex.quote(_completion())}",
         "fi",
+        f'if [ -n "${{ZSH_VERSION-}}" ]; then eval {shlex.quote(_completion_of_grader("zsh"))}',
+        f'elif [ -n "${{BASH_VERSION-}}" ]; then eval {shlex.quote(_completion_of_grader("bash"))}; fi',
     ]
     return "\n".join(lines) + "\n"
 
@@ -76,6 +78,12 @@ def _start_up(text: str, name: str) -> str:
     file = Path(tempfile.mkdtemp(prefix="grader-shell-"), name)
     file.write_text(f"rm -rf {shlex.quote(str(file.parent))}\n{text}", encoding="utf-8")
     return str(file)
+
+
+def _completion_of_grader(shell: str) -> str:
+    from typer.completion import get_completion_script  # type: ignore[attr-defined]
+
+    return get_completion_script(prog_name="grader", complete_var="_GRADER_COMPLETE", shell=shell)
 
 
 def _completion() -> str:

@@ -42,6 +42,7 @@ def env(domain: Domain = None) -> None:
     """Print shell code that puts ROS 2 into this shell: for `source <(grader env)`, in bash and zsh."""
     from grader.report.progress import progress
     from grader.ros import shell
+    from grader.ros.installation import find_ros
 
     try:
         with progress() as tell:
@@ -50,6 +51,9 @@ def env(domain: Domain = None) -> None:
         # Whoever sources this sees nothing of our exit code.
         print("false")
         raise
+    ros = find_ros()
+    if ros.kind == "sourced":
+        print(f"The ROS 2 that is sourced in this terminal is used: {ros.prefix}", file=sys.stderr)
     sys.stdout.write(shell.code(wanted))
 
 

@@ -53,7 +53,7 @@ def main(arguments: list[str] | None = None) -> int:
     print(f"  {'in all':<40} {time.time() - since:6.1f} s")
     print(f"\nThe picture of the turtle's path: {image}")
     print("\nNext, in this folder: make the environment yours, and begin with the first step.\n")
-    print("    source .venv/bin/activate")
+    print("    source .venv/setup.bash")
     print("    grader start 01")
     return 0
 

@@ -1,13 +1,14 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from grader.errors import UsageError
+from grader.errors import MachineError, UsageError
 from grader.ros import installation, shell
 
 HERE = installation.find_ros()
@@ -115,3 +116,29 @@ def test_an_error_reaches_whoever_sources_it() -> None:
     )
     assert done.stdout == "not sourced\n"
     assert done.stderr.startswith("grader: A domain id is a whole number")
+
+
+@pytest.mark.parametrize("name", ["bash", "zsh"])
+def test_one_line_from_any_folder_brings_ros_2_and_our_commands(tmp_path: Path, name: str) -> None:
+    if shutil.which(name) is None:
+        pytest.skip(f"{name} is not installed")
+    env = {"PATH": "/usr/bin:/bin", "HOME": str(tmp_path), "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME", "")}
+    env["XDG_CACHE_HOME"] = env["XDG_CACHE_HOME"] or str(Path.home() / ".cache")
+    what = f"source {sys.prefix}/setup.{name} && echo $ROS_DISTRO && command -v ros2 grader"
+    done = subprocess.run([name, "-c", what], cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
+    assert done.stdout.splitlines() == ["jazzy", f"{BIN}/ros2", f"{BIN}/grader"], done.stderr
+
+
+def test_the_words_of_grader_are_completed() -> None:
+    code = shell.code(users({}))
+    asked = "COMP_WORDS=(grader sta); COMP_CWORD=1; _grader_completion grader grader; echo ${COMPREPLY[@]}"
+    assert set(sourced(code, asked, PATH=f"{BIN}:/usr/bin:/bin").split()) == {"start", "status"}
+
+
+def test_a_set_up_for_a_sourced_ros_2_names_it_where_it_is_not_sourced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "course-setup.json").write_text('{"ros": "/opt/ros/jazzy"}')
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    with pytest.raises(MachineError, match="Type: source /opt/ros/jazzy/setup"):
+        installation.find_ros({})
