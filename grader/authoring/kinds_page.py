@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from grader.checks.exercises import load_exercise
@@ -78,8 +79,11 @@ def _examples() -> dict[str, tuple[str, CheckSpec]]:
     """Kind -> the first step and check of the course that have it. Raises UsageError where a kind has none."""
     found: dict[str, tuple[str, CheckSpec]] = {}
     for step, file in catalogue().items():
-        for spec in load_exercise(file).checks:
-            found.setdefault(spec.kind, (step, spec))
+        exercise = load_exercise(file)
+        for spec in exercise.checks:
+            # A check of the first trial need not name it.
+            trial = "" if spec.trial == exercise.trials[0].id else spec.trial
+            found.setdefault(spec.kind, (step, replace(spec, trial=trial)))
     missing = [name for name in KINDS if name not in found]
     if missing:
         message = f"No exercise of the course has a check of the kind {missing[0]}, so the page has no example of it."

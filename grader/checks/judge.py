@@ -30,7 +30,7 @@ def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     for spec in _in_order(specs.values()):
         cause = next((causes[need] for need in spec.needs if need in causes), None)
         finding = (
-            _judge_one(evidence.in_trial(spec.trial), spec) if cause is None else _because(cause, findings[cause.id])
+            _judge_one(evidence.from_trial(spec.trial), spec) if cause is None else _because(cause, findings[cause.id])
         )
         findings[spec.id] = finding
         if finding.status is not Status.PASSED and not KINDS[spec.kind].advice:
@@ -61,7 +61,7 @@ def judge_early(evidence: Evidence) -> Early:
             blocked.add(spec.id)
             continue
         try:
-            finding = kind.judge_early(evidence.in_trial(spec.trial), spec.params)
+            finding = kind.judge_early(evidence.from_trial(spec.trial), spec.params)
         except Exception:  # (it is judged once more in the end, and told then)
             continue
         if finding is not None and finding.status is Status.FAILED and not kind.advice:
@@ -93,7 +93,7 @@ def of_this_trial(evidence: Evidence) -> tuple[Outcome, ...]:
 
 
 def _of_this_trial(evidence: Evidence, spec: CheckSpec) -> bool:
-    return KINDS[spec.kind].stage == "trial" and spec.trial == evidence.exercise.trial
+    return KINDS[spec.kind].stage == "trial" and spec.trial == evidence.trial.id
 
 
 def _blocked(outcome: Outcome) -> bool:
@@ -113,12 +113,12 @@ def _in_order(specs: Iterable[CheckSpec]) -> list[CheckSpec]:
 
 def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
     kind = KINDS[spec.kind]
-    made = {"source": True, "build": evidence.build is not None, "trial": evidence.recording is not None}
+    made = {"source": True, "build": evidence.build is not None, "trial": evidence.run.recording is not None}
     fault = evidence.fault
     if fault is not None and STAGES.index(kind.stage) >= STAGES.index(fault.stage) and not made[kind.stage]:
         return unreadable(fault.message) if fault.unreadable else Finding(Status.ERROR, fault.message)
-    if kind.stage == "trial" and evidence.overwhelmed is not None:
-        return _overwhelmed(evidence.overwhelmed)
+    if kind.stage == "trial" and evidence.run.overwhelmed is not None:
+        return _overwhelmed(evidence.run.overwhelmed)
     if not made[kind.stage]:
         return Finding(Status.SKIPPED, "Not judged, since the node was not run.")
     try:

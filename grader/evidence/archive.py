@@ -1,20 +1,17 @@
 """Archive: a graded submission as a folder, all that is needed to judge it again without running anything.
 
-    bag/             the messages, a rosbag2 folder (MCAP)
-    trial.json       the rest of the recording
+    trials/ID/       of each trial: bag/, the messages, a rosbag2 folder (MCAP), and trial.json, the rest
     build.json       what colcon made
     submission.json  name, digest and paths
     source/          the submission's files
     exercise/        the exercise as it was: exercise.toml
-    trials/ID/       bag/ and trial.json of each further trial of the exercise
     COLCON_IGNORE    so that colcon never runs the submission's setup.py
 
-bag/ and trial.json are missing where no trial could be run, build.json where nothing could be built.
+trials/ID/ is missing where that trial could not be run, build.json where nothing could be built.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import os
 import shutil
@@ -23,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.colcon.build import Build
 from grader.errors import MachineError, UsageError
-from grader.evidence.evidence import Evidence, Fault
+from grader.evidence.evidence import Evidence, Fault, Run
 from grader.exercise.model import FILE_NAME
 from grader.submission.package import Submission, open_answers, open_submission, write_copy
 from grader.submission.search import IGNORE_MARKER
@@ -36,7 +33,7 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise
     from grader.trial.recording import Recording
 
-_SCHEMA = 1
+_SCHEMA = 2
 
 
 @dataclass(frozen=True)
@@ -66,24 +63,23 @@ def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -
         _write(folder / "submission.json", _about(evidence, ros))
         if evidence.build is not None:
             _write(folder / "build.json", {"schema": _SCHEMA, **asdict(evidence.build)})
-        _save_trial(folder, evidence.recording, prefixes)
-        for trial, other in evidence.others.items():
-            (folder / "trials" / trial).mkdir(parents=True)
-            _save_trial(folder / "trials" / trial, other.recording, prefixes)
+        for trial, run in evidence.runs.items():
+            if run.recording is not None:
+                _save_recording(folder / "trials" / trial, run.recording, prefixes)
     except OSError as error:
         message = f"The recording could not be written to {folder}: {error.strerror}."
         raise MachineError(message) from error
 
 
-def _save_trial(folder: Path, recording: Recording | None, prefixes: Iterable[Path]) -> None:
-    if recording is not None:
-        from grader.evidence.bag import write_bag  # rosbags takes its time: only where a bag is written
+def _save_recording(folder: Path, recording: Recording, prefixes: Iterable[Path]) -> None:
+    from grader.evidence.bag import write_bag  # rosbags takes its time: only where a bag is written
 
-        write_bag(folder / "bag", recording.messages, prefixes)
-        _write(folder / "trial.json", {"schema": _SCHEMA, **to_json(recording, messages=False)})
+    folder.mkdir(parents=True)
+    write_bag(folder / "bag", recording.messages, prefixes)
+    _write(folder / "trial.json", {"schema": _SCHEMA, **to_json(recording, messages=False)})
 
 
-def _load_trial(folder: Path) -> Recording | None:
+def _load_recording(folder: Path) -> Recording | None:
     if not (folder / "trial.json").exists():
         return None
     from grader.evidence.bag import read_payloads
@@ -124,21 +120,16 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
         )
         build = _build(_read(folder / "build.json")) if (folder / "build.json").exists() else None
         fault = Fault(**about["fault"]) if about["fault"] else None
-        evidence = Evidence(kept, submission, build, _load_trial(folder), fault, about["overwhelmed"])
-        others = {
-            trial.id: dataclasses.replace(
-                evidence.in_trial(trial.id),
-                recording=_load_trial(folder / "trials" / trial.id),
-                overwhelmed=about["others"].get(trial.id),
-            )
+        runs = {
+            trial.id: Run(_load_recording(folder / "trials" / trial.id), about["runs"][trial.id]["overwhelmed"])
             for trial in kept.trials
-            if trial.id in about["others"]
+            if trial.id in about["runs"]
         }
     except (OSError, KeyError, TypeError, ValueError) as error:
         told = f"{type(error).__name__}: {error}"
         message = f"{folder} cannot be read as a recording, as `grader check --recording {folder}` writes one ({told})."
         raise UsageError(message) from error
-    return Archived(dataclasses.replace(evidence, others=others), about["ros"])
+    return Archived(Evidence(kept, submission, build, runs, fault), about["ros"])
 
 
 def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
@@ -153,8 +144,7 @@ def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
         "files": [os.fsencode(path).decode("utf-8", "backslashreplace") for path in submission.files],
         "ros": ros,
         "fault": asdict(evidence.fault) if evidence.fault else None,
-        "overwhelmed": evidence.overwhelmed,
-        "others": {trial: other.overwhelmed for trial, other in evidence.others.items()},
+        "runs": {trial: {"overwhelmed": run.overwhelmed} for trial, run in evidence.runs.items()},
     }
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from grader.colcon.build import Build
     from grader.evidence.stage import Stage
-    from grader.exercise.model import Exercise
+    from grader.exercise.model import Exercise, TrialSpec
     from grader.submission.package import Submission
     from grader.submission.where import Where
     from grader.trial.recording import Command, Recording
@@ -37,30 +37,57 @@ class Fault:
 
 
 @dataclass(frozen=True)
-class Evidence:
-    """A submission and what was seen of it; `build` and `recording` are None as long as they were not made.
+class Run:
+    """What came of one trial; nothing as long as it was not made."""
 
+    recording: Recording | None = None
+    overwhelmed: str | None = None
+    """How the node brought the simulator down, twice; then there is no recording."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """A submission and what was observed of it; `build` is None as long as it was not made.
+
+    A check looks at it from one of the exercise's trials: `trial` says which, `recording` is what that one saw.
     What the source files say is read on first use, from `submission.files` alone.
     """
 
     exercise: Exercise
     submission: Submission
     build: Build | None = None
-    recording: Recording | None = None
+    runs: Mapping[str, Run] = field(default_factory=dict)
+    """What came of the trials, by their ids; those that were not made yet are left out."""
     fault: Fault | None = None
-    overwhelmed: str | None = None
-    """How the node brought the simulator down, twice; then there is no recording."""
-    others: Mapping[str, Evidence] = field(default_factory=dict)
-    """The same, as seen in the exercise's further trials."""
+    trial_id: str = ""
+    """The trial that it is looked at from; empty for the exercise's first."""
 
-    def in_trial(self, trial: str) -> Evidence:
-        """The same, as seen in one of the exercise's trials ("" for its own); not yet run, it has no recording."""
-        if trial == self.exercise.trial:
-            return self
-        found = self.others.get(trial)
-        if found is not None:
-            return found
-        return replace(self, exercise=self.exercise.of_trial(trial), recording=None, overwhelmed=None, others={})
+    @property
+    def trial(self) -> TrialSpec:
+        """The trial that it is looked at from."""
+        return self.exercise.trial(self.trial_id) if self.trial_id else self.exercise.trials[0]
+
+    @property
+    def run(self) -> Run:
+        """What came of this trial."""
+        return self.runs.get(self.trial.id, Run())
+
+    def from_trial(self, id_: str) -> Evidence:
+        """The same, looked at from this trial."""
+        return self if id_ == self.trial.id else self._views[id_]
+
+    def views(self) -> tuple[Evidence, ...]:
+        """The same, looked at from each trial that was run; from the first in any case."""
+        ids = [trial.id for trial in self.exercise.trials]
+        return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
+
+    def with_run(self, run: Run) -> Evidence:
+        """The same, with what came of this trial."""
+        return replace(self, runs={**self.runs, self.trial.id: run})
+
+    @cached_property
+    def _views(self) -> dict[str, Evidence]:
+        return {trial.id: replace(self, trial_id=trial.id) for trial in self.exercise.trials}
 
     @cached_property
     def manifest(self) -> Manifest | None:
@@ -89,7 +116,7 @@ class Evidence:
             found = module_file(target.partition(":")[0].strip(), files)
             if found is not None:
                 return found
-        named = sorted(path for path in files if path.rpartition("/")[2] == f"{self.exercise.executable}.py")
+        named = sorted(path for path in files if path.rpartition("/")[2] == f"{self.trial.executable}.py")
         return named[0] if named else None
 
     @cached_property
@@ -100,28 +127,28 @@ class Evidence:
     @cached_property
     def commands(self) -> tuple[Command, ...]:
         """The commands that arrived before SIGINT."""
-        return observed.commands(self.trial)
+        return observed.commands(self.recording)
 
     @cached_property
     def track(self) -> Track:
         """The turtle's way until SIGINT."""
-        return track_of(self.trial)
+        return track_of(self.recording)
 
     def entry_point(self) -> str | None:
         """Return "module:attribute" of the exercise's executable: as installed, else as setup.py says."""
-        executable = self.exercise.executable
+        executable = self.trial.executable
         if self.build is not None and executable in self.build.entry_points:
             return self.build.entry_points[executable]
         declared = self.setup_py.entry_point(executable) if self.setup_py is not None else None
         return declared.target if declared is not None else None
 
     @property
-    def trial(self) -> Recording:
-        """The recording; only for checks of the stage "trial", which are not judged without one."""
-        if self.recording is None:
+    def recording(self) -> Recording:
+        """What this trial saw; only for checks of the stage "trial", which are not judged without it."""
+        if self.run.recording is None:
             message = "a check of a trial was judged without a recording"
             raise ValueError(message)
-        return self.recording
+        return self.run.recording
 
     @property
     def built(self) -> Build:

@@ -1,10 +1,10 @@
 """Read exercise.toml, and tell its author all that is wrong with it at once.
 
-schema = 1. `[exercise]` id, title, package, executable, node; without the last three answers.toml alone is handed in;
+schema = 2. `[exercise]` id, title, package; without a package answers.toml alone is handed in;
 starting_point_fails: the checks (ids) that exercises/ must fail, for `grader validate`.
-`[scenario]` duration_s, start, rename, pose_every; `[[scenario.drive]]` from_s, linear_x_m_s, angular_z_rad_s (one
-number, or two to draw from). `[[trial]]` id, executable, node, `[trial.scenario]`. `[[check]]` id, kind, points, needs
-(ids), title, trial, hidden, and the parameters of its kind. `[[hint]]` text, from a nudge to nearly the answer.
+`[[trial]]` id, executable, node, duration_s, start, rename, pose_every; `[[trial.drive]]` from_s, linear_x_m_s,
+angular_z_rad_s (one number, or two to draw from). `[[check]]` id, kind, points, needs (ids), title, trial (the first
+one when it is left out), hidden, and the parameters of its kind. `[[hint]]` text, from a nudge to nearly the answer.
 """
 
 from __future__ import annotations
@@ -24,9 +24,15 @@ if TYPE_CHECKING:
 
     from grader.exercise.kind_spec import KindSpec, Param
 
-SCHEMA = 1
+SCHEMA = 2
+OLDER = {
+    1: "move `executable` and `node` out of [exercise], and all keys of [scenario], into a [[trial]] with an `id` of "
+    "its own; likewise the keys of [trial.scenario]; write [[trial.drive]] for [[scenario.drive]]; then schema = 2."
+}
+"""What to change in a file of an older version of the format."""
 ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 ROS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+NAME = "letters, digits and _, beginning with a letter"
 REMAP = re.compile(r"(/\w+)+:=(/\w+)+")
 MAX_DURATION_S = 600.0
 MAX_SPEED = 10.0
@@ -51,44 +57,63 @@ def parse_tables(top: dict[str, Any], name: str, folder: Path, digest: str, kind
     return exercise
 
 
+def of_older_schema(values: Mapping[str, Any]) -> str:
+    """What to change in a file of an older version of the format; empty for any other file."""
+    schema = values.get("schema")
+    known = OLDER.get(schema) if isinstance(schema, int) else None
+    return f"schema {schema} is no longer read: {known}" if known else ""
+
+
 def _exercise(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
-    if top.number("schema", SCHEMA, SCHEMA, f"{SCHEMA}, the version of this format") != SCHEMA:
-        return Exercise("", "", "", "", "", Scenario(0.0), (), (), folder)
+    older = of_older_schema(top.values)
+    if older:
+        top.problem(older)
+    elif top.number("schema", SCHEMA, SCHEMA, f"{SCHEMA}, the version of this format") == SCHEMA:
+        return _read(top, folder, digest, kinds)
+    return Exercise("", "", "", (), (), (), folder)
+
+
+def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
     head = top.table("exercise")
-    name = "letters, digits and _, beginning with a letter"
-    # An exercise without a package has no node either.
-    default = None if "package" in head.values else ""
-    tables = top.tables("trial")
-    trials = tuple(_trial(table) for table in tables)
-    for table, trial in zip(tables, trials, strict=True):
-        if [each.id for each in trials].count(trial.id) > 1:
-            table.problem(f'the id "{trial.id}" is used twice; each trial needs one of its own.')
+    # What is answered in answers.toml alone has no package, and no trial of it has a node.
+    package = head.text("package", ROS_NAME, NAME, default=None if "package" in head.values else "")
+    trials = _trials(top, package)
     exercise = Exercise(
         id=head.text("id", ID, "small letters, digits and single dashes, as in 03-circle-publisher"),
         title=head.text("title"),
-        package=head.text("package", ROS_NAME, name, default=default),
-        executable=head.text("executable", ROS_NAME, name, default=default),
-        node=head.text("node", ROS_NAME, name, default=default),
-        scenario=_scenario(top.table("scenario")),
+        package=package,
+        trials=trials,
         checks=_checks(top, tuple(trial.id for trial in trials), kinds),
         hints=tuple(_hint(table) for table in top.tables("hint")),
         unsolved=head.texts("starting_point_fails"),
         folder=folder,
         digest=digest,
-        trials=trials,
     )
     for table in (head, top):
         table.finish()
     return exercise
 
 
-def _trial(table: Table) -> TrialSpec:
-    name = "letters, digits and _, beginning with a letter"
+def _trials(top: Table, package: str) -> tuple[TrialSpec, ...]:
+    tables = top.tables("trial")
+    if not tables:
+        top.problem("there is no [[trial]], so nothing would be run.")
+    trials = tuple(_trial(table, package) for table in tables)
+    for table, trial in zip(tables, trials, strict=True):
+        if [each.id for each in trials].count(trial.id) > 1:
+            table.problem(f'the id "{trial.id}" is used twice; each trial needs one of its own.')
+    return trials
+
+
+def _trial(table: Table, package: str) -> TrialSpec:
+    id_ = table.text("id", ID, "small letters, digits and single dashes, as in figure-eight")
+    if id_:
+        table.place += f" ({id_})"
     spec = TrialSpec(
-        id=table.text("id", ID, "small letters, digits and single dashes, as in figure-eight"),
-        executable=table.text("executable", ROS_NAME, name),
-        node=table.text("node", ROS_NAME, name),
-        scenario=_scenario(table.table("scenario")),
+        id=id_,
+        executable=table.text("executable", ROS_NAME, NAME) if package else "",
+        node=table.text("node", ROS_NAME, NAME) if package else "",
+        scenario=_scenario(table),
     )
     table.finish()
     return spec
@@ -106,7 +131,6 @@ def _scenario(table: Table) -> Scenario:
     for rule in scenario.rename:
         if not REMAP.fullmatch(rule):
             table.problem(f'"rename" holds "{shorten(rule)}"; a rule reads "/old/name:=/new/name".')
-    table.finish()
     return scenario
 
 
@@ -150,11 +174,9 @@ def _check(table: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec])
     id_ = table.text("id", ID, "small letters, digits and single dashes, as in circle-radius")
     if id_:
         table.place += f" ({id_})"
-    trial = table.text("trial", default="")
-    if trial and trial not in trials:
-        table.problem(
-            f'"trial" is "{shorten(trial)}"; it must be the id of a [[trial]]: {", ".join(trials) or "none"}.'
-        )
+    trial = table.text("trial", default=trials[0] if trials else "?")
+    if trials and trial not in trials:
+        table.problem(f'"trial" is "{shorten(trial)}"; it must be the id of a [[trial]]: {", ".join(trials)}.')
     name = table.text("kind", allowed=f"one of {', '.join(kinds)}")
     points = table.number("points", 0.0, 1000.0, "a number from 0 to 1000")
     needs, hidden = table.texts("needs"), table.flag("hidden")

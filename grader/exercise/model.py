@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,7 @@ FILE_NAME = "exercise.toml"
 class CheckSpec:
     """One `[[check]]`: `params` hold its numbers, with units in their names (`rate_hz`, `radius_m`).
 
-    `trial`: the id of the trial that it judges, empty for the exercise's own.
+    `trial`: the id of the trial that it judges.
     """
 
     id: str
@@ -30,7 +30,7 @@ class CheckSpec:
     needs: tuple[str, ...]
     hidden: bool
     params: Mapping[str, Param]
-    trial: str = ""
+    trial: str
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,10 @@ class Scenario:
 
 @dataclass(frozen=True)
 class TrialSpec:
-    """One `[[trial]]`: another executable of the same package in a scenario of its own."""
+    """One `[[trial]]`: the executable that runs, the name of its node (without a slash), and what happens meanwhile.
+
+    Without an executable the simulator runs by itself.
+    """
 
     id: str
     executable: str
@@ -69,7 +72,7 @@ class TrialSpec:
 
 @dataclass(frozen=True)
 class Exercise:
-    """A step's exercise. `node` is the node's name without a slash, `executable` the entry point that starts it.
+    """A step's exercise: a package is built and run in every trial, and the checks judge what was observed.
 
     Without a `package` what is handed in is answers.toml alone, and the simulator runs by itself.
     """
@@ -77,9 +80,8 @@ class Exercise:
     id: str
     title: str
     package: str
-    executable: str
-    node: str
-    scenario: Scenario
+    trials: tuple[TrialSpec, ...]
+    """In the order of the file; there is at least one."""
     checks: tuple[CheckSpec, ...]
     hints: tuple[str, ...]
     folder: Path
@@ -87,22 +89,10 @@ class Exercise:
     """sha256 of exercise.toml: what the exercise asks for, and how it is judged."""
     unsolved: tuple[str, ...] = ()
     """The checks that the starting point must fail (for its author: `grader validate`); what needs them is skipped."""
-    trials: tuple[TrialSpec, ...] = ()
-    """Further trials, after the exercise's own."""
-    trial: str = ""
-    """Seen as which of its trials: `executable`, `node` and `scenario` are that one's."""
-    whole: Exercise | None = None
-    """Where it is seen as a further trial: the exercise itself."""
 
-    def of_trial(self, trial: str) -> Exercise:
-        """The exercise seen as one of its further trials, or as itself (""); KeyError for one that it does not have."""
-        itself = self.whole or self
-        if not trial:
-            return itself
-        spec = {each.id: each for each in self.trials}[trial]
-        return replace(
-            self, executable=spec.executable, node=spec.node, scenario=spec.scenario, trial=trial, whole=itself
-        )
+    def trial(self, id_: str) -> TrialSpec:
+        """The trial with this id. Raises KeyError where there is none."""
+        return {trial.id: trial for trial in self.trials}[id_]
 
 
 def course_folder() -> Path:

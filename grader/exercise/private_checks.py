@@ -2,8 +2,7 @@
 
 What such a file says is laid over the course's own exercise.toml:
 
-    schema = 1
-    [scenario]      keys that replace the course's
+    schema = 2
     [[check]]       with an id of the course's: its keys replace those of that check (all of them where the kind is
                     another); with a new id: one check more. Hidden, unless it says `hidden = false`
     [[trial]]       the same, by id
@@ -17,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.common.words import a_list, nearest
 from grader.errors import UsageError
-from grader.exercise.exercise_toml import SCHEMA, parse_tables
+from grader.exercise.exercise_toml import SCHEMA, of_older_schema, parse_tables
 from grader.exercise.model import FILE_NAME, catalogue
 from grader.exercise.tables import read_toml
 
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     from grader.exercise.kind_spec import KindSpec
     from grader.exercise.model import Exercise
 
-ALLOWED = ("schema", "scenario", "check", "trial")
+ALLOWED = ("schema", "check", "trial")
 
 
 @dataclass(frozen=True)
@@ -93,14 +92,16 @@ def _private_files(checks: Path, known: Mapping[str, Path]) -> dict[str, Path]:
 
 def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> dict[str, Any]:
     """The tables of both. Raises UsageError for what a private file may not hold."""
+    older = of_older_schema(private)
+    if older:
+        message = f"{name}: {older}"
+        raise UsageError(message)
     unknown = [key for key in private if key not in ALLOWED]
     if unknown or private.get("schema") != SCHEMA:
         seen = f'unknown key "{unknown[0]}"' if unknown else f"schema is {private.get('schema')!r}, not {SCHEMA}"
         message = f"{name}: {seen}. A file of private checks may hold {a_list(ALLOWED)}."
         raise UsageError(message)
     merged = dict(public)
-    if isinstance(private.get("scenario"), dict):
-        merged["scenario"] = {**public.get("scenario", {}), **private["scenario"]}
     hidden = [{"hidden": True, **each} for each in _tables(private, "check", name)]
     merged["check"] = _laid_over(list(public.get("check", [])), hidden)
     if "trial" in private:

@@ -15,7 +15,7 @@ from grader.checks.outcome import Status
 from grader.colcon import workspace
 from grader.common.words import printable
 from grader.errors import MachineError
-from grader.evidence.evidence import Evidence, Fault
+from grader.evidence.evidence import Evidence, Fault, Run
 from grader.grading.turns import Turns
 from grader.grading.turns import folder as turns_folder
 from grader.report.report import Report
@@ -96,7 +96,7 @@ def report_of(
     evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float], *, confined: bool = True
 ) -> Report:
     """The report on evidence that has been judged."""
-    recording = evidence.recording
+    recording = evidence.run.recording
     return Report(
         exercise=evidence.exercise.id,
         exercise_title=evidence.exercise.title,
@@ -153,12 +153,10 @@ class _Grading:
                     evidence = self._build(evidence, here, extra)
                     stage = "trial"
                     self._run_ahead(evidence)
-                    if wants_trial(evidence):
-                        evidence = self._seen_in_trial(evidence, here, extra)
                     for spec in self.exercise.trials:
-                        if wants_trial(evidence.in_trial(spec.id)):
-                            seen = self._seen_in_trial(evidence.in_trial(spec.id), here, extra)
-                            evidence = dataclasses.replace(evidence, others={**evidence.others, spec.id: seen})
+                        if wants_trial(evidence.from_trial(spec.id)):
+                            evidence = self._run_trial(evidence.from_trial(spec.id), here, extra)
+                    evidence = evidence.from_trial(self.exercise.trials[0].id)
         except MachineError as error:
             evidence = dataclasses.replace(evidence, fault=Fault(stage, str(error)))
         except OSError as error:
@@ -176,35 +174,31 @@ class _Grading:
 
     def _simulator_alone(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
         self.tell("Asking a running simulator")
-        with self._timed("trial"), self._trial("simulated", here, extra) as trial:
+        with self._timed("trial"), self._trial(evidence, "simulated", here, extra) as trial:
             recording = trial.run_alone()
         why = "the simulator ran by itself, and says the same at any pace"
-        return dataclasses.replace(evidence, recording=dataclasses.replace(recording, why=why))
+        return evidence.with_run(Run(dataclasses.replace(recording, why=why)))
 
     def _start_trials(self, evidence: Evidence, certain: Early, here: Ros, extra: Path | None) -> None:
         """Start simulators and launchers beside the build, of all trials or one; none for a node that cannot run."""
         for seen in _longest_first(evidence) if self.options.trials_at_once > 1 else (evidence,):
             if certain.may_run(seen):
                 clock, _ = self._first_clock(seen)
-                self.ahead.start(seen.exercise.trial, self._of(seen)._trial(clock, here, extra))
+                self.ahead.start(seen.trial.id, self._trial(seen, clock, here, extra))
 
     def _run_ahead(self, evidence: Evidence) -> None:
         """Let the nodes begin whose trials pass in simulated time."""
         for seen in _longest_first(evidence):
-            name = seen.exercise.trial
+            name = seen.trial.id
             if self.ahead.trial(name) and self._first_clock(seen)[0] == "simulated" and wants_trial(seen):
-                self.ahead.run(name, _package(seen), seen.exercise.executable, self.tree)
+                self.ahead.run(name, _package(seen), seen.trial.executable, self.tree)
 
-    def _seen_in_trial(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
-        """The evidence with what its trial showed, which ends here."""
-        one = self._of(evidence)
-        clock, why = one._first_clock(evidence)
-        begun = self.ahead.trial(evidence.exercise.trial)
-        with nullcontext(begun) if begun else one._trial(clock, here, extra) as trial:
-            return one._try_twice(evidence, trial, clock, why, here, extra)
-
-    def _of(self, seen: Evidence) -> _Grading:
-        return dataclasses.replace(self, exercise=seen.exercise, tree=self.tree)
+    def _run_trial(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
+        """The evidence with what this trial showed, which ends here."""
+        clock, why = self._first_clock(evidence)
+        begun = self.ahead.trial(evidence.trial.id)
+        with nullcontext(begun) if begun else self._trial(evidence, clock, here, extra) as trial:
+            return self._try_twice(evidence, trial, clock, why, here, extra)
 
     def _first_clock(self, evidence: Evidence) -> tuple[ClockName, str]:
         if self.options.clock != "auto":
@@ -236,13 +230,13 @@ class _Grading:
             return self._try(evidence, trial, clock, why, here, extra)
         except OverwhelmedError as error:
             if error.hung:
-                return dataclasses.replace(evidence, overwhelmed=str(error))
+                return evidence.with_run(Run(overwhelmed=str(error)))
             self.tell(f"The simulator was brought down ({printable(str(error))}): once more")
         try:
-            with self._trial(clock, here, extra) as again:
+            with self._trial(evidence, clock, here, extra) as again:
                 return self._try(evidence, again, clock, why, here, extra)
         except OverwhelmedError as error:
-            return dataclasses.replace(evidence, overwhelmed=str(error))
+            return evidence.with_run(Run(overwhelmed=str(error)))
 
     def _try(
         self, evidence: Evidence, trial: Runs, clock: ClockName, why: str, here: Ros, extra: Path | None
@@ -257,7 +251,7 @@ class _Grading:
                 if self.options.clock == "simulated" or not near_edge(of_this_trial(evidence)):
                     return evidence
                 why = "a measured value lies near the edge of what is allowed, where only the wall's clock decides"
-            with self._trial("wall", here, extra) as again:
+            with self._trial(evidence, "wall", here, extra) as again:
                 evidence = self._run(evidence, again, "wall", why)
         else:
             evidence = self._run(evidence, trial, "wall", why)
@@ -272,29 +266,29 @@ class _Grading:
         tried = [evidence]
         while len(tried) < WALL_TRIALS and _disturbed(tried[-1]) and not _passed(tried[-1]):
             self.tell("The machine was too busy for wall time: once more")
-            with self.turns.alone(), self._trial("wall", here, extra) as trial:
+            with self.turns.alone(), self._trial(evidence, "wall", here, extra) as trial:
                 tried.append(self._run(evidence, trial, "wall", why))
         return tried[-1] if _passed(tried[-1]) else min(tried, key=_disturbance)
 
     def _run(self, evidence: Evidence, trial: Runs, clock: ClockName, why: str) -> Evidence:
-        duration_s = self.exercise.scenario.duration_s
+        duration_s = evidence.trial.scenario.duration_s
         simulated = clock == "simulated"
         if not simulated:
             self.ahead.settle()
         self.tell(f"Running {duration_s:g} s of simulated time" if simulated else f"Running {duration_s:g} s ({why})")
         with self._timed("trial"):
-            recording = trial.run(_package(evidence), self.exercise.executable, self.tree)
+            recording = trial.run(_package(evidence), evidence.trial.executable, self.tree)
         self._split(recording)
-        return dataclasses.replace(evidence, recording=dataclasses.replace(recording, why=why))
+        return evidence.with_run(Run(dataclasses.replace(recording, why=why)))
 
     def _split(self, recording: Recording) -> None:
         for part, seconds in recording.seconds.items():
             if part != "start":
                 self.seconds[part] = self.seconds.get(part, 0.0) + seconds
 
-    def _trial(self, clock: ClockName, here: Ros, extra: Path | None) -> Trial:
-        exercise, scenario = self.exercise, self.exercise.scenario
-        checks = [check for check in exercise.checks if check.trial == exercise.trial]
+    def _trial(self, evidence: Evidence, clock: ClockName, here: Ros, extra: Path | None) -> Trial:
+        exercise, scenario = self.exercise, evidence.trial.scenario
+        checks = [check for check in exercise.checks if check.trial == evidence.trial.id]
         radius = max((float(c.params["radius_m"]) for c in checks if "radius_m" in c.params), default=2.0)  # type: ignore[arg-type]
         seed = self.options.seed
         start = start_pose(UNASKED_SEED if seed is None and scenario.anywhere else seed, radius)
@@ -320,8 +314,8 @@ class _Grading:
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:
     """The evidence as each of the exercise's trials sees it, in the order in which none is left to run alone."""
-    all_of_it = [evidence.in_trial(name) for name in ("", *(spec.id for spec in evidence.exercise.trials))]
-    return sorted(all_of_it, key=lambda seen: -seen.exercise.scenario.duration_s)
+    views = [evidence.from_trial(spec.id) for spec in evidence.exercise.trials]
+    return sorted(views, key=lambda seen: -seen.trial.scenario.duration_s)
 
 
 def _package(evidence: Evidence) -> str:
@@ -333,16 +327,16 @@ def _package(evidence: Evidence) -> str:
 
 def _why_this_clock(evidence: Evidence) -> str:
     """Why the first trial was judged under its clock, and which others were judged under another."""
-    first = evidence.recording
+    first = evidence.run.recording
     if first is None:
         return _why_not_run(evidence)
-    others = [(seen.exercise.executable, seen.recording) for seen in evidence.others.values()]
+    others = [(seen.trial.executable, seen.run.recording) for seen in evidence.views()]
     differ = [(name, other) for name, other in others if other is not None and other.clock != first.clock]
     return "; ".join([first.why, *(f"{name} in {other.clock} time: {other.why}" for name, other in differ)])
 
 
 def _why_not_run(evidence: Evidence) -> str:
-    return "The node was not run." if evidence.overwhelmed is None else "The trial could not be finished."
+    return "The node was not run." if evidence.run.overwhelmed is None else "The trial could not be finished."
 
 
 def _passed(evidence: Evidence) -> bool:
@@ -354,5 +348,4 @@ def _disturbed(evidence: Evidence) -> bool:
 
 
 def _disturbance(evidence: Evidence) -> tuple[bool, float]:
-    assert evidence.recording is not None
     return evidence.recording.crowded, evidence.recording.stalled_s

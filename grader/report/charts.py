@@ -192,7 +192,7 @@ def six(command: Command) -> tuple[float, ...]:
 
 
 def _end_s(evidence: Evidence) -> float:
-    return max(observed.end_s(evidence.trial), 0.1)
+    return max(observed.end_s(evidence.recording), 0.1)
 
 
 def _steps(series: Series, wanted: float | None, label: str, end_s: float, where: tuple[float, int]) -> str:

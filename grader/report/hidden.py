@@ -41,10 +41,6 @@ def evidence_for_students(evidence: Evidence) -> Evidence:
     """The evidence without hidden checks and the trials that are theirs alone."""
     exercise = evidence.exercise
     shown = tuple(spec for spec in exercise.checks if not spec.hidden)
-    open_trials = {spec.trial for spec in shown}
-    others = {
-        trial: replace(other, exercise=replace(other.exercise, checks=shown))
-        for trial, other in evidence.others.items()
-        if trial in open_trials
-    }
-    return replace(evidence, exercise=replace(exercise, checks=shown), others=others)
+    trials = {exercise.trials[0].id, *(spec.trial for spec in shown)}
+    runs = {trial: run for trial, run in evidence.runs.items() if trial in trials}
+    return replace(evidence, exercise=replace(exercise, checks=shown), runs=runs)

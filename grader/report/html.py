@@ -87,11 +87,11 @@ def html_page(evidence: Evidence, report: Report) -> str:
 def without_content(evidence: Evidence) -> Evidence:
     """The evidence without anything that came from the submission."""
     nothing = replace(evidence.submission, files={}, rejected=(), executable=frozenset())
-    return replace(evidence, submission=nothing, build=None, recording=None, others={})
+    return replace(evidence, submission=nothing, build=None, runs={})
 
 
 def _page(evidence: Evidence, report: Report) -> str:
-    evidences = [evidence, *evidence.others.values()]
+    evidences = evidence.views()
     runs = runs_of(evidences)
     shown = list(_shown(evidence, report))
     fault = evidence.fault.message if evidence.fault and not evidence.fault.unreadable else ""

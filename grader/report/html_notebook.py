@@ -40,7 +40,7 @@ def _fragment(evidence: Evidence, report: Report) -> str:
         "tone": tone(report),
         "checks": [ShownCheck(number, outcome) for number, outcome in enumerate(worth, 1)],
         "silent": len(report.outcomes) - len(worth),
-        "runs": runs_of([evidence, *evidence.others.values()], _key(report)),
+        "runs": runs_of(evidence.views(), _key(report)),
     }
     return fill("notebook.html", values)
 

@@ -64,7 +64,7 @@ class Run:
 def runs_of(evidences: Sequence[Evidence], key: str = "run") -> list[Run]:
     """The trials that were run, in order; each is titled where there are several. `key` begins every id in them."""
     several = len(evidences) > 1
-    tried = [(number, evidence) for number, evidence in enumerate(evidences) if evidence.recording is not None]
+    tried = [(number, evidence) for number, evidence in enumerate(evidences) if evidence.run.recording is not None]
     return [_run(evidence, f"{key}-{number}" if number else key, several, len(tried)) for number, evidence in tried]
 
 
@@ -75,13 +75,13 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
         charts.intervals(evidence, f"{key}-intervals", bins),
         charts.values(evidence, f"{key}-values", bins),
     )
-    recording = evidence.trial
+    recording = evidence.recording
     graph = draw_graph(recording, f"{key}-graph")
-    trial = evidence.exercise.trial
+    trial = evidence.trial.id
     driving = any(spec.kind in DRIVING and spec.trial == trial for spec in evidence.exercise.checks)
     return Run(
         key=key,
-        title=evidence.exercise.executable if several else "",
+        title=evidence.trial.executable if several else "",
         duration_s=recording.duration_s,
         canvas=Markup(scene_svg(scene, turtle=True, name=f"{key}-canvas")),
         legend=tuple((Markup(sign(role)), text) for role, text in scene.legend),
@@ -99,7 +99,7 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
 
 def _end(evidence: Evidence) -> str:
     """How the node's process ended, in a sentence."""
-    end = evidence.trial.end
+    end = evidence.recording.end
     # A shell tells the end by a signal as 128 and the signal's number.
     code = end.exit_code if end.exit_code >= 0 else 128 - end.exit_code
     if end.by == "itself":
@@ -121,7 +121,7 @@ def _rows(evidence: Evidence) -> list[tuple[str, ...]]:
 
 def _data(evidence: Evidence, among: int) -> dict[str, object]:
     """What the player needs: the turtle (m, rad) at times (s), the commands; null for what is no finite number."""
-    recording = evidence.trial
+    recording = evidence.recording
     end_s = observed.end_s(recording)
     frames = recording.frames
     count = int((frames.t_s <= end_s).sum())

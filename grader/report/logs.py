@@ -53,18 +53,18 @@ def logs_of(evidences: Sequence[Evidence]) -> tuple[Log, ...]:
         note = f"colcon ended with exit code {build.exit_code}." if build.exit_code else ""
         logs.append(_log("build", "What colcon said while it built", build.log, size, note))
     for number, evidence in enumerate(evidences):
-        recording = evidence.recording
+        recording = evidence.run.recording
         if recording is None:
             continue
         end = f"-{number}" if number else ""
-        node = f"the node {evidence.exercise.executable}" if len(evidences) > 1 else "the node"
+        node = f"the node {evidence.trial.executable}" if len(evidences) > 1 else "the node"
         for key, title, output in (
             ("stderr", f"What {node} wrote on stderr", recording.stderr),
             ("stdout", f"What {node} printed on stdout", recording.stdout),
         ):
             logs.append(_log(key + end, title, output.text, size, _dropped(output)))
         logged = "\n".join(f"{line.t_s:7.2f} s  {line.level:5}  {line.logger}: {line.text}" for line in recording.log)
-        beside = f" while {evidence.exercise.executable} ran" if len(evidences) > 1 else ""
+        beside = f" while {evidence.trial.executable} ran" if len(evidences) > 1 else ""
         logs.append(_log("rosout" + end, f"What was logged on /rosout{beside}, by arrival", logged, size))
     return tuple(sorted((log for log in logs if log.lines), key=lambda log: not log.errors))
 

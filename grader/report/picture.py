@@ -56,7 +56,7 @@ def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
 
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
     """The picture as an image: of every trial; where there is no way to draw, it says so."""
-    trials = (evidence, *evidence.others.values())
+    trials = evidence.views()
     panels = _panels(len(trials))
     page = _page(panels)
     pen = ImageDraw.Draw(page)
@@ -67,7 +67,7 @@ def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
         _axes(pen, panel)
         _legend(pen, scene, panel)
         if len(trials) > 1:
-            name = printable(each.exercise.executable)
+            name = printable(each.trial.executable)
             pen.text((panel.left, panel.top - HEADING / 2), name, fill=INK, font=_font(18), anchor="lm")
         if scene.notice:
             _middle(pen, scene.notice, panel)

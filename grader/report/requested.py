@@ -28,7 +28,7 @@ def asked_shapes(evidence: Evidence) -> tuple[tuple[Line | Ring, ...], str]:
     """The shapes that this trial asks for, and in words which they are; nothing where the way is free."""
     circle = asked_circle(evidence)
     if circle is not None:
-        return (_ring(evidence.trial.start, circle),), f"asked for: radius {circle.radius_m:.2f} m"
+        return (_ring(evidence.recording.start, circle),), f"asked for: radius {circle.radius_m:.2f} m"
     eight = params_of(evidence, "figure_eight", Eight)
     if eight is not None:
         return _eight(evidence, eight), f"asked for: two lobes of {eight.radius_m:.2f} m"
@@ -51,7 +51,7 @@ def asked_circle(evidence: Evidence) -> CircleParams | None:
 def params_of(evidence: Evidence, kind: str, params: type[P]) -> P | None:
     """The parameters of the first check of this kind of the trial that is not hidden; None without one."""
     for spec in evidence.exercise.checks:
-        if spec.kind == kind and spec.trial == evidence.exercise.trial and not spec.hidden:
+        if spec.kind == kind and spec.trial == evidence.trial.id and not spec.hidden:
             given: dict[str, Any] = dict(spec.params)
             return params(**given)
     return None
@@ -91,7 +91,7 @@ def _goal(params: Goal) -> tuple[Line | Ring, ...]:
 
 def _begin(evidence: Evidence) -> Pose:
     """Where the turtle starts, looking the way that it first drives: it may have turned before."""
-    start, track = evidence.trial.start, evidence.track
+    start, track = evidence.recording.start, evidence.track
     if not track.finite:
         return start
     moving = np.flatnonzero(track.steps > RESTS_M)

@@ -37,7 +37,7 @@ class Scene:
 
 def scene_of(evidence: Evidence) -> Scene:
     """What there is to draw of a run."""
-    recording = evidence.recording
+    recording = evidence.run.recording
     if recording is None:
         return Scene(notice="The node was not run.")
     track = evidence.track

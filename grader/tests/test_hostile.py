@@ -20,6 +20,7 @@ from grader.checks.exercises import load_exercise
 from grader.checks.judge import judge
 from grader.checks.outcome import Status
 from grader.evidence import archive
+from grader.evidence.evidence import Run
 from grader.ros import installation, underlay
 from grader.sandbox import bubblewrap
 from grader.tests.attack import Attack, make_attack, read_attacks
@@ -40,7 +41,7 @@ pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no san
 
 
 @dataclass(frozen=True)
-class Run:
+class Graded:
     """An attack's grading: what the host was left with, and the folder with report.json, report.html and recording/."""
 
     left: Left
@@ -63,33 +64,33 @@ class Run:
         """What build and node wrote."""
         evidence = self.evidence
         log = evidence.build.log if evidence.build else ""
-        if evidence.recording is None:
+        if evidence.run.recording is None:
             return log
-        return log + evidence.recording.stdout.text + evidence.recording.stderr.text
+        return log + evidence.run.recording.stdout.text + evidence.run.recording.stderr.text
 
 
 class Runs:
     """Runs what this session asks for, as many at once as there are processors."""
 
     def __init__(self, wanted: list[tuple[Attack, str]], folder: Path, pool: ThreadPoolExecutor) -> None:
-        self._futures: dict[tuple[str, str], Future[Run]] = {
+        self._futures: dict[tuple[str, str], Future[Graded]] = {
             (attack.name, way): pool.submit(run, attack, way, folder / f"{attack.name}.{way}") for attack, way in wanted
         }
 
-    def of(self, attack: Attack, way: str) -> Run:
+    def of(self, attack: Attack, way: str) -> Graded:
         return self._futures[attack.name, way].result()
 
 
-def run(attack: Attack, way: str, folder: Path) -> Run:
+def run(attack: Attack, way: str, folder: Path) -> Graded:
     host = Host(folder, underlay.ensure(installation.find_ros()), as_user=way == "as-user")
     make_attack(attack, host.work)
     if way == "undefended" and attack.raw:
         raw = attack.raw.replace("{python}", shlex.quote(sys.executable))
         script = f"cd my_robot_controller && {{ {raw}; }} 2>&1"
-        return Run(host.run(["sh", "-c", script], defended=False), host.work)
+        return Graded(host.run(["sh", "-c", script], defended=False), host.work)
     wanted = ["--json", "report.json", "--html", "report.html", "--recording", "recording", "--clock", attack.clock]
     check = [sys.executable, "-m", "grader.cli", "check", "my_robot_controller", "--exercise", EXERCISE, *wanted]
-    return Run(host.run(check, defended=way != "undefended"), host.work)
+    return Graded(host.run(check, defended=way != "undefended"), host.work)
 
 
 @pytest.fixture(scope="session")
@@ -134,7 +135,7 @@ def test_an_attack_is_held_for_an_ordinary_user(attack: Attack, runs: Runs) -> N
     assert_held(attack, runs.of(attack, "as-user"))
 
 
-def assert_held(attack: Attack, done: Run) -> None:
+def assert_held(attack: Attack, done: Graded) -> None:
     left = done.left
     # A machine that others keep busy says so; what an attacker does must not make it say so.
     if not (done.too_busy and os.getloadavg()[0] > 2.0 * (os.cpu_count() or 1)):
@@ -157,11 +158,11 @@ def assert_held(attack: Attack, done: Run) -> None:
 
 def was_there(evidence: Evidence, what: str) -> bool:
     """Whether a topic, a node or an intervention is in the recording, or the build is what it should be."""
-    if evidence.overwhelmed is not None:
+    if evidence.run.overwhelmed is not None:
         return True
     if what.endswith(" files"):
         return evidence.build is not None and evidence.build.out_of is not None
-    recording = evidence.trial
+    recording = evidence.recording
     nodes = {node.lstrip("/") for graph in recording.graphs for node in graph.nodes}
     return what in recording.topics or what in recording.interventions or what in nodes
 
@@ -191,7 +192,7 @@ def test_undefended_an_attack_leaves_its_trace(attack: Attack, runs: Runs) -> No
 @each(lambda attack: bool(attack.passes))
 def test_without_its_defence_a_check_would_pass(attack: Attack, runs: Runs) -> None:
     evidence = runs.of(attack, "defended").evidence
-    recording = evidence.trial
+    recording = evidence.recording
     if attack.without == "interventions":
         blind = dataclasses.replace(recording, interventions=())
     else:
@@ -202,7 +203,7 @@ def test_without_its_defence_a_check_would_pass(attack: Attack, runs: Runs) -> N
         blind = dataclasses.replace(recording, graphs=graphs)
     before, after = (
         {outcome.id: outcome.status for outcome in judge(each)}[attack.passes]
-        for each in (evidence, dataclasses.replace(evidence, recording=blind))
+        for each in (evidence, evidence.with_run(Run(blind)))
     )
     assert (before, after) == (Status.FAILED, Status.PASSED)
 

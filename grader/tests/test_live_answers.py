@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).parent.parent.parent
 STEP = "02-discover-topics"
-SCENARIO = "[scenario]\n"
+SCENARIO = "[[trial]]\n"
 
 
 @pytest.fixture

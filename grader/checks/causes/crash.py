@@ -72,13 +72,13 @@ class Crash:
 
 def crash_of(evidence: Evidence) -> Crash | None:
     """What ended the node before the scenario was over; None when it ended well, or at Ctrl-C."""
-    end = evidence.trial.end
+    end = evidence.recording.end
     if end.out_of is not None:
         return Crash(f"it used up the {end.out_of} that a node may use", "")
     if end.by != "itself":
         return None
     # What a crashed node leaves as its exit code is not always what Python gave it: its last words count.
-    found = read_traceback(evidence.trial.stderr.text, evidence.submission.files)
+    found = read_traceback(evidence.recording.stderr.text, evidence.submission.files)
     if found is not None or end.exit_code == 0:
         return found
     if end.exit_code < 0:
@@ -91,7 +91,7 @@ def ended_early(evidence: Evidence) -> str:
 
     Without the time and the exception's message, since those may differ from run to run, and a cause must not.
     """
-    if evidence.trial.end.by != "itself":
+    if evidence.recording.end.by != "itself":
         return ""
     crash = crash_of(evidence)
     if crash is None:
@@ -102,10 +102,10 @@ def ended_early(evidence: Evidence) -> str:
 
 def end_seen(evidence: Evidence) -> str:
     """What was seen of a node that ended before the scenario was over, with the time; empty when it did not."""
-    end = evidence.trial.end
+    end = evidence.recording.end
     if end.by != "itself":
         return ""
-    when = "at its start" if ended_at_start(evidence.trial) else f"after {end.t_s:.1f} s"
+    when = "at its start" if ended_at_start(evidence.recording) else f"after {end.t_s:.1f} s"
     crash = crash_of(evidence)
     return f"The node ended by itself {when}." if crash is None else f"The node crashed {when}: {crash.seen}."
 

@@ -23,13 +23,13 @@ FORM = "An entry point reads NAME = PACKAGE.MODULE:FUNCTION, in the list console
 def line(evidence: Evidence) -> Where:
     """The line of setup.py with the exercise's entry point, else with the call of setup()."""
     setup = evidence.setup_py
-    point = setup.entry_point(evidence.exercise.executable) if setup is not None else None
+    point = setup.entry_point(evidence.trial.executable) if setup is not None else None
     return Where("setup.py", point.line if point is not None else setup.setup_line if setup is not None else None)
 
 
 def no_entry_point(evidence: Evidence) -> Finding:
     """A failed finding about an executable that was not installed as an entry point."""
-    executable, setup = evidence.exercise.executable, evidence.setup_py
+    executable, setup = evidence.trial.executable, evidence.setup_py
     expected = f"{FORM}; NAME is {executable}."
     points = (setup.entry_points if setup is not None else None) or ()
     joined = next((point for point in points if point.text.count("=") > 1), None)
@@ -51,7 +51,7 @@ def no_entry_point(evidence: Evidence) -> Finding:
 
 def _script(evidence: Evidence) -> Cause | None:
     """The executable is there as a script of its own, which is no entry point."""
-    executable = evidence.exercise.executable
+    executable = evidence.trial.executable
     if executable not in evidence.built.executables:
         return None
     files = evidence.submission.files
@@ -72,7 +72,7 @@ def _script(evidence: Evidence) -> Cause | None:
 
 def _unread(evidence: Evidence, setup: SetupPy | None) -> Cause | None:
     """A line for the executable is there, where setuptools does not look: in a comment, another group, another list."""
-    executable = evidence.exercise.executable
+    executable = evidence.trial.executable
     if setup is None:
         return None
     comment = _comment(evidence.submission.files.get("setup.py", b""), executable)

@@ -26,7 +26,7 @@ def timer_fault(evidence: Evidence) -> TimerFault | None:
     """The first timer that waits too long or was given no method."""
     for timer in evidence.code.calls("create_timer"):
         period = number(timer.argument(0, "timer_period_sec"), timer.module.names)
-        if period is not None and period >= evidence.trial.duration_s:
+        if period is not None and period >= evidence.recording.duration_s:
             cause = f"The timer waits {period:g} s for its first call: the period is in seconds, not milliseconds."
             return TimerFault("timer-milliseconds", cause, timer.where)
         if _is_call(timer.argument(1, "callback")):

@@ -18,7 +18,7 @@ def too_soon(finding: Finding, evidence: Evidence) -> Finding:
     In simulated time the clock starts when the two sides have found each other, so nothing is lost; nor is it for a
     node that asks who listens.
     """
-    if evidence.trial.clock != "wall" or any(evidence.code.calls(name) for name in ASKS):
+    if evidence.recording.clock != "wall" or any(evidence.code.calls(name) for name in ASKS):
         return finding
     cause = (
         "All that follows is right: the first commands were sent before the simulator had found the publisher, and "

@@ -27,7 +27,7 @@ def why_ended(evidence: Evidence) -> Cause:
     if not code.calls("spin") and code.calls("spin_once") and not _loops(evidence):
         text = "rclpy.spin_once waits for one thing and returns; rclpy.spin goes on until Ctrl-C."
         return Cause("spin-once", text, evidence.place("spin_once"))
-    ended = "ends-at-once" if ended_at_start(evidence.trial) else "ended-early"
+    ended = "ends-at-once" if ended_at_start(evidence.recording) else "ended-early"
     return Cause(ended, "", evidence.place("spin", "init"))
 
 

@@ -28,7 +28,7 @@ ALWAYS = ("True", "1", "rclpy.ok()")
 
 def why_qos(evidence: Evidence) -> Cause | None:
     """Publisher and subscription are on one topic, and their promises do not go together."""
-    recording = evidence.trial
+    recording = evidence.recording
     said = [recording.stderr.text, *(line.text for line in recording.log)]
     if not any(INCOMPATIBLE in text for text in said):
         return None

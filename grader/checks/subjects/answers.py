@@ -105,7 +105,7 @@ class Asked:
 
 def answer_graph(evidence: Evidence, params: Asked) -> Finding:
     """The answer is what the ROS graph said while the trial ran."""
-    truth = _ask(evidence.trial, params)
+    truth = _ask(evidence.recording, params)
     if params.form == "list":
         given = _given(evidence, params.answer, "a list of texts", tuple)
         return given if isinstance(given, Finding) else _compare(evidence, params.answer, given, truth, KEEP_LOOKING)
@@ -115,7 +115,9 @@ def answer_graph(evidence: Evidence, params: Asked) -> Finding:
     answer = str(given)
     if answer in truth:
         return passed(f"{shorten(answer)} is right.")
-    return _wrong(evidence, params.answer, answer, *_why(answer, params.find, truth, _all(evidence.trial, params.find)))
+    return _wrong(
+        evidence, params.answer, answer, *_why(answer, params.find, truth, _all(evidence.recording, params.find))
+    )
 
 
 def _ask(recording: Recording, params: Asked) -> tuple[str, ...]:
@@ -169,7 +171,7 @@ class AnswerRate:
 
 def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
     """The answer is the rate (Hz) that was measured in the trial."""
-    arrivals = [each.t_s for each in evidence.trial.messages if each.type.endswith(params.type_ends)]
+    arrivals = [each.t_s for each in evidence.recording.messages if each.type.endswith(params.type_ends)]
     steps = [later - earlier for earlier, later in pairwise(arrivals)]
     if not any(steps):
         # Nothing of the student's runs in this trial.

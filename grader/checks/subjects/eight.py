@@ -100,7 +100,7 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
 def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: bool) -> tuple[Finding | None, bool]:
     """What is wrong with a lobe, if anything; and whether a value is near its edge."""
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
-    recording = evidence.trial
+    recording = evidence.recording
     told = f"The {name} lobe, to the {lobe.side},"
     wanted = f"Radius {params.radius_m:.1f} m and 360 degrees, in both lobes."
     round_ = Band.at_most(params.residual_m)
@@ -131,7 +131,7 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
         finding = failed("lobe-angle", seen, wanted, cause, where=evidence.place("create_timer"), near_edge=near)
         turning = math.degrees(float(np.abs(recording.frames.angular).max()))
         return unless_starved(finding, recording, abs(degrees - 360.0) - params.angle_tolerance_deg, turning), near
-    start = (evidence.trial.start.x, evidence.trial.start.y)
+    start = (evidence.recording.start.x, evidence.recording.start.y)
     gap = math.dist(lobe.end, start)
     meets = Band.at_most(params.closing_m)
     if not last and not meets.holds(gap):

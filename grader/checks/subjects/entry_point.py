@@ -27,7 +27,7 @@ DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
 
 def entry_point(evidence: Evidence, _: NoParams) -> Finding:
     """The executable is installed where `ros2 run` looks, and leads to a callable of a module that Python can read."""
-    executable, build = evidence.exercise.executable, evidence.built
+    executable, build = evidence.trial.executable, evidence.built
     target = build.entry_points.get(executable)
     if target is None:
         return no_entry_point(evidence)
@@ -57,13 +57,13 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
         return failed(
             "module-not-installed",
             seen,
-            f"The entry point {evidence.exercise.executable} needs it.",
+            f"The entry point {evidence.trial.executable} needs it.",
             cause,
             where=line(evidence),
         )
     module = read_module(file, files[file])
     if module.tree is None and module.unreadable is None:
-        return passed(f"The entry point {evidence.exercise.executable} leads to {file}.")
+        return passed(f"The entry point {evidence.trial.executable} leads to {file}.")
     if module.unreadable is not None:
         return unreadable_finding(file, module.unreadable, files[file])
     return _attribute(evidence, module, attribute)
@@ -71,7 +71,7 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
 
 def _no_module(evidence: Evidence, module_name: str) -> Finding:
     files = evidence.submission.files
-    executable = evidence.exercise.executable
+    executable = evidence.trial.executable
     seen = f"The entry point {executable} leads to the module {shorten(module_name)}, which is not there."
     modules = [
         import_path(path)[: -len(".py")].replace("/", ".") for path in files if path.endswith(".py") and "/" in path
@@ -96,7 +96,7 @@ def _is_installed(evidence: Evidence, file: str) -> bool:
 
 
 def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
-    executable = evidence.exercise.executable
+    executable = evidence.trial.executable
     name = attribute.partition(".")[0]
     if not name:
         seen = f"The entry point {executable} leads to {module.file}, and names no function in it."
@@ -115,7 +115,7 @@ def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
 
 
 def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
-    executable = evidence.exercise.executable
+    executable = evidence.trial.executable
     if not module.nodes[1:]:
         expected = f"It has the function {shorten(name)}, which the entry point leads to."
         where = Where(module.file)
@@ -145,7 +145,7 @@ def _is_top_level(module: Module, call: ast.Call) -> bool:
 def early(evidence: Evidence, _: NoParams) -> Finding | None:
     """A module that Python cannot read: no build makes it run."""
     setup, files = evidence.setup_py, evidence.submission.files
-    point = setup.entry_point(evidence.exercise.executable) if setup is not None else None
+    point = setup.entry_point(evidence.trial.executable) if setup is not None else None
     file = module_file(point.target.partition(":")[0], files) if point is not None and point.target else None
     unreadable = read_module(file, files[file]).unreadable if file is not None else None
     return None if file is None or unreadable is None else unreadable_finding(file, unreadable, files[file])

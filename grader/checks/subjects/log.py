@@ -37,12 +37,12 @@ def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
     """Lines in the format arrive on /rosout."""
     example = lines.Format(params.format).example()
     expected = f'Lines such as "{example}" in the log.'
-    if lines.in_format(evidence.trial, params.format):
+    if lines.in_format(evidence.recording, params.format):
         return passed(f'The log has lines such as "{example}".')
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_seen(evidence), expected)
-    said = [line.text for line in lines.students(evidence.trial)]
+    said = [line.text for line in lines.students(evidence.recording)]
     qos = why_qos(evidence)
     if qos is not None:
         seen = "No message reached the subscription, and no line came."
@@ -50,7 +50,7 @@ def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
     if said:
         return _other_format(evidence, params, said, expected)
     pattern = lines.Format(params.format).pattern()
-    if any(pattern.search(line) for line in evidence.trial.stdout.text.splitlines()):
+    if any(pattern.search(line) for line in evidence.recording.stdout.text.splitlines()):
         seen = "The lines are printed, and not logged."
         cause = "print writes to this terminal alone; get_logger().info(...) tells ROS 2 too, with time and node."
         return failed("print-instead", seen, expected, cause, where=evidence.place("print"))
@@ -101,8 +101,8 @@ class LogRate(Rate):
 
 def log_rate(evidence: Evidence, params: LogRate) -> Finding:
     """Lines in the format arrive at the rate."""
-    arrivals = (line.t_s for line in lines.in_format(evidence.trial, params.format))
-    return rate_of(evidence, params, LOG_LINE, measure_arrivals(evidence.trial, arrivals))
+    arrivals = (line.t_s for line in lines.in_format(evidence.recording, params.format))
+    return rate_of(evidence, params, LOG_LINE, measure_arrivals(evidence.recording, arrivals))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,7 +116,7 @@ class Counter:
 
 def log_counter(evidence: Evidence, params: Counter) -> Finding:
     """The number begins as asked and rises by one from line to line."""
-    numbers = [line.numbers[params.counts] for line in lines.in_format(evidence.trial, params.format)]
+    numbers = [line.numbers[params.counts] for line in lines.in_format(evidence.recording, params.format)]
     form = lines.Format(params.format)
     expected = f'"{form.example(params.first)}", then "{form.example(params.first + 1)}", and so on.'
     where = evidence.place(*LEVELS)

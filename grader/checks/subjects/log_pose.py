@@ -47,7 +47,7 @@ class LogDistance:
 
 def log_position(evidence: Evidence, params: LogPosition) -> Finding:
     """Every line says where the turtle was when it was logged."""
-    recording, frames = evidence.trial, evidence.trial.frames
+    recording, frames = evidence.recording, evidence.recording.frames
     said = _trusted(recording, params.format)
     expected = "Each line says where the turtle is at that moment, to two digits behind the point."
     if len(said) < FEWEST:
@@ -76,7 +76,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
 
 def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     """Every line says how far the turtle has driven since the start."""
-    recording, frames = evidence.trial, evidence.trial.frames
+    recording, frames = evidence.recording, evidence.recording.frames
     said = _trusted(recording, params.format)
     expected = "The distance is the length of the way driven so far, in metres; it never gets less."
     if len(said) < FEWEST:
@@ -128,7 +128,7 @@ def _trusted(recording: Recording, text_: str) -> list[Line]:
 
 
 def _too_few(evidence: Evidence, text_: str) -> Finding:
-    if len(lines.in_format(evidence.trial, text_)) >= FEWEST:
+    if len(lines.in_format(evidence.recording, text_)) >= FEWEST:
         return Finding(Status.ERROR, "The machine was too busy in wall time. Try again when it is not.")
     expected = f"At least {FEWEST} lines in the format."
     where = evidence.place("info")

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 def starts(evidence: Evidence, _: NoParams) -> Finding:
     """A node of the submission was in the ROS graph, and lived until the scenario began."""
-    recording = evidence.trial
-    executable = evidence.exercise.executable
+    recording = evidence.recording
+    executable = evidence.trial.executable
     expected = "The node starts, and runs until Ctrl-C."
     if seen_in.ended_at_start(recording):
         crash = crash_of(evidence)
@@ -35,10 +35,10 @@ def starts(evidence: Evidence, _: NoParams) -> Finding:
 
 def _no_node(evidence: Evidence) -> Finding:
     crash = crash_of(evidence)
-    seen = f"{evidence.exercise.executable} ran, but no node appeared in the ROS graph."
+    seen = f"{evidence.trial.executable} ran, but no node appeared in the ROS graph."
     expected = "The program makes a node, and spins it."
     if crash is not None:
-        seen = f"{evidence.exercise.executable} crashed before it had made a node: {crash.seen}."
+        seen = f"{evidence.trial.executable} crashed before it had made a node: {crash.seen}."
         return crash_finding(evidence, crash, seen, expected)
     why = why_no_node(evidence)
     return failed(why.diagnosis, seen, expected, why.text, where=why.where)
@@ -46,17 +46,17 @@ def _no_node(evidence: Evidence) -> Finding:
 
 def name(evidence: Evidence, _: NoParams) -> Finding:
     """A node of the submission has the exercise's name."""
-    wanted = f"/{evidence.exercise.node}"
-    names = seen_in.nodes(evidence.trial)
+    wanted = f"/{evidence.trial.node}"
+    names = seen_in.nodes(evidence.recording)
     if wanted in names:
-        return passed(f"The node is named {evidence.exercise.node}.")
+        return passed(f"The node is named {evidence.trial.node}.")
     if not names:
-        return failed("no-node", "No node appeared in the ROS graph.", f"A node named {evidence.exercise.node}.")
+        return failed("no-node", "No node appeared in the ROS graph.", f"A node named {evidence.trial.node}.")
     guess = nearest(wanted, names) or names[0]
     seen = f"The node is named {shorten(guess)}."
     if len(names) > 1:
         seen = f"The nodes are named {a_list([shorten(each) for each in names])}."
-    expected = f"It is named {evidence.exercise.node}."
+    expected = f"It is named {evidence.trial.node}."
     where = evidence.place("create_node", "__init__")
     if guess.endswith(wanted):
         return failed("node-namespace", seen, expected, "The node is in a namespace.", where=where)
@@ -78,5 +78,5 @@ NAME = Kind(
     "The node has the right name",
     NoParams,
     name,
-    about="The node has the name that `node` in `[exercise]` or `[[trial]]` gives.",
+    about="The node has the name that `node` in `[[trial]]` gives.",
 )

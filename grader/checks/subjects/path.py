@@ -77,7 +77,7 @@ def circle(evidence: Evidence, params: CircleParams) -> Finding:
 
 def moved_otherwise(evidence: Evidence, expected: str) -> Finding | None:
     """A failed finding where something other than commands moved the turtle."""
-    means = next((each for each in evidence.trial.interventions if each in MEANS), None)
+    means = next((each for each in evidence.recording.interventions if each in MEANS), None)
     if means is None:
         return None
     seen = f"Something moved the turtle by other means: {shorten(means)}."
@@ -117,7 +117,7 @@ def _measured(evidence: Evidence, params: CircleParams, track: Track, expected: 
     fitted = track.circle
     assert fitted is not None
     turns = track.turns
-    centre = math.dist((fitted.x, fitted.y), expected_centre(evidence.trial.start, params))
+    centre = math.dist((fitted.x, fitted.y), expected_centre(evidence.recording.start, params))
     round_, size = Band.at_most(params.residual_m), Band.around(params.radius_m, params.radius_tolerance_m)
     place, long = Band.at_most(params.centre_tolerance_m), Band.at_least(params.turns)
     if not round_.holds(fitted.rms):
@@ -167,7 +167,7 @@ def _too_short(evidence: Evidence, track: Track, turns: float, expected: str, *,
     if track.rests:
         seen = f"The turtle drove {turns:.2f} of a turn, with {count(track.rests, 'stop')} on the way."
         diagnosis, cause = "stops-and-goes", "A turtle stops when no command comes for 1 s."
-    elif seen_in.end_s(evidence.trial) - evidence.commands[-1].t_s > LIVES_S:
+    elif seen_in.end_s(evidence.recording) - evidence.commands[-1].t_s > LIVES_S:
         seen = f"The turtle drove {turns:.2f} of a turn; the last command came at {evidence.commands[-1].t_s:.1f} s."
         diagnosis, cause = "stopped-early", "A turtle stops when no command comes for 1 s."
     else:

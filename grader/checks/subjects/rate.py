@@ -63,7 +63,7 @@ COMMAND = Subject("command", "publish")
 
 def measure(evidence: Evidence) -> Measured:
     """The arrivals of the commands before SIGINT."""
-    return measure_arrivals(evidence.trial, (command.t_s for command in evidence.commands))
+    return measure_arrivals(evidence.recording, (command.t_s for command in evidence.commands))
 
 
 def rate(evidence: Evidence, params: Rate) -> Finding:
@@ -121,11 +121,11 @@ def _extremes(measured: Measured) -> tuple[float, float]:
 def _few(evidence: Evidence, what: Subject, measured: Measured, expected: str) -> Finding:
     amount = len(measured.arrivals)
     crash = crash_of(evidence)
-    seen = f"{count(amount, what.noun)} arrived in {seen_in.end_s(evidence.trial):.0f} s."
+    seen = f"{count(amount, what.noun)} arrived in {seen_in.end_s(evidence.recording):.0f} s."
     if crash is not None:
         return crash_finding(evidence, crash, f"{seen} {end_seen(evidence)}", expected)
     where = evidence.place(what.call)
-    if evidence.trial.end.by == "itself":
+    if evidence.recording.end.by == "itself":
         why = why_ended(evidence)
         return failed(why.diagnosis, f"{seen} {end_seen(evidence)}", expected, why.text, where=why.where)
     if amount == 1:

@@ -94,7 +94,7 @@ def square(evidence: Evidence, params: Square) -> Finding:
 
 
 def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -> Finding:
-    where, recording = evidence.place("publish"), evidence.trial
+    where, recording = evidence.place("publish"), evidence.recording
     speed = recording.frames.linear
     long, right = Band.around(params.side_m, params.side_tolerance_m), Band.around(90.0, params.corner_tolerance_deg)
     corners = [math.degrees(corner) for corner in sides.corners[: SIDES - 1]]
@@ -119,7 +119,7 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
             finding = failed("corner-angle", seen, expected, cause, where=where, near_edge=near)
             off = abs(sign * corner - 90.0) - params.corner_tolerance_deg
             return unless_starved(finding, recording, off, math.degrees(float(np.abs(recording.frames.angular).max())))
-    gap = math.dist(sides.ends[SIDES - 1], (evidence.trial.start.x, evidence.trial.start.y))
+    gap = math.dist(sides.ends[SIDES - 1], (evidence.recording.start.x, evidence.recording.start.y))
     closed = Band.at_most(params.closing_m)
     if not closed.holds(gap):
         seen = f"The fourth side ends {gap:.2f} m beside the start."

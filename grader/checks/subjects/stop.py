@@ -25,7 +25,7 @@ class Stop:
 
 def stop(evidence: Evidence, params: Stop) -> Finding:
     """The node ran until SIGINT and was gone soon after. With which exit code or traceback does not matter."""
-    end = evidence.trial.end
+    end = evidence.recording.end
     expected = f"The node runs until Ctrl-C, and stops within {params.within_s:.0f} s of it."
     if end.by == "itself":
         return _too_early(evidence, expected)

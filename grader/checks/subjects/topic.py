@@ -35,7 +35,7 @@ COMMANDS = Topic(topic="/turtle1/cmd_vel", type="geometry_msgs/msg/Twist")
 
 def publishes(evidence: Evidence, params: Topic) -> Finding:
     """Messages of the type arrived on the topic before SIGINT."""
-    recording = evidence.trial
+    recording = evidence.recording
     if _arrived(evidence, params):
         return passed(f"{params.type} arrives on {params.topic}.")
     publishers = seen_in.endpoints(recording, "publisher")
@@ -50,7 +50,7 @@ def publishes(evidence: Evidence, params: Topic) -> Finding:
 
 
 def _arrived(evidence: Evidence, params: Topic) -> bool:
-    recording = evidence.trial
+    recording = evidence.recording
     until = seen_in.end_s(recording)
     if params.topic == COMMANDS.topic and params.type == COMMANDS.type:
         return bool(evidence.commands)
@@ -98,7 +98,7 @@ def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
-    subscribed = [each for each in seen_in.endpoints(evidence.trial, "subscription") if each.topic == params.topic]
+    subscribed = [each for each in seen_in.endpoints(evidence.recording, "subscription") if each.topic == params.topic]
     if subscribed:
         cause = "A subscription only listens; create_publisher makes what sends."
         where = evidence.place("create_subscription")
@@ -119,7 +119,7 @@ def _silent(evidence: Evidence, params: Topic) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
-    if evidence.trial.end.by == "itself":
+    if evidence.recording.end.by == "itself":
         why = why_ended(evidence)
         return failed(why.diagnosis, f"{seen} {end_seen(evidence)}", _expected(params), why.text, where=why.where)
     cause, diagnosis, where = _why_silent(evidence)
@@ -149,9 +149,9 @@ def _publisher_line(evidence: Evidence, topic: str) -> Where | None:
 
 def only_type(evidence: Evidence, params: Topic) -> Finding:
     """The submission publishes no other type on the topic."""
-    found = seen_in.endpoints(evidence.trial, "publisher")
+    found = seen_in.endpoints(evidence.recording, "publisher")
     types = {publisher.type for publisher in found if publisher.topic == params.topic}
-    types |= {message.type for message in evidence.trial.messages if message.topic == params.topic}
+    types |= {message.type for message in evidence.recording.messages if message.topic == params.topic}
     others = sorted(types - {params.type})
     if others:
         seen = f"{params.topic} also gets messages of the type {a_list([shorten(other) for other in others])}."
@@ -164,7 +164,7 @@ def only_type(evidence: Evidence, params: Topic) -> Finding:
 
 def subscribes(evidence: Evidence, params: Topic) -> Finding:
     """The submission subscribes to the topic, with the type."""
-    found = seen_in.endpoints(evidence.trial, "subscription")
+    found = seen_in.endpoints(evidence.recording, "subscription")
     expected = f"The node subscribes to {params.topic}, with the type {params.type}."
     where = evidence.place("create_subscription")
     if any((each.topic, each.type) == (params.topic, params.type) for each in found):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from grader.checks.exercises import find_exercise
 from grader.checks.judge import judge
 from grader.colcon.build import Build
-from grader.evidence.evidence import Evidence
+from grader.evidence.evidence import Evidence, Run
 from grader.submission.package import Submission
 from grader.trial.recording import (
     Command,
@@ -248,7 +248,9 @@ def evidence(
     build: Build | None = BUILD,
     **changes: Any,  # noqa: ANN401
 ) -> Evidence:
-    return replace(Evidence(exercise(), package or submission(), build, trial), **changes)
+    of = changes.pop("exercise", None) or exercise()
+    given = replace(Evidence(of, package or submission(), build), **changes)
+    return given if trial is None else given.with_run(Run(trial))
 
 
 def finding(check: str, given: Evidence) -> Finding:

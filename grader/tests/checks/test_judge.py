@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from grader.checks.judge import judge, near_edge, wants_trial
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status
-from grader.evidence.evidence import Evidence, Fault
+from grader.evidence.evidence import Evidence, Fault, Run
 from grader.report.report import Report
 from grader.tests.checks.made import BUILD, NODE_FILE, every, evidence, exercise, good, recording, submission
 from grader.tests.checks.shapes import SHAPES
@@ -160,7 +160,7 @@ def test_whatever_a_student_hands_in_is_never_the_graders_fault(files: dict[str,
 
 
 def test_a_node_that_brings_the_simulator_down_has_failed_and_is_no_error() -> None:
-    given = replace(evidence(None), overwhelmed="MemoryError")
+    given = evidence(None).with_run(Run(overwhelmed="MemoryError"))
     made = report(judge(given))
     assert (made.points, made.max, made.exit_code) == (0.0, 100.0, 1)
     (start,) = [outcome for outcome in made.outcomes if outcome.id == "start"]

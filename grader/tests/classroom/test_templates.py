@@ -100,7 +100,7 @@ def test_gradescopes_archive_grades_a_submission(tmp_path: Path) -> None:
 
 def test_gradescopes_archive_has_what_it_needs_and_no_solutions(tmp_path: Path) -> None:
     (tmp_path / "mine" / STEP).mkdir(parents=True)
-    (tmp_path / "mine" / STEP / "exercise.toml").write_text("schema = 1\n[[check]]\nid = 'rate'\npoints = 1\n")
+    (tmp_path / "mine" / STEP / "exercise.toml").write_text("schema = 2\n[[check]]\nid = 'rate'\npoints = 1\n")
     build_archive("03", tmp_path / "a.zip", tmp_path / "mine", trusted=True)
     with zipfile.ZipFile(tmp_path / "a.zip") as archive:
         names = archive.namelist()
@@ -113,7 +113,7 @@ def test_gradescopes_archive_has_what_it_needs_and_no_solutions(tmp_path: Path) 
 
 def test_gradescopes_archive_of_wrong_checks_is_not_made(tmp_path: Path) -> None:
     (tmp_path / "mine" / STEP).mkdir(parents=True)
-    (tmp_path / "mine" / STEP / "exercise.toml").write_text("schema = 1\n[[check]]\nid = 'new'\n")
+    (tmp_path / "mine" / STEP / "exercise.toml").write_text("schema = 2\n[[check]]\nid = 'new'\n")
     with pytest.raises(UsageError, match="kind"):
         build_archive(STEP, tmp_path / "a.zip", tmp_path / "mine")
     assert not (tmp_path / "a.zip").exists()

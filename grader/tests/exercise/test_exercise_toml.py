@@ -6,23 +6,36 @@ import pytest
 
 from grader.checks.exercises import load_exercise
 from grader.errors import UsageError
-from grader.exercise.model import Exercise, catalogue
+from grader.exercise.model import Drive, Exercise, Scenario, TrialSpec, catalogue
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 GOOD = """\
-schema = 1
+schema = 2
 
 [exercise]
 id = "99-test"
 title = "A test"
 package = "my_package"
+
+[[trial]]
+id = "drive"
 executable = "my_node"
 node = "my_node"
-
-[scenario]
 duration_s = 5
+
+[[trial]]
+id = "stand"
+executable = "my_other_node"
+node = "other"
+duration_s = 3
+start = "anywhere"
+
+[[trial.drive]]
+from_s = 1
+linear_x_m_s = [0.5, 1]
+angular_z_rad_s = 0
 
 [[check]]
 id = "rate"
@@ -63,18 +76,33 @@ def problems(folder: Path, text: str | bytes) -> list[str]:
 
 def test_what_stands_in_the_file_is_what_the_exercise_says(tmp_path: Path) -> None:
     exercise = load(tmp_path, GOOD)
-    assert (exercise.id, exercise.package, exercise.executable, exercise.node) == (
-        "99-test",
-        "my_package",
-        "my_node",
-        "my_node",
+    assert (exercise.id, exercise.title, exercise.package) == ("99-test", "A test", "my_package")
+    drive, stand = exercise.trials
+    assert drive == TrialSpec("drive", "my_node", "my_node", Scenario(5.0))
+    assert stand == TrialSpec(
+        "stand", "my_other_node", "other", Scenario(3.0, (Drive(1.0, (0.5, 1.0), (0.0, 0.0)),), anywhere=True)
     )
-    assert exercise.scenario.duration_s == 5.0
+    assert exercise.trial("stand") is stand
     assert exercise.hints == ("Think.",)
     assert exercise.folder == tmp_path
     rate, values = exercise.checks
     assert (values.title, values.points, values.needs, values.hidden) == ("The values", 5.0, ("rate",), True)
     assert (rate.title, rate.needs, rate.hidden) == ("Commands arrive at the right rate", (), False)
+
+
+def test_a_check_judges_the_first_trial_unless_it_names_another(tmp_path: Path) -> None:
+    checks = load(tmp_path, GOOD.replace("hidden = true", 'trial = "stand"')).checks
+    assert [check.trial for check in checks] == ["drive", "stand"]
+
+
+def test_an_exercise_without_trials_is_a_mistake(tmp_path: Path) -> None:
+    told = problems(tmp_path, GOOD[: GOOD.index("[[trial]]")] + GOOD[GOOD.index("[[check]]") :])
+    assert told == ["there is no [[trial]], so nothing would be run."]
+
+
+def test_an_exercise_of_answers_alone_has_trials_without_a_node(tmp_path: Path) -> None:
+    text = "\n".join(line for line in GOOD.splitlines() if not line.startswith(("package", "executable", "node")))
+    assert [(trial.executable, trial.node) for trial in load(tmp_path, text).trials] == [("", ""), ("", "")]
 
 
 def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path) -> None:
@@ -87,8 +115,9 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("schema = 1", "schema = 2", '"schema" is 2; it must be 1, the version of this format.'),
-        ("schema = 1", "", 'the key "schema" is missing; it must be 1, the version of this format.'),
+        ("schema = 2", "schema = 3", '"schema" is 3; it must be 2, the version of this format.'),
+        ("schema = 2", "schema = 1", "schema 1 is no longer read: move `executable` and `node` out of [exercise]"),
+        ("schema = 2", "", 'the key "schema" is missing; it must be 2, the version of this format.'),
         (
             'id = "99-test"',
             'id = "99 Test"',
@@ -98,17 +127,40 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
         (
             'title = "A test"',
             'titel = "A test"',
-            '[exercise]: unknown key "titel". Did you mean "title"? Allowed: id, title, package, executable, node',
+            '[exercise]: unknown key "titel". Did you mean "title"? Allowed: ',
         ),
         (
             'package = "my_package"',
             'package = "my-package"',
             '[exercise]: "package" is "my-package"; it must be letters, digits and _, beginning with a letter.',
         ),
-        ("duration_s = 5", "duration_s = -5", '[scenario]: "duration_s" is -5; it must be from 0.1 to 600 (s).'),
-        ("duration_s = 5", "duration_s = nan", '[scenario]: "duration_s" is nan; it must be from 0.1 to 600 (s).'),
-        ("duration_s = 5", "duration_s = true", '[scenario]: "duration_s" is true; it must be from 0.1 to 600 (s).'),
-        ("[scenario]", "[scenery]", 'the key "scenario" is missing; it must be a table [scenario].'),
+        (
+            "duration_s = 5",
+            "duration_s = -5",
+            '[[trial]] 1 (drive): "duration_s" is -5; it must be from 0.1 to 600 (s).',
+        ),
+        (
+            "duration_s = 5",
+            "duration_s = nan",
+            '[[trial]] 1 (drive): "duration_s" is nan; it must be from 0.1 to 600 (s).',
+        ),
+        (
+            "duration_s = 5",
+            "duration_s = true",
+            '[[trial]] 1 (drive): "duration_s" is true; it must be from 0.1 to 600 (s).',
+        ),
+        ("[[trial]]", "[[trail]]", 'unknown key "trail". Did you mean "trial"?'),
+        (
+            'id = "stand"',
+            'id = "drive"',
+            '[[trial]] 1 (drive): the id "drive" is used twice; each trial needs one of its own.',
+        ),
+        ('node = "other"', "", '[[trial]] 2 (stand): the key "node" is missing; it must be letters, digits and _'),
+        (
+            "hidden = true",
+            'trial = "stood"',
+            '[[check]] 2 (values): "trial" is "stood"; it must be the id of a [[trial]]: drive',
+        ),
         ('kind = "rate"', 'kind = "rates"', '[[check]] 1 (rate): unknown kind "rates". Did you mean "rate"?'),
         ("points = 10", 'points = "10"', '[[check]] 1 (rate): "points" is "10"; it must be a number from 0 to 1000.'),
         (
@@ -179,7 +231,7 @@ def test_an_exercise_without_checks_is_a_mistake(tmp_path: Path) -> None:
     assert told == ["there is no [[check]], so nothing would be judged."]
 
 
-@pytest.mark.parametrize("data", [b"schema = ", b"\xff\xfe", b'schema = 1\n[exercise]\nid = "a"\nid = "b"'])
+@pytest.mark.parametrize("data", [b"schema = ", b"\xff\xfe", b'schema = 2\n[exercise]\nid = "a"\nid = "b"'])
 def test_what_is_not_toml_is_told(tmp_path: Path, data: bytes) -> None:
     (told,) = problems(tmp_path, data)
     assert told.startswith("not TOML: ")

@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 PUBLIC = catalogue()[STEP]
 SECRET = "The circle is driven exactly twice"
 PRIVATE = f"""
-schema = 1
+schema = 2
 
-[scenario]
+[[trial]]
+id = "circle"
 duration_s = 9.5
 
 [[check]]
@@ -64,7 +65,7 @@ def test_the_same_id_replaces_and_a_new_one_is_added() -> None:
     assert after["rate"].params["tolerance_percent"] == before["rate"].params["tolerance_percent"]
     assert (after["rate"].title, after["rate"].needs) == (before["rate"].title, before["rate"].needs)
     assert {id_: after[id_] for id_ in before if id_ != "rate"} == {id_: before[id_] for id_ in before if id_ != "rate"}
-    assert (public.scenario.duration_s, both.scenario.duration_s) == (10.0, 9.5)
+    assert [each.trials[0].scenario.duration_s for each in (public, both)] == [10.0, 9.5]
 
 
 def test_what_is_private_is_hidden_unless_it_says_not() -> None:
@@ -80,11 +81,12 @@ def test_both_files_are_part_of_the_digest() -> None:
 @pytest.mark.parametrize(
     ("private", "said"),
     [
-        ("schema = 2", "schema is 2"),
-        ("schema = 1\n[exercise]\nid = 'x'", 'unknown key "exercise"'),
-        ("schema = 1\n[[check]]\nid = 'x'\nkind = 'circel'\npoints = 1", 'Did you mean "circle"'),
-        ("schema = 1\n[[check]]\nid = 'rate'\nrate_hz = 'fast'", '"rate_hz" is "fast"'),
-        ("schema = 1\ncheck = 3", "must be tables"),
+        ("schema = 3", "schema is 3"),
+        ("schema = 1\n[scenario]\nduration_s = 9", "schema 1 is no longer read: move"),
+        ("schema = 2\n[exercise]\nid = 'x'", 'unknown key "exercise"'),
+        ("schema = 2\n[[check]]\nid = 'x'\nkind = 'circel'\npoints = 1", 'Did you mean "circle"'),
+        ("schema = 2\n[[check]]\nid = 'rate'\nrate_hz = 'fast'", '"rate_hz" is "fast"'),
+        ("schema = 2\ncheck = 3", "must be tables"),
         ("schema = ", "not TOML"),
     ],
 )

@@ -81,8 +81,8 @@ def statuses(of: Graded) -> set[Status]:
 
 def stalls(of: Graded) -> tuple[tuple[float, float], ...]:
     """Those of the recording that counts."""
-    assert of.evidence.recording is not None
-    return of.evidence.recording.stalls
+    assert of.evidence.run.recording is not None
+    return of.evidence.run.recording.stalls
 
 
 def test_a_trial_that_passes_is_made_once_however_crowded_the_machine_was() -> None:
@@ -114,8 +114,8 @@ def test_the_first_that_fails_undisturbed_is_believed() -> None:
     trials = Trials([crowded(WRONG), WRONG])
     found = graded(trials)
     assert Status.FAILED in statuses(found)
-    assert found.evidence.recording is not None
-    assert not found.evidence.recording.crowded
+    assert found.evidence.run.recording is not None
+    assert not found.evidence.run.recording.crowded
     assert trials.alone == [False, True]
 
 

@@ -84,7 +84,7 @@ def test_a_source_that_breaks_its_reader_fails_and_the_node_is_run_in_wall_time(
     trials = Trials([good()])
     found = graded(trial=trials)
     assert len(trials.alone) == 1
-    assert "could not be read (RecursionError: too deep)" in found.evidence.trial.why
+    assert "could not be read (RecursionError: too deep)" in found.evidence.recording.why
     assert found.report.with_status(Status.ERROR) == ()
     assert told(found)["circle"] == (Status.PASSED, None)
 
@@ -95,7 +95,7 @@ def test_a_page_that_cannot_be_drawn_tells_the_verdict_all_the_same(monkeypatch:
         real = module.runs_of
 
         def runs_of(evidences: Any, *rest: Any, real: Any = real) -> Any:  # noqa: ANN401
-            if any(evidence.recording for evidence in evidences):
+            if any(evidence.run.recording for evidence in evidences):
                 raise OverflowError
             return real(evidences, *rest)
 

@@ -94,7 +94,7 @@ def _graded(material: Material) -> Graded:
     from grader.checks.judge import judge
 
     evidence = _anew(material.seen)
-    recording = evidence.recording
+    recording = evidence.run.recording
     report = Report(
         exercise=evidence.exercise.id,
         exercise_title=evidence.exercise.title,
@@ -117,8 +117,7 @@ def _anew(seen: Evidence) -> Evidence:
 
     fault = None if seen.fault is None else Fault(seen.fault.stage, seen.fault.message)
     plain = {field.name: getattr(seen, field.name) for field in dataclasses.fields(seen)}
-    others = {trial: _anew(other) for trial, other in seen.others.items()}
-    return Anew(**{**plain, "fault": fault, "others": others})
+    return Anew(**{**plain, "fault": fault})
 
 
 def touched(materials: Iterable[Material], files: Collection[Path]) -> Lines:

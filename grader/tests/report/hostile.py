@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from grader.evidence.evidence import Run
 from grader.tests.checks.made import BUILD, NODE, NODE_FILE, TOPIC, TWIST, every, evidence, recording, submission
 from grader.trial.recording import Endpoint, Graph, LogLine, Output
 
@@ -56,7 +57,7 @@ def hostile() -> Evidence:
 def enormous() -> Evidence:
     """The same, far too much of it: nothing of a submission can make a page large."""
     given = hostile()
-    assert given.recording is not None
+    assert given.run.recording is not None
     worst = '"' * 2000 + "\n"
     line = f"# {'<' * 3000} {worst}"
     slow = "1<" * 190 + "1"
@@ -65,7 +66,7 @@ def enormous() -> Evidence:
     )
     names = tuple(f"/node{'<' * 100}{index}" for index in range(300))
     trial = replace(
-        given.recording,
+        given.run.recording,
         stdout=Output(worst * 2000, dropped=10**9),
         stderr=Output(f"Error {worst}" * 2000),
         log=tuple(LogLine(0.001 * index, "ERROR", worst, worst) for index in range(1000)),
@@ -73,8 +74,7 @@ def enormous() -> Evidence:
         commands=tuple(recording(every(0.002, 9.0, 1.0)).commands),
     )
     return replace(
-        given,
-        recording=trial,
+        given.with_run(Run(trial)),
         submission=replace(submission({NODE_FILE: code}), name='"' * 3000),
         build=replace(BUILD, log=worst * 3000, exit_code=0),
     )

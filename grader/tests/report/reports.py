@@ -25,7 +25,7 @@ EVIDENCE: dict[str, Evidence] = {
 
 
 def report_of(given: Evidence, **changes: object) -> Report:
-    trial = given.recording
+    trial = given.run.recording
     made = Report(
         exercise=given.exercise.id,
         exercise_title=given.exercise.title,

@@ -17,6 +17,7 @@ import pytest
 
 from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Finding, Outcome, Status
+from grader.evidence.evidence import Run
 from grader.report.html import html_page, save_html
 from grader.report.verdict import verdict
 from grader.tests.case import ROOT
@@ -215,14 +216,14 @@ def test_what_differs_from_run_to_run_is_not_on_the_page() -> None:
 
 def test_each_trial_of_an_exercise_is_shown() -> None:
     whole = find_exercise("07-challenges")
-    first = replace(evidence(good()), exercise=whole)
-    others = {trial.id: replace(first.in_trial(trial.id), recording=recording([])) for trial in whole.trials}
-    page = page_of(replace(first, others=others))
+    first, *others = whole.trials
+    runs = {first.id: Run(good()), **{trial.id: Run(recording([])) for trial in others}}
+    page = page_of(evidence(exercise=whole, runs=runs))
     tags = Tags(page)
     ids = [attributes["id"] for _, attributes in tags.elements if "id" in attributes]
     assert len(ids) == len(set(ids))
     titles = [text.strip() for text in tags.texts["h3"]]
-    assert {whole.executable, *(trial.executable for trial in whole.trials)} <= set(titles)
+    assert {trial.executable for trial in whole.trials} <= set(titles)
     data = json.loads(re.findall(r'id="data">(.*?)</script>', page)[0])
     assert [len(run["commands"]) > 0 for run in data] == [True, False, False, False]
     assert page.count('class="player"') == len(data) == 4

@@ -25,7 +25,7 @@ AHEAD = legs((20, 1.0, 0.0))
 
 def in_challenge(trial: str, way: list[Timed], start: Pose = NORTH) -> Evidence:
     """What a learner drove in one of the trials of step 07."""
-    return evidence(recording(way, start), exercise=find_exercise("07-challenges").of_trial(trial))
+    return evidence(recording(way, start), exercise=find_exercise("07-challenges"), trial_id=trial)
 
 
 def points(shape: Line | Ring) -> list[tuple[float, float]]:

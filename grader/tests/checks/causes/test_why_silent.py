@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
 from grader.checks.causes.why_silent import why_nothing, why_qos
+from grader.evidence.evidence import Run
 from grader.tests.checks.crashes import LOOK, line_with
 from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
 from grader.trial.recording import LogLine, Output
@@ -152,8 +152,8 @@ def test_ends_that_do_not_go_together_are_told_by_rclpy() -> None:
     source = NODE.format(made=TIMER, sent="pass")
     said = "New subscription discovered on topic, requesting incompatible QoS. No messages will be sent to it."
     quiet = given(source)
-    by_stderr = replace(quiet, recording=recording([], stderr=Output(said)))
-    by_log = replace(quiet, recording=recording([], log=(LogLine(0.5, "WARN", "driver", said),)))
+    by_stderr = quiet.with_run(Run(recording([], stderr=Output(said))))
+    by_log = quiet.with_run(Run(recording([], log=(LogLine(0.5, "WARN", "driver", said),))))
     assert why_qos(quiet) is None
     for loud in (by_stderr, by_log):
         cause = why_qos(loud)

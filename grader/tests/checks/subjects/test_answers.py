@@ -8,6 +8,7 @@ import pytest
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.answers import ANSWERS, GRAPH, LIST, RATE, TEXT
 from grader.errors import MachineError
+from grader.evidence.evidence import Run
 from grader.tests.checks.made import evidence, found, recording, submission
 from grader.trial.recording import Endpoint, Graph, Message
 
@@ -139,9 +140,9 @@ def test_the_truth_is_the_graph_as_it_was_recorded(answer: str, values: dict[str
 def test_another_graph_has_other_right_answers() -> None:
     renamed = replace(COFFEE, endpoints=(Endpoint("publisher", "/cook", "/mugs", "std_msgs/msg/String"),))
     trial = recording([], graphs=(renamed,))
-    mugs = replace(given('name = "/mugs"'), recording=trial)
+    mugs = given('name = "/mugs"').with_run(Run(trial))
     assert found(GRAPH, mugs, answer="name", **TOPIC).status is Status.PASSED
-    cups = replace(given('name = "/cups"'), recording=trial)
+    cups = given('name = "/cups"').with_run(Run(trial))
     assert found(GRAPH, cups, answer="name", **TOPIC).diagnosis == "wrong-answer"
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from grader.checks.outcome import Status
 from grader.checks.subjects.own import CIRCLE, NUMBERS, RATE
+from grader.evidence.evidence import Run
 from grader.exercise.own_numbers import FILE, draw_numbers, to_toml
 from grader.tests.checks.made import every, evidence, found, recording, submission
 
@@ -77,13 +78,13 @@ def test_one_interval_may_be_a_little_longer_or_shorter_than_the_own_period(shar
     period_s = 1.0 / ALICE.rate_hz
     way = every(period_s, ALICE.radius_m, 1.0)
     moved = [(t_s + (share - 1.0) * period_s * (index >= 20), v, w) for index, (t_s, v, w) in enumerate(way)]
-    assert found(RATE, replace(given(ALICE), recording=recording(moved))).status is status
+    assert found(RATE, given(ALICE).with_run(Run(recording(moved)))).status is status
 
 
 @pytest.mark.parametrize(("first_s", "diagnosis"), [(2.9, None), (3.5, "late-start")])
 def test_the_first_command_may_come_three_seconds_late(first_s: float, diagnosis: str | None) -> None:
     way = every(1.0 / ALICE.rate_hz, ALICE.radius_m, 1.0, first_s=first_s)
-    assert found(RATE, replace(given(ALICE), recording=recording(way))).diagnosis == diagnosis
+    assert found(RATE, given(ALICE).with_run(Run(recording(way)))).diagnosis == diagnosis
 
 
 def test_without_numbers_there_is_nothing_to_judge_the_way_by() -> None:
