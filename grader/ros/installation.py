@@ -160,6 +160,9 @@ def users_environment(
     needed = environment(ros, home=home, underlay=underlay, domain=domain_of(os.getuid()))
     for name in _UNWATCHED:
         needed.pop(name, None)
+    if " " in str(ros.python):
+        # What a workspace's setup.bash starts without quotes; it needs nothing but the standard library.
+        needed["COLCON_PYTHON_EXECUTABLE"] = str(ros.python.resolve())
     if "ROS_LOG_DIR" not in env and "ROS_HOME" not in env and not os.access(home, os.W_OK):
         needed["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir(), f"ros-log-{os.getuid()}"))
     theirs = {"HOME", "LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"}

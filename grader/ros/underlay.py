@@ -6,6 +6,7 @@ import fcntl
 import hashlib
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -148,6 +149,7 @@ def _build(here: installation.Ros, prefix: Path, tell: Callable[[str], None]) ->
         folder = Path(name)
         env = installation.environment(here, home=folder)
         staged = Path(f"{folder}/staged{prefix}")
+        no_trace = shlex.quote(f"{folder}=turtlesim")
         configure = [
             *("cmake", "-S", str(SOURCES), "-B", str(folder / "build")),
             *("-G", "Ninja" if shutil.which("ninja", path=env["PATH"]) else "Unix Makefiles"),
@@ -155,8 +157,9 @@ def _build(here: installation.Ros, prefix: Path, tell: Callable[[str], None]) ->
             *("-DCMAKE_BUILD_TYPE=None", "-DBUILD_TESTING=OFF"),
             f"-DPython3_EXECUTABLE={here.python}",
             f"-DCMAKE_INSTALL_PREFIX={prefix}",
-            # No trace of the temporary folder in what is kept.
-            *(f"-DCMAKE_{language}_FLAGS=-ffile-prefix-map={folder}=turtlesim" for language in ("C", "CXX")),
+            # No trace of the temporary folder in what is kept. A shell reads the flags, and a home may have spaces in
+            # its path; CMake would strip quotes around the whole.
+            *(f"-DCMAKE_{language}_FLAGS=-ffile-prefix-map={no_trace}" for language in ("C", "CXX")),
         ]
         _run(configure, env, tell)
         _run(["cmake", "--build", str(folder / "build"), "--parallel", str(os.cpu_count() or 1)], env, tell)

@@ -6,6 +6,7 @@ ros2 becomes that executable: signals, the terminal and the exit code are its ow
 from __future__ import annotations
 
 import os
+import re
 import shlex
 import shutil
 import signal
@@ -17,6 +18,9 @@ from grader.ros.failure import Ros2Error, did_you_mean
 
 if TYPE_CHECKING:
     import argparse
+    from pathlib import Path
+
+_QUOTED = re.compile(r'#!"([^"]+)"(.*)')
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -41,7 +45,7 @@ def _run(args: argparse.Namespace) -> int:
         have = ", ".join(names) if names else "none: its setup.py names them under entry_points"
         message = f"{hint}\nExecutables of {args.package_name}: {have}"
         raise Ros2Error(message)
-    command = [*_words(args.prefix), str(path), *args.argv]
+    command = [*_words(args.prefix), *_program(path), *args.argv]
     program = shutil.which(command[0])
     if program is None:
         message = f"The prefix cannot be started: there is no command '{command[0]}'"
@@ -56,6 +60,16 @@ def _run(args: argparse.Namespace) -> int:
             f"{path} could not be started: {error.strerror}. Does its first line name an interpreter that is there?"
         )
         raise Ros2Error(message) from error
+
+
+def _program(path: Path) -> list[str]:
+    """How to start it. setuptools quotes an interpreter with a space in its path, which Linux does not understand."""
+    try:
+        with path.open("rb") as file:
+            quoted = _QUOTED.match(file.readline(4096).decode("utf-8", "replace"))
+    except OSError:
+        quoted = None
+    return [quoted[1], *quoted[2].split(), str(path)] if quoted else [str(path)]
 
 
 def _words(prefix: str | None) -> list[str]:

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -41,6 +42,16 @@ def test_a_domain_of_the_users_own_unless_they_chose_one() -> None:
 def test_there_is_no_such_domain(domain: int) -> None:
     with pytest.raises(UsageError, match="from 0 to 101"):
         shell.users_environment(domain, lambda _: None)
+
+
+@pytest.mark.parametrize("home", ["home", "home of Ada"])
+def test_colcons_scripts_get_a_python_without_a_space_in_its_path(home: str, tmp_path: Path) -> None:
+    # They start it without quotes.
+    python = tmp_path / home / ".venv/bin/python3"
+    python.parent.mkdir(parents=True)
+    python.symlink_to(Path(sys.executable).resolve())
+    env = ros.users_environment(replace(HERE, python=python), None, {"HOME": str(tmp_path)})
+    assert env.get("COLCON_PYTHON_EXECUTABLE") == (str(python.resolve()) if " " in home else None)
 
 
 def test_what_every_node_needs_is_in_it() -> None:

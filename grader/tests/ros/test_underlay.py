@@ -58,7 +58,7 @@ def without(monkeypatch: pytest.MonkeyPatch, *programs: str) -> None:
 
 def test_two_at_once_build_it_once_and_both_get_it(here: installation.Ros, tmp_path: Path) -> None:
     code = "from grader.ros import installation, underlay; print(underlay.ensure(installation.find_ros(), print))"
-    env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "home of Ada")}
     both = [
         subprocess.Popen([sys.executable, "-c", code], env=env, stdout=subprocess.PIPE, text=True) for _ in range(2)
     ]
@@ -69,6 +69,9 @@ def test_two_at_once_build_it_once_and_both_get_it(here: installation.Ros, tmp_p
     assert sum("once; this takes" in line for told in lines for line in told) == 1
     assert (prefix / INDEX / "turtlesim").is_file()
     assert sorted(path.name for path in prefix.parent.iterdir()) == [prefix.name, "turtlesim.lock"]
+
+    traces = [path for path in prefix.rglob("*") if path.is_file() and b"/.building-" in path.read_bytes()]
+    assert traces == []
 
     # Usable where it stands, by whoever may only read it.
     closed = [path for path in prefix.rglob("*") if not path.stat().st_mode & stat.S_IROTH]

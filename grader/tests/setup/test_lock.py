@@ -129,7 +129,7 @@ def resolved(wanted: list[Requirement]) -> set[str]:
 @pytest.mark.parametrize("sourced", [False, True], ids=["wheels", "sourced"])
 @pytest.mark.parametrize("parts", bootstrap.PARTS.values(), ids=list(bootstrap.PARTS))
 def test_each_set_up_has_all_that_its_packages_need(parts: list[str], *, sourced: bool) -> None:
-    # For this Python; for the others, setup/test_doors.py asks uv, which needs the network.
+    # For this Python; for the others, setup/test_resolved.py asks uv, which needs the network.
     chosen = [part for part in parts if not (sourced and part == "ros")]
     needed = resolved([need for need in named_by_the_project(chosen) if not need.marker or need.marker.evaluate()])
     assert len(needed) > 70

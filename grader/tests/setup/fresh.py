@@ -1,0 +1,86 @@
+"""A fresh clone of the course with nothing installed, as somebody has it who just got it.
+
+Each `make` target is tried in one of its own, and one real thing is done with what it brought. These tests need the
+network where the caches of pip and uv lack something; `.ci/run` runs them, and `make test-all`.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[3]
+SET_UP_S = 900
+"""Time limit of a command; with a full cache none takes a minute."""
+NETWORK = ("PIP_", "UV_", "SSL_CERT_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY", "NO_PROXY")
+"""How this machine reaches packages: all that a fresh clone gets of the environment."""
+
+
+@dataclass(frozen=True)
+class Clone:
+    """The clone and the home of whoever uses it."""
+
+    folder: Path
+    home: Path
+
+    def run(self, command: str, *, ends: int = 0, cwd: Path | None = None, **environment: str) -> str:
+        """Run a line of bash; returns all that it printed.
+
+        Raises:
+            AssertionError: it did not end with this exit code.
+        """
+        done = subprocess.run(
+            ["bash", "-c", command],
+            cwd=cwd or self.folder,
+            env={**self.environment(), **environment},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            timeout=SET_UP_S,
+            text=True,
+            errors="replace",
+            check=False,
+        )
+        assert done.returncode == ends, f"{command}: {done.returncode}\n{done.stdout}"
+        return done.stdout
+
+    def make(self, target: str) -> str:
+        """Make the target, and see that all that it installed fits together; returns what it printed."""
+        said = self.run(f"make {target}")
+        self.run(".venv/bin/uv pip check --python .venv/bin/python")
+        return said
+
+    def lacks(self, module: str) -> bool:
+        """Whether its Python does not have a module."""
+        return "No module named" in self.run(f".venv/bin/python -c 'import {module}'", ends=1)
+
+    def environment(self) -> dict[str, str]:
+        """Next to nothing, as with `env -i`; what was downloaded before is used again."""
+        network = {name: value for name, value in os.environ.items() if name.upper().startswith(NETWORK)}
+        cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        settings = Path.home() / ".config/pip/pip.conf"
+        return {
+            **({"PIP_CONFIG_FILE": str(settings)} if settings.is_file() else {}),
+            "PIP_CACHE_DIR": str(cache / "pip"),
+            "UV_CACHE_DIR": str(cache / "uv"),
+            **network,
+            "HOME": str(self.home),
+        }
+
+
+def clone(folder: Path) -> Clone:
+    """Copy what git has of the course, as it stands now, into a home below `folder`. Its path has spaces."""
+    home = folder / "home of Ada"
+    target = home / "ros2 course"
+    listed = subprocess.run(
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT, capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip
+    for name in filter(None, listed.split("\0")):
+        if (ROOT / name).is_file():  # not if it was removed and that is not committed yet
+            (target / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, target / name)
+    return Clone(target, home)

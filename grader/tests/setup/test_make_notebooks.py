@@ -1,0 +1,38 @@
+"""`make notebooks` in a fresh clone: a student's notebook is run by its kernel, and graded by nbgrader."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import shutil
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests.setup.fresh import clone
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+pytestmark = [pytest.mark.exhaustive, pytest.mark.door]
+STEP = "03-circle-publisher"
+
+
+def test_a_notebook_is_run_and_graded(tmp_path: Path) -> None:
+    course = clone(tmp_path)
+    course.make("notebooks")
+    assert course.lacks("distributed")
+    # A student's, by the kernel that was installed, in a folder of their own.
+    shutil.copytree(course.folder / "solutions" / STEP, course.home / STEP)
+    activate = f"source {shlex.quote(str(course.folder / '.venv/bin/activate'))}"
+    course.run(f"{activate} && jupyter execute --inplace {STEP}.ipynb", cwd=course.home / STEP)
+    cells = json.loads((course.home / STEP / f"{STEP}.ipynb").read_text("utf-8"))["cells"]
+    assert "Passed: 100 of 100 points." in json.dumps(cells)
+    # An instructor's: the same one is handed in.
+    course.run("source .venv/bin/activate && grader class new ~/class")
+    course.run(f"{activate} && nbgrader generate_assignment {STEP}", cwd=course.home / "class/course")
+    shutil.copytree(course.home / STEP, course.home / "class/class/submitted/ada" / STEP)
+    grade = f"nbgrader autograde --create {STEP} && grader gradebook sync && nbgrader export"
+    course.run(f"{activate} && {grade}", cwd=course.home / "class/course")
+    scores = course.run("cut -d, -f4,10,11 grades.csv", cwd=course.home / "class/course")
+    assert scores.splitlines()[1:] == ["ada,100.0,100.0"]
