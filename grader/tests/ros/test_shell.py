@@ -50,7 +50,7 @@ def test_colcons_scripts_get_a_python_without_a_space_in_its_path(home: str, tmp
     python = tmp_path / home / ".venv/bin/python3"
     python.parent.mkdir(parents=True)
     python.symlink_to(Path(sys.executable).resolve())
-    env = ros.users_environment(replace(HERE, python=python), None, {"HOME": str(tmp_path)})
+    env = installation.users_environment(replace(HERE, python=python), None, {"HOME": str(tmp_path)})
     assert env.get("COLCON_PYTHON_EXECUTABLE") == (str(python.resolve()) if " " in home else None)
 
 

@@ -22,8 +22,9 @@ pytestmark = [pytest.mark.exhaustive, pytest.mark.door]
 def test_nothing_is_missing(part: str) -> None:
     text = lock.LOCK_FILE.read_text(encoding="utf-8")
     requirements = lock.select(text, [*lock.ALWAYS, part])
-    pythons = ("--universal", "--python-version", f"{OLDEST[0]}.{OLDEST[1]}")
-    command = [Path(sys.prefix, "bin/uv"), "pip", "compile", "-", *pythons, "--no-annotate", "--no-header", "--quiet"]
+    pythons = f"--universal --python-version {OLDEST[0]}.{OLDEST[1]}"
+    options = f"pip compile - {pythons} --no-annotate --no-header --quiet".split()
+    command = [str(Path(sys.prefix, "bin/uv")), *options]
     done = subprocess.run(command, cwd="/", input=requirements, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     listed, needed = (
