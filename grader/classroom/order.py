@@ -112,6 +112,8 @@ class Todo:
     found: Found
     key: Key
     why: str
+    errors: int = 0
+    """How often in a row its grading has ended with an `error` so far."""
 
 
 def sort_out(order: Order, results: Results) -> tuple[list[Result], list[Todo]]:
@@ -123,7 +125,7 @@ def sort_out(order: Order, results: Results) -> tuple[list[Result], list[Todo]]:
         old = results.load(found.student, found.exercise)
         why = "new" if old is None else _why_again(old, key)
         if old is None or why:
-            todo.append(Todo(found, key, why))
+            todo.append(Todo(found, key, why, old.errors if old else 0))
         else:
             kept.append(old)
     return kept, todo

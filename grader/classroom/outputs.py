@@ -19,6 +19,7 @@ from grader.report.github import to_annotations, to_summary
 from grader.report.gradescope import to_gradescope
 from grader.report.html_class import PAGE, ClassReports, Entry, class_page
 from grader.report.junit import to_junit
+from grader.report.suspicion import suspicions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,10 +38,15 @@ def write_all(results: Results, graded: Sequence[Result], folder: str = "") -> N
     from urllib.parse import quote
 
     rows = [(result.student, result.report) for result in graded]
+    attention = suspicions([(result.report, result.errors) for result in graded])
     table = [
-        (result.student, result.report, str(result.key["grader"]), f"{REPORTS}/{_json(result)}") for result in graded
+        (result.student, result.report, str(result.key["grader"]), f"{REPORTS}/{_json(result)}", why)
+        for result, why in zip(graded, attention, strict=True)
     ]
-    entries = [Entry(result.report, result.student, f"./{REPORTS}/{quote(result.page)}") for result in graded]
+    entries = [
+        Entry(result.report, result.student, f"./{REPORTS}/{quote(result.page)}", why)
+        for result, why in zip(graded, attention, strict=True)
+    ]
     results.write(SUMMARY, to_csv(table).encode("utf-8", "replace"))
     results.write(JUNIT, to_junit(rows))
     for result in graded:

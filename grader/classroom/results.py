@@ -1,7 +1,8 @@
 """The results of a class on the disk: one JSON and one page a submission, each written whole or not at all.
 
     OUT/reports/STUDENT.EXERCISE.json   the report (grader.report.json) with two keys more: student, and key (key.py);
-                                        for the instructor: hidden checks stand in it
+                                        for the instructor: hidden checks stand in it; `errors` says how often in a
+                                        row it ended with an error
     OUT/reports/STUDENT.EXERCISE.html   its page, without what is hidden
 
 The JSON is written after the page: where it stands, the result is finished. What a killed run was writing has the
@@ -20,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.errors import MachineError, UsageError
 from grader.report.json import from_json, to_data
+from grader.report.suspicion import ERRORS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -44,6 +46,8 @@ class Result:
     report: Report
     key: Mapping[str, Any]
     page: str
+    errors: int = 0
+    """How often in a row its grading has ended with an `error`, this time included."""
 
 
 def file_name(student: str, exercise: str) -> str:
@@ -72,17 +76,17 @@ class Results:
             data = json.loads(text)
             if data["student"] != _encodable(student) or not file.with_suffix(".html").is_file():
                 return None
-            return Result(student, from_json(text), data["key"], f"{name}.html")
+            return Result(student, from_json(text), data["key"], f"{name}.html", int(data.get(ERRORS, 0)))
         except (OSError, ValueError, KeyError, TypeError, UsageError):
             return None  # damaged, or of another grader: made again
 
-    def save(self, student: str, report: Report, key: Key, page: bytes) -> Result:
+    def save(self, student: str, report: Report, key: Key, page: bytes, errors: int = 0) -> Result:
         """Write a result. Raises MachineError where the disk is full or forbids it."""
         name = file_name(student, report.exercise)
-        data = {**to_data(report), "student": _encodable(student), "key": key.to_data()}
+        data = {**to_data(report), "student": _encodable(student), "key": key.to_data(), ERRORS: errors}
         self.write(f"{REPORTS}/{name}.html", page)
         self.write(f"{REPORTS}/{name}.json", (json.dumps(data, ensure_ascii=False, indent=1) + "\n").encode())
-        return Result(student, report, key.to_data(), f"{name}.html")
+        return Result(student, report, key.to_data(), f"{name}.html", errors)
 
     def write(self, name: str, content: bytes) -> Path:
         """Write a file of the folder, whole or not at all. Raises MachineError where that cannot be done."""

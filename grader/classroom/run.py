@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections import Counter, deque
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from grader.classroom.engine import Died, Finished, Tells
+from grader.checks.outcome import Status
+from grader.classroom.engine import Finished, Tells
 from grader.classroom.task import set_aside
 
 if TYPE_CHECKING:
-    from grader.classroom.engine import Engine
+    from grader.classroom.engine import Engine, Event
     from grader.classroom.order import Order, Todo
     from grader.classroom.results import Result, Results
-    from grader.classroom.show import Screen
-    from grader.classroom.task import Done, Task
+    from grader.classroom.show import Name, Screen
+    from grader.classroom.task import Done
 
 TRIES = 2
-"""How many workers a submission may take with it before it is set aside."""
+"""How often a submission may take its worker with it, or end with an `error`, before that is its result."""
 LOOK_S = 0.5
 """How long an engine may wait for something to happen."""
 
@@ -24,41 +26,81 @@ LOOK_S = 0.5
 def run(order: Order, todo: list[Todo], engine: Engine, results: Results, screen: Screen) -> list[Result]:
     """Grade and write each result as it comes, in no order.
 
+    What ended with an `error` is graded once more after all others, if at least one of those could be judged: the
+    machine works, so the error was chance, or the submission's own doing.
+
     Raises:
         MachineError: nothing more can be graded or written; what was written stays.
     """
-    waiting = deque(todo)
-    running: dict[tuple[str, str], Todo] = {}
-    deaths: Counter[tuple[str, str]] = Counter()
-    results_now: list[Result] = []
-
-    def keep(task: Task, done: Done) -> None:
-        one = running.pop(task.name)
-        result = results.save(one.found.student, done.report, one.key, done.page)
-        results_now.append(result)
-        screen.finished(result)
-
+    one = _Run(order, deque(todo), engine, results, screen)
     with engine:
-        while waiting or running:
-            while waiting and engine.has_room():
-                one = waiting.popleft()
-                task = order.task(one.found)
-                running[task.name] = one
-                screen.tells(task.name, "Starting")
-                engine.start(task)
+        while one.goes_on():
+            one.start()
             for event in engine.events(LOOK_S):
-                if isinstance(event, Tells):
-                    screen.tells(event.task.name, event.text)
-                elif isinstance(event, Finished):
-                    keep(event.task, event.done)
-                elif isinstance(event, Died):
-                    deaths[event.task.name] += 1
-                    if deaths[event.task.name] < TRIES:
-                        screen.tells(event.task.name, "Its worker was lost: once more, later")
-                        waiting.append(running.pop(event.task.name))
-                    else:
-                        keep(event.task, set_aside(event.task, _told(event.why)))
-    return results_now
+                one.hear(event)
+    return list(one.graded.values())
+
+
+@dataclass
+class _Run:
+    order: Order
+    waiting: deque[Todo]
+    engine: Engine
+    results: Results
+    screen: Screen
+    running: dict[Name, Todo] = field(default_factory=dict)
+    again: dict[Name, Todo] = field(default_factory=dict)
+    """What ended with an `error`, and may be graded once more."""
+    failures: Counter[Name] = field(default_factory=Counter)
+    graded: dict[Name, Result] = field(default_factory=dict)
+
+    def goes_on(self) -> bool:
+        """Whether something is left to do; the last of it are the submissions that ended with an `error`."""
+        if not self.waiting and not self.running and self.again:
+            if len(self.again) < len(self.graded):
+                self.waiting.extend(self.again.values())
+            else:
+                # The machine has judged nothing: it would fail at these again.
+                for name in self.again:
+                    self.screen.finished(self.graded[name])
+            self.again.clear()
+        return bool(self.waiting or self.running)
+
+    def start(self) -> None:
+        """Give the engine as much as it takes."""
+        while self.waiting and self.engine.has_room():
+            one = self.waiting.popleft()
+            task = self.order.task(one.found)
+            self.running[task.name] = one
+            self.screen.tells(task.name, "Starting")
+            self.engine.start(task)
+
+    def hear(self, event: Event) -> None:
+        """Take in what has happened to a task."""
+        name = event.task.name
+        if isinstance(event, Tells):
+            self.screen.tells(name, event.text)
+        elif isinstance(event, Finished):
+            self._keep(name, event.done)
+        elif self.failures[name] + 1 < TRIES:
+            self.failures[name] += 1
+            self.screen.tells(name, "Its worker was lost: once more, later")
+            self.waiting.append(self.running.pop(name))
+        else:
+            self._keep(name, set_aside(event.task, _told(event.why)))
+
+    def _keep(self, name: Name, done: Done) -> None:
+        one = self.running.pop(name)
+        broken = bool(done.report.with_status(Status.ERROR))
+        self.failures[name] += broken
+        errors = one.errors + self.failures[name] if broken else 0
+        result = self.results.save(one.found.student, done.report, one.key, done.page, errors)
+        self.graded[name] = result
+        if broken and self.failures[name] < TRIES:
+            self.again[name] = one
+            self.screen.tells(name, "It could not be judged: once more, later")
+        else:
+            self.screen.finished(result)
 
 
 def _told(why: str) -> str:

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Protocol
 
 from grader.common.words import count, printable
+from grader.report.suspicion import suspicions
 from grader.report.verdict import tone, verdict
 
 if TYPE_CHECKING:
@@ -146,4 +147,11 @@ def summary(results: list[Result]) -> str:
     judged = [each.report for each, kind in zip(results, tones, strict=True) if kind != "error" and each.report.max]
     shares = [report.points / report.max for report in judged]
     mean = f", {100 * sum(shares) / len(shares):.0f} % of the points on average" if shares else ""
-    return f"{count(len(results), 'submission')}: {', '.join(counted)}{mean}."
+    told = [f"{count(len(results), 'submission')}: {', '.join(counted)}{mean}."]
+    attention = suspicions([(result.report, result.errors) for result in results])
+    told += [
+        plain(f"Look at {result.student} ({result.report.exercise}): {why}.")
+        for result, why in zip(results, attention, strict=True)
+        if why
+    ]
+    return "\n".join(told)

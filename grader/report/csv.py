@@ -12,6 +12,7 @@
     clock, seed
     graded_by   the grader's version and the beginning of its sources' sha256
     report      the file of the whole report
+    attention   why an instructor should look at it: "suspicious" where the grader failed at it again and again
 
 No cell is a formula, whatever a student wrote.
 """
@@ -46,6 +47,7 @@ COLUMNS = (
     "seed",
     "graded_by",
     "report",
+    "attention",
 )
 FORMULA = frozenset({"=", "+", "-", "@", "\N{MINUS SIGN}"})
 SEPARATORS = frozenset({";", "|", "\t", "\r", "\n"})
@@ -53,8 +55,11 @@ BEFORE = frozenset({"", '"', "'", "`"})
 """What may stand before a formula's first character: blanks, and quotes that a reader takes off."""
 
 
-def to_csv(rows: Iterable[tuple[str, Report, str, str]]) -> str:
-    """The table of these students, reports, graders and names of JSON files; with a mark that tells Excel of UTF-8."""
+def to_csv(rows: Iterable[tuple[str, Report, str, str, str]]) -> str:
+    """The table of these students, reports, graders, names of JSON files, and why to look at them.
+
+    It begins with a mark that tells Excel of UTF-8.
+    """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\r\n")  # as RFC 4180 has it
     writer.writerow(COLUMNS)
@@ -63,7 +68,7 @@ def to_csv(rows: Iterable[tuple[str, Report, str, str]]) -> str:
     return "\ufeff" + text.getvalue()
 
 
-def _row(student: str, report: Report, grader: str, file: str) -> tuple[object, ...]:
+def _row(student: str, report: Report, grader: str, file: str, attention: str) -> tuple[object, ...]:
     failed = report.with_status(Status.FAILED) or report.with_status(Status.ERROR)
     return (
         student,
@@ -79,6 +84,7 @@ def _row(student: str, report: Report, grader: str, file: str) -> tuple[object, 
         "" if report.seed is None else report.seed,
         grader,
         file,
+        attention,
     )
 
 

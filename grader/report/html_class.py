@@ -5,6 +5,7 @@ Reports are the JSON files below a folder; a page or recording beside a report w
 
 from __future__ import annotations
 
+import json
 import re
 from collections import Counter
 from dataclasses import dataclass, field
@@ -17,6 +18,7 @@ from grader.checks.outcome import Status
 from grader.errors import UsageError
 from grader.report.json import from_json
 from grader.report.page import make_page, save_page
+from grader.report.suspicion import ERRORS, suspicions
 from grader.report.svg import picture, tag, words
 from grader.report.verdict import tone, verdict
 
@@ -41,6 +43,8 @@ class Entry:
     report: Report
     name: str
     link: str
+    attention: str = ""
+    """Why an instructor should look at it."""
 
     @property
     def share(self) -> float:
@@ -114,6 +118,7 @@ def read_class(folder: Path) -> ClassReports:
         message = f"There is no folder {folder}: name the one that holds the reports (from `grader check --json`)."
         raise UsageError(message)
     found: list[tuple[Path, Report]] = []
+    errors: list[int] = []
     unreadable: list[tuple[str, str]] = []
     for file in sorted(folder.rglob("*.json")):
         try:
@@ -122,14 +127,20 @@ def read_class(folder: Path) -> ClassReports:
             text = file.read_text(encoding="utf-8")
             if '"outcomes"' not in text:
                 continue  # JSON of somebody else
-            found.append((file, from_json(text)))
-        except (OSError, UnicodeDecodeError, RecursionError, UsageError) as error:
+            one, amount = from_json(text), int(json.loads(text).get(ERRORS, 0))
+            found.append((file, one))
+            errors.append(amount)
+        except (OSError, ValueError, TypeError, RecursionError, UsageError) as error:
             unreadable.append((str(file.relative_to(folder)), str(error)))
     if not found and not unreadable:
         message = f"There is no report below {folder}: they are JSON files, as `grader check --json FILE` writes them."
         raise UsageError(message)
     names = _short([report.submission for _, report in found])
-    entries = [Entry(report, name, _link(file, folder)) for (file, report), name in zip(found, names, strict=True)]
+    attention = suspicions([(report, amount) for (_, report), amount in zip(found, errors, strict=True)])
+    entries = [
+        Entry(report, name, _link(file, folder), why)
+        for (file, report), name, why in zip(found, names, attention, strict=True)
+    ]
     return ClassReports(tuple(sorted(entries, key=lambda entry: _natural(entry.name))), tuple(unreadable))
 
 
@@ -190,6 +201,7 @@ def class_page(reports: ClassReports) -> str:
         "rows": reports.entries,
         "entries": judged,
         "broken": broken,
+        "attention": [entry for entry in reports.entries if entry.attention],
         "unreadable": reports.unreadable,
         "exercises": exercises,
         "failures": failures(judged),

@@ -13,8 +13,28 @@ from grader.tests.report.hostile import ODD
 from grader.tests.report.reports import report
 
 
-def result(student: str, status: str) -> Result:
-    return Result(student, report(status), {}, "page.html")
+def result(student: str, status: str, errors: int = 0) -> Result:
+    return Result(student, report(status), {}, "page.html", errors)
+
+
+@pytest.mark.parametrize(
+    ("others", "errors", "suspicious"),
+    [
+        (["passed"], 2, True),
+        (["failed"], 3, True),
+        (["passed"], 1, False),
+        (["error", "error"], 2, False),
+        ([], 2, False),
+    ],
+)
+def test_an_error_that_repeats_while_others_are_judged_is_suspicious(
+    others: list[str], errors: int, *, suspicious: bool
+) -> None:
+    said = summary(
+        [*(result(f"other{number}", status) for number, status in enumerate(others)), result("dora", "error", errors)]
+    )
+    assert ("Look at dora" in said) == suspicious
+    assert (f"{errors} times in a row" in said) == suspicious
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,7 @@ def with_hidden(status: Status) -> Report:
 
 def table(*reports: tuple[str, Report]) -> list[dict[str, str]]:
     text = to_csv(
-        (student, each, "0.1.0 abc", f"reports/{number}.json") for number, (student, each) in enumerate(reports)
+        (student, each, "0.1.0 abc", f"reports/{number}.json", "") for number, (student, each) in enumerate(reports)
     )
     return list(csv.DictReader(io.StringIO(text.removeprefix("\ufeff"), newline="")))
 
@@ -132,7 +132,7 @@ def test_no_cell_is_a_formula_wherever_a_reader_splits(sign: str, separator: str
     call = f"{sign}cmd|' /C calc'!A0"
     names = [f"{before}{call}" for before in BEFORE]
     names += [f"a{between}{before}{call}{between}b" for between in ";|\t" for before in BEFORE]
-    text = to_csv((name, hostile(), "0.1.0 abc", f"{name}.json") for name in names).removeprefix("\ufeff")
+    text = to_csv((name, hostile(), "0.1.0 abc", f"{name}.json", name) for name in names).removeprefix("\ufeff")
     rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=separator))
     rows += [line.split(separator) for line in text.split("\r\n")]  # a reader that knows no quotes
     cells = [cell for row in rows for cell in row]

@@ -60,6 +60,16 @@ def test_the_machines_errors_stand_apart_and_out_of_the_averages(folder: Path) -
     assert any("6 submissions judged: 3 passed, 3 not yet" in text for text in tags.texts["p"])
 
 
+def test_who_ends_with_an_error_again_and_again_is_named(folder: Path) -> None:
+    assert 'id="attention"' not in class_page(read_class(folder))
+    file = folder / "student6" / "report.json"
+    file.write_text(json.dumps({**json.loads(file.read_text()), "errors": 2}))
+    page = class_page(read_class(folder))
+    attention = page[page.index('id="attention"') :]
+    assert "student6" in attention
+    assert "suspicious: it could not be judged 2 times in a row, while others could" in attention
+
+
 def test_what_is_no_report_is_passed_over_and_what_is_a_damaged_one_is_told(folder: Path) -> None:
     (folder / "results.json").write_text('{"tests": []}')
     (folder / "damaged.json").write_text('{"schema": 1, "outcomes": [{}]}')
