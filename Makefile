@@ -1,7 +1,7 @@
 # What there is to type; `make help` lists it. Every target sets up what it needs first, and is quick when that is done.
 
 .DEFAULT_GOAL := help
-.PHONY: help demo cluster notebooks test test-all lint lock clean
+.PHONY: help demo cluster notebooks docs test test-all lint lock clean
 
 # Exported, so that it also holds where the caller has no PATH at all (`env -i make demo`).
 export PATH := $(if $(PATH),$(PATH):)/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
@@ -22,6 +22,11 @@ cluster: python3 ## set up a machine that is to grade for another one, with Dask
 
 notebooks: python3 ## set up JupyterLab and nbgrader, with the course's kernel
 	@$(SET_UP) notebooks $(CHOSEN) && $(BIN)/grader kernel install
+
+docs: python3 ## build README, docs/ and the lessons as a site in build/site; a link that leads nowhere fails
+	@$(SET_UP) docs $(CHOSEN)
+	@$(BIN)/sphinx-build -q -W --keep-going -n -c docs -d build/site-doctrees . build/site
+	@echo "The documentation: build/site/index.html"
 
 test: lint ## set up, lint, and run the tests but the exhaustive ones, a process a core
 	@$(BIN)/python -m pytest -n auto --dist loadscope

@@ -1,6 +1,6 @@
 """The set-up's first half: look at the machine, make .venv; then grader.setup.install fills it. Quick when all is done.
 
-    python3 -m grader.setup.bootstrap (learner | cluster | notebooks | tests) [--python PYTHON]
+    python3 -m grader.setup.bootstrap (learner | cluster | notebooks | docs | tests) [--python PYTHON]
 
 Like machine.py, this runs under any Python 3 before anything is installed: syntax of Python 3.6.
 """
@@ -32,7 +32,8 @@ PARTS = {
     "learner": ["setup", "grader", "ros"],
     "cluster": ["setup", "grader", "ros", "cluster"],
     "notebooks": ["setup", "grader", "ros", "notebooks"],
-    "tests": ["setup", "grader", "ros", "cluster", "notebooks", "tests"],
+    "docs": ["setup", "grader", "docs"],
+    "tests": ["setup", "grader", "ros", "cluster", "notebooks", "docs", "tests"],
 }
 
 

@@ -30,6 +30,7 @@ PARTS = {
     "ros": "ROS 2 Jazzy as wheels; left out where a ROS 2 is sourced",
     "cluster": "grading on many machines",
     "notebooks": "JupyterLab and nbgrader",
+    "docs": "the documentation as a site",
     "tests": "tests",
 }
 """Name of each part and what it is for, in the file's order."""
@@ -138,6 +139,7 @@ def make(uv: str, *, upgrade: bool = False) -> str:
             ("ros", None, ["--extra", "ros"]),
             ("cluster", None, ["--extra", "cluster"]),
             ("notebooks", None, ["--extra", "notebooks"]),
+            ("docs", None, ["--extra", "docs"]),
             ("tests", None, ["--extra", "dev"]),
         ]:
             # Compiling a part keeps to the versions that stand in its output file: the whole's.

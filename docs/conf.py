@@ -1,0 +1,49 @@
+"""Sphinx: README, docs/ and the lessons as one site. `make docs` builds it from the repository's root."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+
+project = "ROS 2 topics, graded by doing"
+extensions = ["myst_parser"]
+root_doc = "README"
+PAGES = {
+    "Learn": ["docs/learner", "course/*/lesson"],
+    "Teach": ["docs/instructor", "grader/classroom/templates/README", "docs/security"],
+    "Write exercises": ["docs/authors", "docs/kinds", "grader/checks/README"],
+    "Project": ["docs/design", "docs/development", "CONTRIBUTING", "SECURITY", "CHANGELOG"],
+}
+"""The contents of the site, by caption."""
+include_patterns = ["README.md", *(f"{page}.md" for pages in PAGES.values() for page in pages)]
+html_theme = "furo"
+html_title = project
+html_show_copyright = False
+html_static_path = ["site.css"]
+html_css_files = ["site.css"]
+# Anchors as GitHub makes them, so that a link works in both places.
+myst_heading_anchors = 4
+
+
+def add_contents(_: Sphinx, name: str, source: list[str]) -> None:
+    """Add the contents below README, which GitHub shows without them."""
+    if name == root_doc:
+        for caption, pages in PAGES.items():
+            lines = "\n".join(f"/{page}" for page in pages)
+            source[0] += f"\n```{{toctree}}\n:hidden:\n:glob:\n:caption: {caption}\n\n{lines}\n```\n"
+
+
+def add_index(app: Sphinx, error: Exception | None) -> None:
+    """Lead whoever opens the folder to README."""
+    if error is None:
+        text = f'<!DOCTYPE html><title>{project}</title><meta http-equiv="refresh" content="0; url={root_doc}.html">\n'
+        Path(app.outdir, "index.html").write_text(text, encoding="utf-8")
+
+
+def setup(app: Sphinx) -> None:
+    """Called by Sphinx."""
+    app.connect("source-read", add_contents)
+    app.connect("build-finished", add_index)

@@ -1,0 +1,62 @@
+"""The documentation builds as a site, and a link that leads nowhere fails."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.tests.docs.pages import BESIDE_THE_CODE, PAGES, ROOT
+
+SPHINX = Path(sys.executable).with_name("sphinx-build")
+
+
+def arguments() -> list[str]:
+    """The options of sphinx-build in the Makefile, without the folders."""
+    recipe = re.search(r"sphinx-build (.*) -c docs -d ", (ROOT / "Makefile").read_text("utf-8"))
+    assert recipe is not None
+    return recipe[1].split()
+
+
+def build(source: Path, to: Path) -> subprocess.CompletedProcess[str]:
+    folders = ["-c", str(source / "docs"), "-d", str(to / "doctrees"), str(source), str(to / "site")]
+    return subprocess.run([SPHINX, *arguments(), *folders], capture_output=True, text=True, check=False, timeout=300)
+
+
+@pytest.fixture
+def source(tmp_path: Path) -> Path:
+    """What the site is made of, where it may be changed."""
+    copy = tmp_path / "source"
+    left_out = shutil.ignore_patterns("__pycache__", "tests")
+    for name in ("docs", "course", "grader"):
+        shutil.copytree(ROOT / name, copy / name, ignore=left_out)
+    for path in ROOT.iterdir():
+        if path.is_file():
+            shutil.copy(path, copy / path.name)
+    (copy / "grader/tests").mkdir()
+    shutil.copy(ROOT / "grader/tests/case.py", copy / "grader/tests/case.py")
+    shutil.copytree(ROOT / "grader/tests/checks", copy / "grader/tests/checks", ignore=left_out)
+    return copy
+
+
+def test_the_site_is_built_with_every_page(tmp_path: Path) -> None:
+    done = build(ROOT, tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    lessons = [str(path.relative_to(ROOT)) for path in (ROOT / "course").glob("*/lesson.md")]
+    for page in (*PAGES, *BESIDE_THE_CODE, *lessons):
+        assert (tmp_path / "site" / page).with_suffix(".html").is_file(), page
+    assert "README.html" in (tmp_path / "site/index.html").read_text("utf-8")
+
+
+def test_a_link_that_leads_nowhere_fails(source: Path, tmp_path: Path) -> None:
+    assert build(source, tmp_path / "right").returncode == 0
+    with (source / "docs/design.md").open("a", encoding="utf-8") as page:
+        page.write("\nSee [the moon](moon.md) and [this](authors.md#no-such-heading).\n")
+    done = build(source, tmp_path / "wrong")
+    assert done.returncode != 0
+    assert "moon.md" in done.stderr
+    assert "no-such-heading" in done.stderr
