@@ -170,13 +170,15 @@ def split(needs: dict[str, str]) -> dict[str, list[str]]:
 
 
 def test_split_gives_each_part_all_that_it_needs() -> None:
-    needs = {"setup": "b", "grader": "abg", "ros": "ace", "cluster": "ade", "notebooks": "aef", "tests": "abfg"}
+    needs = {"setup": "b", "grader": "abg", "ros": "ace", "cluster": "ade", "notebooks": "aef"}
+    needs |= {"docs": "ad", "tests": "abfg"}
     assert split(needs) == {
         "setup": ["b"],
         "grader": ["a", "g"],
         "ros": ["c", "e"],
         "cluster": ["d", "e"],
         "notebooks": ["e", "f"],
+        "docs": ["d"],
         "tests": ["f"],
     }
 
