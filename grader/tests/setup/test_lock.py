@@ -176,7 +176,7 @@ def test_split_gives_each_part_all_that_it_needs() -> None:
         "setup": ["b"],
         "grader": ["a", "g"],
         "ros": ["c", "e"],
-        "cluster": ["d", "e"],
+        "cluster": ["e", "d"],
         "notebooks": ["e", "f"],
         "docs": ["d"],
         "tests": ["f"],
