@@ -114,7 +114,7 @@ def _title(draw: ImageDraw.ImageDraw, report: Report, width: int) -> None:
     errors, failed = report.with_status(Status.ERROR), report.with_status(Status.FAILED)
     if errors:
         draw.text((LEFT, 44), f"Not finished, {points}: the machine failed.", fill=BAD, font=_font(16))
-    elif failed or report.with_status(Status.SKIPPED):
+    elif report.exit_code:
         first = f": {printable(failed[0].finding.seen)}" if failed and not failed[0].hidden else ""
         text = _cut(draw, f"Not passed yet, {points}{first}", width - LEFT - 20)
         draw.text((LEFT, 44), text, fill=BAD, font=_font(16))

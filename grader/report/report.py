@@ -53,8 +53,16 @@ class Report:
         return tuple(o for o in self.outcomes if o.status is status and not o.advice)
 
     @property
+    def warnings(self) -> tuple[Outcome, ...]:
+        """Failed or skipped checks that cost nothing, where nothing else is missing; else none."""
+        missing = (*self.with_status(Status.FAILED), *self.with_status(Status.SKIPPED))
+        costs = any(outcome.max for outcome in missing) or self.max == 0 or self.with_status(Status.ERROR)
+        return () if costs else missing
+
+    @property
     def exit_code(self) -> int:
-        """0 all passed, 1 some check did not pass, 3 the grader or the machine is broken."""
+        """0 passed, 1 some check that is worth points did not pass, 3 the grader or the machine is broken."""
         if self.with_status(Status.ERROR):
             return 3
-        return 1 if self.with_status(Status.FAILED) or self.with_status(Status.SKIPPED) else 0
+        missing = self.with_status(Status.FAILED) or self.with_status(Status.SKIPPED)
+        return 1 if missing and not self.warnings else 0

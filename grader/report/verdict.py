@@ -22,7 +22,7 @@ def tone(report: Report) -> Tone:
     """How the verdict is meant: "error" where the machine failed."""
     if report.with_status(Status.ERROR):
         return "error"
-    return "failed" if report.with_status(Status.FAILED) or report.with_status(Status.SKIPPED) else "passed"
+    return "failed" if report.exit_code else "passed"
 
 
 def verdict(report: Report) -> str:
@@ -32,6 +32,8 @@ def verdict(report: Report) -> str:
     skipped = report.with_status(Status.SKIPPED)
     if errors:
         return f"Not finished: {count(len(errors), 'check')} could not be judged. {points} so far."
+    if report.warnings:
+        return f"Passed: {points}, with {count(len(report.warnings), 'warning')}: see what did not pass above."
     if not failed and not skipped:
         return f"Passed: {points}."
     if not failed:

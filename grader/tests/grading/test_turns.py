@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _OTHER = """
 import sys
 from pathlib import Path
-from grader.turns import Turns
+from grader.grading.turns import Turns
 mine = Turns(Path(sys.argv[1]))
 with mine.shared():
     print("shared", flush=True)

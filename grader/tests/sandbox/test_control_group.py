@@ -60,8 +60,8 @@ def test_a_group_is_gone_afterwards() -> None:
 @pytest.mark.usefixtures("group")
 def test_what_a_killed_grader_left_is_removed_by_the_next() -> None:
     script = """
-from grader.control_group import control_group
-from grader.sandbox import Limits
+from grader.sandbox.control_group import control_group
+from grader.sandbox.bubblewrap import Limits
 import os, signal
 with control_group(Limits()) as group:
     print(*group.folders, flush=True)
