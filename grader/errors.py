@@ -15,5 +15,9 @@ class UsageError(GraderError):
     exit_code = 2
 
 
+class TooLargeError(GraderError):
+    """What a student handed in is too large, or nested too deeply, to be read: the student's fault."""
+
+
 class MachineError(GraderError):
     """The grader or the machine is broken: never the student's fault."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.common.words import shorten
-from grader.errors import MachineError
+from grader.errors import MachineError, TooLargeError
 from grader.evidence.stage import STAGES
 
 if TYPE_CHECKING:
@@ -141,7 +141,9 @@ def unreadable(how: str) -> Finding:
 
 
 def in_words(error: Exception) -> str:
-    """An exception on one line."""
+    """An exception on one line; of ours, the text alone."""
+    if isinstance(error, TooLargeError):
+        return str(error).rstrip(".")
     return f"{type(error).__name__}: {error}".rstrip(" :.")
 
 

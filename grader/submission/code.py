@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import ast
 import warnings
+from collections import deque
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from grader.common.words import shorten
+from grader.errors import TooLargeError
 from grader.submission.constants import Names, dotted, single_names
 from grader.submission.where import Where
 
@@ -16,6 +19,10 @@ if TYPE_CHECKING:
 
 MAX_BYTES = 400_000
 """A longer file is not parsed: nobody wrote it by hand."""
+MOST_BYTES = 1_000_000
+"""Of all files that belong to one node."""
+MAX_NAME = 500
+"""Characters of a module's name."""
 
 SRC = "src/"
 """Where Python people put their packages, with package_dir={"": "src"} in setup.py."""
@@ -31,7 +38,7 @@ class Unreadable:
 
 @dataclass(frozen=True)
 class Module:
-    """One Python file: its tree, or why there is none (both None: not looked at, it is too long)."""
+    """One Python file: its tree, or why there is none."""
 
     file: str
     tree: ast.Module | None = None
@@ -40,7 +47,7 @@ class Module:
     @cached_property
     def names(self) -> Names:
         """The names that are assigned, with their expressions."""
-        return {} if self.tree is None else single_names(self.tree)
+        return Names() if self.tree is None else single_names(self.tree)
 
     @property
     def body(self) -> list[ast.stmt]:
@@ -134,16 +141,22 @@ def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
 
     The other nodes of a package say nothing about this one.
     """
-    paths = [path for path in sorted(files) if path.endswith(".py") and not _left_out(path)]
-    if first is None:
-        return Code(tuple(read_module(path, files[path]) for path in paths))
+    paths = {path: None for path in sorted(files) if path.endswith(".py") and not _left_out(path)}
     modules: dict[str, Module] = {}
-    waiting = [first]
+    waiting = deque(paths if first is None else [first])
+    left = MOST_BYTES
     while waiting:
-        path = waiting.pop(0)
-        if path not in modules:
-            modules[path] = read_module(path, files[path])
-            waiting += [*imported_files(modules[path], paths), *_packages_around(path, paths)]
+        path = waiting.popleft()
+        if path in modules:
+            continue
+        left -= len(files[path])
+        if left < 0:
+            message = f"its Python files are too large to be read: more than {MOST_BYTES // 1000} kB together"
+            raise TooLargeError(message)
+        modules[path] = read_module(path, files[path])
+        if first is not None:
+            found = [*imported_files(modules[path], paths), *_packages_around(path, paths)]
+            waiting += [file for file in dict.fromkeys(found) if file not in modules]
     return Code(tuple(modules.values()), first)
 
 
@@ -163,7 +176,8 @@ def imported_files(module: Module, paths: Collection[str]) -> list[str]:
         elif isinstance(node, ast.ImportFrom):
             folder = module.file.split("/")[: -node.level] if node.level else []
             base = ".".join([*folder, *([node.module] if node.module else [])])
-            names = [base, *(f"{base}.{alias.name}" for alias in node.names)]
+            # So long a name is no file's, and with each of many others behind it there would be no end of text.
+            names = [base, *(f"{base}.{alias.name}" for alias in node.names)] if len(base) <= MAX_NAME else []
         else:
             continue
         found += [file for name in names if (file := module_file(name, paths)) is not None]
@@ -188,9 +202,14 @@ def _left_out(path: str) -> bool:
 
 
 def read_module(file: str, data: bytes) -> Module:
-    """Parse one file; what Python cannot read is told, never raised."""
+    """Parse one file; what Python cannot read is told.
+
+    Raises:
+        TooLargeError: the file is too large, or nested too deeply.
+    """
     if len(data) > MAX_BYTES:
-        return Module(file)
+        message = f"{shorten(file)} is too large to be read: more than {MAX_BYTES // 1000} kB"
+        raise TooLargeError(message)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # an invalid escape sequence is the student's, and no news for the grader
@@ -199,5 +218,6 @@ def read_module(file: str, data: bytes) -> Module:
         return Module(file, unreadable=Unreadable(error.msg, error.lineno))
     except ValueError as error:  # null bytes, in Python before 3.12
         return Module(file, unreadable=Unreadable(str(error)))
-    except (RecursionError, MemoryError):
-        return Module(file)
+    except (RecursionError, MemoryError) as error:
+        message = f"{shorten(file)} is nested too deeply to be read"
+        raise TooLargeError(message) from error

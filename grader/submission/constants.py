@@ -4,12 +4,33 @@ from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 Constant = str | float | int
-Names = Mapping[str, "ast.expr | None"]
+
+
+class Names(dict[str, "ast.expr | None"]):
+    """Names that are assigned, with their expressions; counts the work that goes into evaluating them.
+
+    `x = y + y; y = z + z; ...` doubles the work with each line, so a module has a budget.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._left = MAX_NODES
+
+    def spend(self) -> bool:
+        """Count one more node; false when the budget is spent."""
+        self._left -= 1
+        return self._left >= 0
+
 
 MAX_DEPTH = 20
+MAX_NODES = 100_000
+"""Nodes that are evaluated in one module: 0.1 s. What is beyond cannot be told."""
 MAX_TEXT = 2000
 MATH = {"math.pi": math.pi, "pi": math.pi, "np.pi": math.pi, "numpy.pi": math.pi, "math.tau": math.tau}
 
@@ -25,9 +46,9 @@ def dotted(node: ast.expr) -> str | None:
     return ".".join([node.id, *reversed(parts)])
 
 
-def single_names(tree: ast.AST) -> dict[str, ast.expr | None]:
+def single_names(tree: ast.AST) -> Names:
     """Every name or attribute that is assigned to, with its expression; None when that happens more than once."""
-    names: dict[str, ast.expr | None] = {}
+    names = Names()
     for node in ast.walk(tree):
         targets: list[ast.expr] = []
         value: ast.expr | None = None
@@ -46,7 +67,7 @@ def single_names(tree: ast.AST) -> dict[str, ast.expr | None]:
 
 def evaluate(node: ast.expr | None, names: Names, depth: int = 0) -> Constant | None:
     """The number or text that the expression always is; None when that cannot be told."""
-    if node is None or depth > MAX_DEPTH:
+    if node is None or depth > MAX_DEPTH or not names.spend():
         return None
     if isinstance(node, ast.Constant):
         return node.value if isinstance(node.value, str | int | float) else None
@@ -92,20 +113,25 @@ def _binary(op: ast.operator, left: Constant | None, right: Constant | None) -> 
 
 
 def _joined(node: ast.JoinedStr, names: Names, depth: int) -> str | None:
+    pieces = (piece.value if isinstance(piece, ast.FormattedValue) else piece for piece in node.values)
+    return _together("", pieces, names, depth)
+
+
+def _together(between: str, pieces: Iterable[ast.expr], names: Names, depth: int) -> str | None:
+    """The texts as one; None when they are not texts, or too long together."""
     parts: list[str] = []
-    for piece in node.values:
-        inner = piece.value if isinstance(piece, ast.FormattedValue) else piece
-        value = evaluate(inner, names, depth + 1)
-        if not isinstance(value, str):
+    length = 0
+    for piece in pieces:
+        value = evaluate(piece, names, depth + 1)
+        if not isinstance(value, str) or length > MAX_TEXT:
             return None
         parts.append(value)
-    whole = "".join(parts)
-    return whole if len(whole) <= MAX_TEXT else None
+        length += len(value) + len(between)
+    return between.join(parts) if length <= MAX_TEXT else None
 
 
 def _call(node: ast.expr, names: Names, depth: int) -> str | None:
     """os.path.join of texts: common in setup.py."""
     if not isinstance(node, ast.Call) or dotted(node.func) not in ("os.path.join", "path.join", "join"):
         return None
-    parts = [evaluate(argument, names, depth + 1) for argument in node.args]
-    return "/".join(str(part) for part in parts) if all(isinstance(part, str) for part in parts) else None
+    return _together("/", node.args, names, depth)

@@ -5,19 +5,20 @@ from __future__ import annotations
 import ast
 import re
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING
 
+from grader.errors import TooLargeError
 from grader.submission.code import Call, Module, Unreadable, read_module
-from grader.submission.constants import dotted, evaluate
+from grader.submission.constants import MAX_DEPTH, dotted, evaluate
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-ENTRY_POINT = re.compile(
-    r"\s*(?P<name>[^=\s][^=]*?)\s*=\s*(?P<module>[\w.]+)\s*:\s*(?P<attribute>[\w.]+)\s*(\[.*\])?\s*"
-)
-"""name = module:attribute, as setuptools reads a console script."""
+TARGET = re.compile(r"(?P<module>[\w.]+)\s*:\s*(?P<attribute>[\w.]+)\s*(\[.*\])?")
+"""What stands behind the "=" of an entry point: module:attribute."""
 MAX_ENTRY_POINT = 300
+MOST_ENTRY_POINTS = 1000
 
 
 @dataclass(frozen=True)
@@ -88,12 +89,16 @@ def _stray(module: Module, points: tuple[EntryPoint, ...]) -> tuple[EntryPoint, 
         for node in module.nodes
         if isinstance(node, ast.Constant) and isinstance(node.value, str)
     ]
-    matches = [(ENTRY_POINT.fullmatch(text[:MAX_ENTRY_POINT]), text, line) for text, line in texts if text not in known]
-    return tuple(
-        EntryPoint(text, line, match["name"], f"{match['module']}:{match['attribute']}")
-        for match, text, line in matches
-        if match
-    )
+    points_ = (_entry_point(text, line) for text, line in texts if text not in known)
+    return tuple(islice((point for point in points_ if point.target is not None), MOST_ENTRY_POINTS))
+
+
+def _entry_point(text: str, line: int) -> EntryPoint:
+    """Read `name = module:attribute` as setuptools does, in a time that does not depend on what stands there."""
+    kept = text[:MAX_ENTRY_POINT]
+    name, _, rest = kept.partition("=")
+    match = TARGET.fullmatch(rest.strip()) if name.strip() else None
+    return EntryPoint(kept, line, name.strip(), f"{match['module']}:{match['attribute']}" if match else None)
 
 
 def _last(node: ast.expr) -> str:
@@ -102,7 +107,9 @@ def _last(node: ast.expr) -> str:
 
 def _value_line(node: ast.expr | None, module: Module) -> int | None:
     """The line of the text itself, where a name stands for it."""
-    while isinstance(node, ast.Name) and module.names.get(node.id) is not None:
+    for _ in range(MAX_DEPTH):  # `a = b; b = a` has no end
+        if not isinstance(node, ast.Name) or module.names.get(node.id) is None:
+            break
         node = module.names[node.id]
     return None if node is None else node.lineno
 
@@ -141,11 +148,10 @@ def _entry_points(groups: dict[str, ast.expr] | None, module: Module) -> tuple[E
         text = evaluate(item, module.names)
         if not isinstance(text, str):
             return None
-        text = text[:MAX_ENTRY_POINT]
-        match = ENTRY_POINT.fullmatch(text)
-        target = f"{match['module']}:{match['attribute']}" if match else None
-        name = match["name"] if match else text.partition("=")[0].strip()
-        points.append(EntryPoint(text, item.lineno, name, target))
+        points.append(_entry_point(text, item.lineno))
+        if len(points) > MOST_ENTRY_POINTS:
+            message = f"setup.py names more than {MOST_ENTRY_POINTS} executables"
+            raise TooLargeError(message)
     return tuple(points)
 
 

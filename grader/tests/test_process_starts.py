@@ -62,6 +62,7 @@ NAMED = {
     ("install", "_uv"): "uv is told where to install",
     ("interpreter", "interpreter"): "the door itself",
     ("bootstrap", "look"): "the version of a sourced one",
+    ("installation", "users_environment"): "for a workspace's own setup.bash, in the shell of the user",
     ("notebooks", "seconds"): "its folder, for PATH",
     ("installation", "environment"): "its folder, for PATH",
     ("underlay", "_build"): "cmake is told which, and starts it in a folder of our own",

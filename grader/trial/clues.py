@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from grader.submission.code import module_file, read_code
@@ -44,6 +45,8 @@ _CLOCKS = {"Clock", "ROSClock"}
 """What is made by itself, not taken from the node, never hears /clock."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
 """What nodes of several threads need, and nobody can wait in for a time."""
+MOST_NODES = 30
+"""Of an expression that is shown whole."""
 
 
 @dataclass(frozen=True)
@@ -71,15 +74,20 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
         if id(node) in timeless:
             continue
         if isinstance(node, ast.Attribute) and node.attr in _NAMES:
-            yield Clue(ast.unparse(node), path, node.lineno)
+            yield Clue(_short(node), path, node.lineno)
         elif isinstance(node, ast.keyword) and node.arg in _NAMES:
             yield Clue(node.arg, path, node.value.lineno)
         elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id in modules:
             yield Clue(modules[node.id], path, node.lineno)
-        elif isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in _CLOCKS:
+        elif isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) in _CLOCKS:
             yield Clue("a clock of its own", path, node.lineno)
         elif isinstance(node, ast.Constant) and node.value == "use_sim_time":
             yield Clue("use_sim_time", path, node.lineno)
+
+
+def _short(node: ast.Attribute) -> str:
+    """The expression as text; its last name alone where it is long, since each part of a chain may be a clue."""
+    return ast.unparse(node) if len(list(islice(ast.walk(node), MOST_NODES + 1))) <= MOST_NODES else node.attr
 
 
 def _is_timeless(node: ast.Attribute, modules: Mapping[str, str]) -> bool:

@@ -62,8 +62,6 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
             where=line(evidence),
         )
     module = read_module(file, files[file])
-    if module.tree is None and module.unreadable is None:
-        return passed(f"The entry point {evidence.trial.executable} leads to {file}.")
     if module.unreadable is not None:
         return unreadable_finding(file, module.unreadable, files[file])
     return _attribute(evidence, module, attribute)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from grader.checks.causes.crash import read_traceback
 from grader.submission.code import module_file, read_code, read_module
-from grader.submission.constants import evaluate, number, single_names
+from grader.submission.constants import Names, evaluate, number, single_names
 from grader.submission.package_xml import read_manifest
 from grader.submission.setup_py import read_setup_py
 from grader.tests.checks.made import NODE_FILE, SETUP_PY
@@ -51,7 +51,7 @@ def test_constants_are_evaluated_and_nothing_else(text: str, expected: object) -
 
 
 def test_a_number_too_large_for_a_float_is_none() -> None:
-    assert number(ast.parse("1" + "0" * 400, mode="eval").body, {}) is None
+    assert number(ast.parse("1" + "0" * 400, mode="eval").body, Names()) is None
 
 
 def test_setup_py_as_the_lesson_has_it() -> None:
@@ -158,7 +158,7 @@ def test_calls_are_found_in_the_node_and_what_it_imports_and_nowhere_else() -> N
     assert [str(call.where) for call in code.calls("create_timer")] == [
         "a/node.py:4", "a/node.py:5", "a/helper.py:1", "a/second.py:2", "a/third.py:2",
     ]  # fmt: skip
-    periods = [number(call.argument(0, "timer_period_sec"), {}) for call in code.calls("create_timer")]
+    periods = [number(call.argument(0, "timer_period_sec"), Names()) for call in code.calls("create_timer")]
     assert periods == [2.0, 3.0, 1.0, 4.0, 5.0]
 
 

@@ -218,8 +218,10 @@ def test_what_may_be_called_is_enough(text: str) -> None:
     assert found({NODE_FILE: text}, BUILD).status is Status.PASSED
 
 
-def test_a_file_that_is_too_long_to_be_parsed_is_believed() -> None:
-    assert found({NODE_FILE: b"#" * 500_000}, BUILD).status is Status.PASSED
+def test_a_file_that_is_too_large_to_be_read_fails() -> None:
+    got = found({NODE_FILE: b"#" * 500_000}, BUILD)
+    assert (got.status, got.diagnosis) == (Status.FAILED, "unreadable")
+    assert "too large to be read: more than 400 kB" in got.seen
 
 
 @pytest.mark.parametrize(
