@@ -114,6 +114,7 @@ def install(
     ] = None,
 ) -> None:
     """Make the kernel "ROS 2 Jazzy (course)" known to Jupyter: ROS 2 is there in it, without sourcing anything."""
+    from grader.exercise.model import course_folder
     from grader.notebook.kernel import DISPLAY_NAME
     from grader.notebook.kernel import install as install_kernel
     from grader.report.progress import progress
@@ -124,3 +125,7 @@ def install(
         # Now, and not while Jupyter waits for the kernel.
         underlay.ensure(find_ros(), tell)
     typer.echo(f'The kernel "{DISPLAY_NAME}": {install_kernel(prefix)}')
+    if prefix is None:
+        typer.echo(f"\nNext, in {course_folder().parent}: open the first notebook.\n")
+        typer.echo("    source .venv/bin/activate")
+        typer.echo("    jupyter lab exercises/01-first-node/01-first-node.ipynb")

@@ -1,7 +1,7 @@
 """A fresh clone of the course with nothing installed, as somebody has it who just got it.
 
 Each `make` target is tried in one of its own, and one real thing is done with what it brought. These tests need the
-network where the caches of pip and uv lack something; `.ci/run` runs them, and `make test-all`.
+network where the caches of pip and uv lack something; `.ci/doors` runs them, and `make test-all`.
 """
 
 from __future__ import annotations

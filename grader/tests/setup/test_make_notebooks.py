@@ -15,12 +15,16 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 pytestmark = [pytest.mark.exhaustive, pytest.mark.door]
+FIRST = "01-first-node"
 STEP = "03-circle-publisher"
 
 
 def test_a_notebook_is_run_and_graded(tmp_path: Path) -> None:
     course = clone(tmp_path)
-    course.make("notebooks")
+    said = course.make("notebooks")
+    following = [line.strip() for line in said.splitlines()[-2:]]
+    assert following == ["source .venv/bin/activate", f"jupyter lab exercises/{FIRST}/{FIRST}.ipynb"]
+    assert (course.folder / "exercises" / FIRST / f"{FIRST}.ipynb").is_file()
     assert course.lacks("distributed")
     # A student's, by the kernel that was installed, in a folder of their own.
     shutil.copytree(course.folder / "solutions" / STEP, course.home / STEP)
