@@ -4,7 +4,8 @@ schema = 2. `[exercise]` id, title, package; without a package answers.toml alon
 starting_point_fails: the checks (ids) that exercises/ must fail, for `grader validate`.
 `[[trial]]` id, executable, node, duration_s, start, rename, pose_every; `[[trial.drive]]` from_s, linear_x_m_s,
 angular_z_rad_s (one number, or two to draw from). `[[check]]` id, kind, points, needs (ids), title, trial (the first
-one when it is left out), hidden, and the parameters of its kind. `[[hint]]` text, from a nudge to nearly the answer.
+one when it is left out), hidden, and the parameters of its kind; or preset (presets.py). `[[hint]]` text, from a nudge
+to nearly the answer.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from grader.common.words import nearest, shorten
 from grader.errors import UsageError
 from grader.exercise.model import CheckSpec, Drive, Exercise, Scenario, TrialSpec
+from grader.exercise.presets import expand, problem_of
 from grader.exercise.tables import Table, read_toml, shown
 
 if TYPE_CHECKING:
@@ -50,6 +52,7 @@ def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, Kin
 def parse_tables(top: dict[str, Any], name: str, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
     """The exercise in the tables of an exercise.toml. Raises UsageError naming every problem."""
     problems: list[str] = []
+    top = {**top, "check": expand(top["check"], top.get("trial"))} if "check" in top else top
     exercise = _exercise(Table(top, "", problems), folder, digest, kinds)
     if problems:
         message = "\n".join(f"{name}: {problem}" for problem in problems)
@@ -151,8 +154,8 @@ def _hint(table: Table) -> str:
 
 
 def _checks(top: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) -> tuple[CheckSpec, ...]:
-    tables = top.tables("check")
-    if not tables:
+    tables = _without_presets(top.tables("check"), trials)
+    if "check" not in top.values:
         top.problem("there is no [[check]], so nothing would be judged.")
     specs = tuple(_check(table, trials, kinds) for table in tables)
     ids = [spec.id for spec in specs]
@@ -168,6 +171,15 @@ def _checks(top: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) 
     if circle:
         top.problem(f'"needs" goes in a circle: {" -> ".join(circle)}. Take one of them out.')
     return specs
+
+
+def _without_presets(tables: list[Table], trials: tuple[str, ...]) -> list[Table]:
+    """The tables of single checks; a preset that is still among them has something wrong with it, which is noted."""
+    for table in tables:
+        wrong = problem_of(table.values, [{"id": trial} for trial in trials])
+        if wrong:
+            table.problem(wrong)
+    return [table for table in tables if "preset" not in table.values]
 
 
 def _check(table: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) -> CheckSpec:

@@ -18,6 +18,7 @@ from grader.common.words import a_list, nearest
 from grader.errors import UsageError
 from grader.exercise.exercise_toml import SCHEMA, of_older_schema, parse_tables
 from grader.exercise.model import FILE_NAME, catalogue
+from grader.exercise.presets import expand
 from grader.exercise.tables import read_toml
 
 if TYPE_CHECKING:
@@ -101,12 +102,10 @@ def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> d
         seen = f'unknown key "{unknown[0]}"' if unknown else f"schema is {private.get('schema')!r}, not {SCHEMA}"
         message = f"{name}: {seen}. A file of private checks may hold {a_list(ALLOWED)}."
         raise UsageError(message)
-    merged = dict(public)
-    hidden = [{"hidden": True, **each} for each in _tables(private, "check", name)]
-    merged["check"] = _laid_over(list(public.get("check", [])), hidden)
-    if "trial" in private:
-        merged["trial"] = _laid_over(list(public.get("trial", [])), _tables(private, "trial", name))
-    return merged
+    trials = _laid_over(list(public.get("trial", [])), _tables(private, "trial", name))
+    own = expand(_tables(private, "check", name), trials)
+    hidden = [{"hidden": True, **each} for each in own]
+    return {**public, "trial": trials, "check": _laid_over(expand(public.get("check", []), trials), hidden)}
 
 
 def _tables(private: Mapping[str, Any], key: str, name: str) -> list[dict[str, Any]]:

@@ -78,10 +78,10 @@ def test_a_recording_never_overwrites(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("damage", "said"),
     [
-        ("trial.json", "cannot be read as a recording"),
+        ("trials/circle/trial.json", "cannot be read as a recording"),
         ("submission.json", "cannot be read as a recording"),
         ("exercise/exercise.toml", "exercise.toml"),
-        ("bag/bag.mcap", "cannot be read as a recording"),
+        ("trials/circle/bag/bag.mcap", "cannot be read as a recording"),
     ],
 )
 def test_a_damaged_recording_is_a_sentence(tmp_path: Path, recorded: Path, damage: str, said: str) -> None:
