@@ -43,7 +43,7 @@ lock: .tests ## resolve pyproject.toml into requirements.lock; UPGRADE=1 takes t
 	@$(BIN)/python -I -m grader.setup.lock $(if $(UPGRADE),--upgrade)
 
 clean: ## remove .venv and what the tools left; never anybody's work
-	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis build/demo
+	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis build/demo build/site build/site-doctrees
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 .PHONY: .tests python3

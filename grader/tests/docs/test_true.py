@@ -1,0 +1,80 @@
+"""What docs/ says in tables is what the code has: limits of cells, keys of exercise.toml."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from grader.checks.kinds import KINDS
+from grader.colcon import workspace
+from grader.errors import UsageError
+from grader.exercise.exercise_toml import SCHEMA, parse_exercise
+from grader.sandbox.bubblewrap import MIB, NODE_LIMITS, USER_ID, Limits
+from grader.tests.docs.pages import ROOT, text_of
+
+COLUMNS = (workspace.LIMITS, NODE_LIMITS, Limits())
+"""Build, node and kernel, in the order of the table."""
+KEYS = {
+    "[exercise]": '[exercise]\nwrong = 1\npackage = "p"\n',
+    "[[trial]]": '[exercise]\npackage = "p"\n[[trial]]\nwrong = 1\n',
+    "[[trial.drive]]": "[[trial]]\n[[trial.drive]]\nwrong = 1\n",
+    "[[check]]": '[[check]]\nkind = "builds"\nwrong = 1\n',
+    "[[hint]]": "[[hint]]\nwrong = 1\n",
+}
+"""Table -> a file with a wrong key in it: the message lists the right ones."""
+
+TABLES = {"drive"}
+"""Keys that are tables of their own."""
+
+
+def row(words: str) -> list[str]:
+    line = next(line for line in text_of("docs/security.md").splitlines() if line.startswith(f"| {words} |"))
+    return [cell.strip() for cell in line.strip("|").split("|")[1:]]
+
+
+@pytest.mark.parametrize(
+    ("words", "name", "unit"),
+    [
+        ("processes and threads", "processes", ""),
+        ("address space per process", "memory", "MiB"),
+        ("memory of all processes and disks together", "total_memory", "MiB"),
+        ("each writable disk", "disk", "MiB"),
+        ("files on all writable disks", "files", ""),
+        ("size of a file", "file_size", "MiB"),
+        ("open files per process", "open_files", ""),
+        ("CPU time per process", "cpu_s", "s"),
+    ],
+)
+def test_the_limits_of_a_cell_are_those_of_the_code(words: str, name: str, unit: str) -> None:
+    values = [getattr(limits, name) // (MIB if unit == "MiB" else 1) for limits in COLUMNS]
+    assert row(words) == [f"{value} {unit}".strip() for value in values]
+
+
+def test_every_limit_of_a_cell_is_in_the_table() -> None:
+    table = text_of("docs/security.md").split("| limit | build | node | kernel |", 1)[1].split("\n\n", 1)[0]
+    assert len(table.strip().splitlines()) - 1 == len(Limits.__dataclass_fields__)
+
+
+def test_the_user_of_the_cells_is_named() -> None:
+    assert f"user {USER_ID}" in text_of("docs/security.md")
+
+
+@pytest.mark.parametrize("table", KEYS)
+def test_the_authors_page_lists_every_key(table: str) -> None:
+    with pytest.raises(UsageError) as refused:
+        parse_exercise(f"schema = {SCHEMA}\n{KEYS[table]}".encode(), "exercise.toml", ROOT, KINDS)
+    line = next(line for line in str(refused.value).splitlines() if 'unknown key "wrong"' in line)
+    allowed = set(line.partition("Allowed: ")[2].rstrip(".").split(", "))
+    assert keys_of(table) == allowed - TABLES
+
+
+def keys_of(table: str) -> set[str]:
+    """The keys in the rows of a table of exercise.toml."""
+    rows = text_of("docs/authors.md").split("| table | key | meaning |", 1)[1].split("\n\n", 1)[0].splitlines()[2:]
+    here, keys = "", set()
+    for cells in ([cell.strip() for cell in line.strip().strip("|").split("|")] for line in rows):
+        here = cells[0].strip("`") or here
+        if here == table:
+            keys |= set(re.findall(r"`(\w+)`", cells[1]))
+    return keys
