@@ -13,6 +13,7 @@ import typer
 from grader.authoring import cli as authoring
 from grader.classroom import cli as classroom
 from grader.common.interpreter import clean_own
+from grader.common.refusal import refusal
 from grader.errors import GraderError
 from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
@@ -188,6 +189,10 @@ def main() -> None:
     except Exception as error:
         if os.environ.get("GRADER_DEBUG"):
             raise
+        refused = refusal(error)
+        if refused:
+            typer.secho(f"grader: {refused}", err=True)
+            sys.exit(3)
         told = f"grader: a fault of the grader itself, not of your work: {type(error).__name__}: {error}"
         typer.secho(f"{told}\nGRADER_DEBUG=1 before the command shows where; please report that.", err=True)
         sys.exit(3)

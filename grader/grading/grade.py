@@ -13,6 +13,7 @@ import grader
 from grader.checks.judge import in_words, judge, judge_early, near_edge, of_this_trial, wants_trial
 from grader.checks.outcome import Status
 from grader.colcon import workspace
+from grader.common.refusal import refusal
 from grader.common.words import printable
 from grader.errors import MachineError
 from grader.evidence.evidence import Evidence, Fault, Run
@@ -159,12 +160,11 @@ class _Grading:
                     evidence = evidence.from_trial(self.exercise.trials[0].id)
         except MachineError as error:
             evidence = dataclasses.replace(evidence, fault=Fault(stage, str(error)))
-        except OSError as error:
-            message = f"The grader could not go on: {in_words(error)}. This is a fault of the machine; try again."
-            evidence = dataclasses.replace(evidence, fault=Fault(stage, message))
         except Exception as error:
-            # The machine has said that it works; what is left are things that the submission has made.
-            evidence = dataclasses.replace(evidence, fault=Fault(stage, in_words(error), unreadable=True))
+            # What the machine has not refused, the submission has made.
+            refused = refusal(error)
+            fault = Fault(stage, refused) if refused else Fault(stage, in_words(error), unreadable=True)
+            evidence = dataclasses.replace(evidence, fault=fault)
         with self._timed("checks"):
             outcomes = judge(evidence)
         self.seconds["in all"] = time.monotonic() - begun

@@ -16,8 +16,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import find_exercise
+from grader.checks.judge import in_words
 from grader.checks.outcome import Status
-from grader.errors import GraderError
+from grader.common.refusal import refusal
+from grader.errors import GraderError, MachineError
 from grader.grading.grade import Graded, Options, grade
 from grader.notebook.mode import confined
 from grader.report.plain import plain_line
@@ -88,6 +90,9 @@ def main() -> int:
     except GraderError as error:
         json.dump({"error": str(error)}, sys.stdout)
         return error.exit_code
+    except Exception as error:
+        json.dump({"error": refusal(error) or in_words(error)}, sys.stdout)
+        return MachineError.exit_code
     json.dump(to_data(graded, html=True), sys.stdout, allow_nan=False)
     return 0
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.errors import UsageError
+from grader.common.refusal import of_the_machine
+from grader.errors import MachineError, UsageError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,9 +22,19 @@ def check_writable(file: Path | None) -> None:
 
 
 def write(file: Path, content: bytes) -> None:
-    """Write the file. Raises UsageError where that fails."""
+    """Write the file.
+
+    Raises:
+        UsageError: it cannot be written there.
+        MachineError: the machine has no room left, or another lack.
+    """
     try:
         file.write_bytes(content)
     except OSError as error:
-        message = f"{file} could not be written: {error.strerror}."
-        raise UsageError(message) from error
+        raise not_written(file, error) from error
+
+
+def not_written(file: Path, error: OSError) -> UsageError | MachineError:
+    """The error to raise when a file could not be written: whose fault it is, and why."""
+    message = f"{file} cannot be written: {error.strerror or error}."
+    return MachineError(message) if of_the_machine(error) else UsageError(message)

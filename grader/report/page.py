@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from grader.errors import UsageError
+from grader.report.files import not_written
 from grader.report.template import ASSETS, fill
 
 if TYPE_CHECKING:
@@ -33,12 +33,11 @@ def make_page(template: str, script: str, data: object, values: Mapping[str, obj
 
 
 def save_page(page: str, file: Path) -> None:
-    """Write a page. Raises UsageError where that cannot be done."""
+    """Write a page. Raises the error of `not_written` where that cannot be done."""
     try:
         file.write_text(page, encoding="utf-8", errors="replace")
     except OSError as error:
-        message = f"The page cannot be written to {file}: {error.strerror}."
-        raise UsageError(message) from error
+        raise not_written(file, error) from error
 
 
 def _text(name: str) -> str:

@@ -9,8 +9,8 @@ from PIL import Image, ImageDraw, ImageFont
 
 from grader.checks.outcome import Status
 from grader.common.words import printable
-from grader.errors import UsageError
 from grader.report.canvas import paint
+from grader.report.files import not_written
 from grader.report.scene import Scene, scene_of
 from grader.report.shapes import DEEP, LOOKS, SEA, SIDE_M, Rgb, Role
 
@@ -45,13 +45,12 @@ class Panel:
 
 
 def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
-    """Write the picture as a PNG file. Raises UsageError where that cannot be done."""
+    """Write the picture as a PNG file. Raises the error of `not_written` where that cannot be done."""
     image = draw_picture(evidence, report)
     try:
         image.save(file, format="PNG")
     except OSError as error:
-        message = f"The picture cannot be written to {file}: {error.strerror or error}."
-        raise UsageError(message) from error
+        raise not_written(file, error) from error
 
 
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from grader.common.interpreter import interpreter
+from grader.common.refusal import refusal
 from grader.ros import installation
 from grader.sandbox import bubblewrap
 from grader.trial.inputs import Inputs
@@ -55,6 +56,8 @@ def main() -> None:
         _say(answers, {"fault": f"The node's process could not be started: {error}"})
     except Overwhelmed as error:
         _say(answers, {"overwhelmed": str(error)})
+    except Exception as error:
+        _say(answers, {"fault": refusal(error) or f"{type(error).__name__}: {error}"})
 
 
 def _conduct(order: dict[str, Any], answers: IO[str]) -> None:

@@ -48,6 +48,12 @@ class Plan:
     """The simulator by itself, without a node."""
 
 
+def last_words(stderr: bytes) -> str:
+    """What a program of ours said before it ended, without the frames of a traceback."""
+    said = stderr.decode("utf-8", "replace").strip()
+    return said.splitlines()[-1] if "Traceback (most recent call last)" in said else said
+
+
 class WallTimeNeeded(Exception):  # noqa: N818 - not an error
     """Simulated time may misjudge this node; the text says why."""
 
@@ -230,10 +236,12 @@ class Trial:
             # The simulator was well until the node began, and nothing else was.
             if "overwhelmed" in answer:
                 raise OverwhelmedError(answer["overwhelmed"])
+            if "fault" in answer:
+                raise OverwhelmedError(answer["fault"])
             raise self._end_seen()
         self._kill()
         self._errors.seek(0)
-        said = answer.get("fault") or self._errors.read()[-2000:].decode("utf-8", "replace").strip()
+        said = answer.get("fault") or last_words(self._errors.read()[-2000:])
         message = f"The simulator failed: {said or 'it said nothing'}. `grader doctor` tells what is missing."
         raise MachineError(message)
 

@@ -1,0 +1,47 @@
+"""What the system refuses, in one sentence with what to do: no room, no memory, no more files or processes."""
+
+from __future__ import annotations
+
+import errno
+import os
+import resource
+
+_ROOM = "make room there, or name another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
+_SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
+_NOT_ALLOWED = "see what `grader doctor` says"
+
+
+def refusal(error: BaseException) -> str | None:
+    """The sentence for an error that the system has raised; None for any other error."""
+    if isinstance(error, MemoryError):
+        return _sentence(errno.ENOMEM, "")
+    if isinstance(error, RuntimeError) and "start new thread" in str(error):
+        return _sentence(errno.EAGAIN, "")
+    if isinstance(error, OSError):
+        where = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else ""
+        return _sentence(error.errno or 0, where)
+    return None
+
+
+def of_the_machine(error: OSError) -> bool:
+    """Whether it is the machine that has no room, memory, files or processes left, whatever path was named."""
+    return error.errno in _SCARCE
+
+
+def _sentence(number: int, where: str) -> str:
+    at = f" for {where}" if where else ""
+    if number in (errno.ENOSPC, errno.EDQUOT):
+        return f"The disk is full{at}: {_ROOM}."
+    if number == errno.EROFS:
+        return f"The disk cannot be written to{at}: {_ROOM}."
+    if number == errno.EMFILE:
+        most = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+        return f"The grader may open no more than {most} files: raise that, as with `ulimit -n 4096`."
+    if number == errno.ENFILE:
+        return "This machine has too many files open: end other programs."
+    if number == errno.ENOMEM:
+        return "This machine has no memory left: end other programs, or grade fewer submissions at once (--jobs)."
+    if number == errno.EAGAIN:
+        return "This machine starts no more processes for you: end other programs, or raise the limit (`ulimit -u`)."
+    what = os.strerror(number) if number else "it did not say why"
+    return f"The system refused what the grader needs{at} ({what}): {_NOT_ALLOWED}."
