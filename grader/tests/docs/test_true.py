@@ -11,6 +11,7 @@ from grader.colcon import workspace
 from grader.errors import UsageError
 from grader.exercise.exercise_toml import SCHEMA, parse_exercise
 from grader.sandbox.bubblewrap import MIB, NODE_LIMITS, USER_ID, Limits
+from grader.submission import answers, code, package_xml, tree
 from grader.tests.docs.pages import ROOT, text_of
 
 COLUMNS = (workspace.LIMITS, NODE_LIMITS, Limits())
@@ -54,6 +55,19 @@ def test_the_limits_of_a_cell_are_those_of_the_code(words: str, name: str, unit:
 def test_every_limit_of_a_cell_is_in_the_table() -> None:
     table = text_of("docs/security.md").split("| limit | build | node | kernel |", 1)[1].split("\n\n", 1)[0]
     assert len(table.strip().splitlines()) - 1 == len(Limits.__dataclass_fields__)
+
+
+def test_the_budgets_of_reading_are_those_of_the_code() -> None:
+    text = " ".join(text_of("docs/security.md").split())
+    told = f"{code.MAX_BYTES // 1000} kB per Python file and {code.MOST_BYTES // 1_000_000} MB in all"
+    assert told in text
+    assert (
+        f"{package_xml.MAX_BYTES // 1000} kB for package.xml, {answers.MAX_BYTES // 1000} kB for answers.toml" in text
+    )
+    assert (
+        f"{tree.MAX_FILES:,} files, {tree.MAX_FILE_BYTES // MIB} MiB per file and {tree.MAX_TOTAL_BYTES // MIB} MiB"
+        in text
+    )
 
 
 def test_the_user_of_the_cells_is_named() -> None:
