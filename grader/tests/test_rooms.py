@@ -1,4 +1,4 @@
-"""The rooms of the house: which may import which, and that no import goes in a circle; lazy and type-only ones count."""
+"""The order of the rooms: which may import which, and no import in a circle; lazy and type-only ones count."""
 
 from __future__ import annotations
 
