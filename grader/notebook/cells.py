@@ -1,4 +1,4 @@
-"""The magics of a cell: `%step`, `%%node`, `%%package`, `%%answers`, `%ros2`."""
+"""The magics of a cell: `%step`, `%lesson`, `%%node`, `%%package`, `%%answers`, `%ros2`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from grader.checks.exercises import find_exercise
 from grader.common.words import a_list
 from grader.errors import UsageError
-from grader.notebook import place
+from grader.notebook import lesson, place
 from grader.notebook.mode import grading
 
 if TYPE_CHECKING:
@@ -43,6 +43,12 @@ class Cells:
             print(f"{self.exercise.id}: {self.exercise.title}")
             if written:
                 print(f"Added beside this notebook: {a_list(written)}.")
+
+    def lesson(self, line: str) -> None:
+        """`%lesson`: the lesson of this notebook's step; `%lesson 03-circle-publisher` that of any step."""
+        exercise = find_exercise(line.strip()) if line.strip() else self.current()
+        if not grading():
+            lesson.show(exercise.folder / "lesson.md")
 
     def node(self, line: str, cell: str) -> None:
         """`%%node draw_circle.py`: writes the cell as a node of the package beside the notebook."""

@@ -28,7 +28,7 @@ def load(shell: InteractiveShell) -> None:
     if not confined():
         _guard()
     cells = Cells()
-    for name in ("step", "ros2"):
+    for name in ("step", "lesson", "ros2"):
         shell.register_magic_function(getattr(cells, name), "line", name)
     for name in ("node", "package", "answers"):
         shell.register_magic_function(getattr(cells, name), "cell", name)

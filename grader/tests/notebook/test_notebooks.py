@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import Any
 
 import pytest
@@ -60,7 +61,9 @@ def test_every_file_with_something_to_solve_has_a_cell(step: str) -> None:
 def test_a_notebook_is_read_quickly_and_says_where_the_lesson_is(step: str) -> None:
     prose = " ".join("".join(cell["source"]) for cell in cells_of(step) if cell["cell_type"] == "markdown")
     assert 60 <= len(prose.split()) <= 450
-    assert f"(../../course/{step}/lesson.md)" in prose
+    assert f"`%lesson` in a cell of its own shows it here; in the course it is `course/{step}/lesson.md`" in prose
+    # A notebook is opened from anywhere: a link to a file would lead nowhere.
+    assert re.findall(r"\]\((?!https://)", prose) == []
 
 
 def notebook(*cells: dict[str, Any]) -> bytes:

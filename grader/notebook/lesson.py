@@ -1,0 +1,41 @@
+"""`%lesson`: the lesson of the notebook's step, below the cell, wherever the notebook lies."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_IMAGE = re.compile(r"^!\[[^\]]*\]\(([^)\s]+)\)\s*$", re.MULTILINE)
+_LOCAL_LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?!https?://|#)[^)\s]+\)")
+
+
+def pieces(lesson: Path) -> list[str | Path]:
+    """The lesson in order: Markdown, and the files of its images. Links to other files are plain text there.
+
+    A notebook that was fetched or copied has no such files beside it, so that a link would lead nowhere.
+    """
+    # Every second one is what the group matched.
+    split = _IMAGE.split(lesson.read_text(encoding="utf-8"))
+    found: list[str | Path] = []
+    for number, text in enumerate(split):
+        if number % 2:
+            found.append(lesson.parent / text)
+        elif text.strip():
+            found.append(_LOCAL_LINK.sub(r"\1", text))
+    return found
+
+
+def show(lesson: Path) -> None:
+    """Show the lesson below the cell."""
+    from IPython.display import SVG, Image, Markdown, display
+
+    for piece in pieces(lesson):
+        if isinstance(piece, str):
+            display(Markdown(piece))  # type: ignore[no-untyped-call, unused-ignore]
+        elif piece.suffix == ".svg":
+            display(SVG(filename=str(piece)))  # type: ignore[no-untyped-call, unused-ignore]
+        else:
+            display(Image(filename=str(piece)))  # type: ignore[no-untyped-call, unused-ignore]
