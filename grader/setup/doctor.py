@@ -26,6 +26,7 @@ from grader.ros.installation import DISTRO, FASTDDS_PROFILE, Ros, environment, f
 from grader.sandbox import bubblewrap
 from grader.sandbox.control_group import control_group
 from grader.setup import bootstrap, machine
+from grader.setup.shares import shares
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -77,6 +78,8 @@ def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] 
     """All lines, in the order in which things need each other; `tell` gets a line where something takes long."""
     lines = [look_at_system(), look_at_python(), *look_at_set_up(env), *look_at_tools(env), look_at_colcon()]
     lines += [look_at_disk(xdg.cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
+    seen, todo = shares()
+    lines.append(Line("shares", seen, "advice" if todo else "ok", todo))
     sandbox_line = look_at_sandbox()
     confined = sandbox_line.state == "ok"
     lines.append(sandbox_line)

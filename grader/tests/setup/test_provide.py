@@ -98,12 +98,12 @@ def test_what_can_be_done_without_is_installed_by_itself(machine: Machine, monke
     [
         (
             'echo "Reading lists..."; echo "E: Could not get lock /var/lib/dpkg/lock-frontend." >&2; exit 100',
-            "apt-get failed: E: Could not get lock /var/lib/dpkg/lock-frontend.",
+            "apt-get failed: E: Could not get lock /var/lib/dpkg/lock-frontend",
         ),
         (
             """[ $1 = update ] && echo "W: Failed to fetch: Could not resolve host" && exit 0
             echo "E: Unable to locate package cmake"; exit 100""",
-            "apt-get failed: W: Failed to fetch: Could not resolve host E: Unable to locate package cmake",
+            "apt-get failed: W: Failed to fetch: Could not resolve host; E: Unable to locate package cmake",
         ),
         ("echo only words; exit 1", "apt-get failed: only words"),
         ("exit 1", "apt-get failed: it did not say why"),

@@ -1,0 +1,29 @@
+"""What the kernel lets this user have at once: open files, processes, and pipes of the size that a trial wants."""
+
+from __future__ import annotations
+
+import os
+import resource
+
+from grader.trial.node_process import PIPE, enlarge
+
+LEAST_FILES = 256
+LEAST_PROCESSES = 1024
+
+
+def shares() -> tuple[str, str]:
+    """What there is, and what to do where that is too little for a grading; empty where it is enough."""
+    files, processes = (resource.getrlimit(which)[0] for which in (resource.RLIMIT_NOFILE, resource.RLIMIT_NPROC))
+    reads, writes = os.pipe()
+    try:
+        large = enlarge(reads) >= PIPE
+    finally:
+        os.close(reads)
+        os.close(writes)
+    unlimited = processes == resource.RLIM_INFINITY
+    seen = f"{files} open files, {'any number of' if unlimited else processes} processes"
+    if files < LEAST_FILES:
+        return seen, f"ulimit -n {4 * LEAST_FILES}"
+    if not unlimited and processes < LEAST_PROCESSES:
+        return seen, f"ulimit -u {4 * LEAST_PROCESSES}"
+    return seen if large else f"{seen}; pipes stay small while other programs hold many", ""
