@@ -31,6 +31,7 @@ SHOWN_BY_TESTS = {
     "slow-stop": "checks/subjects/test_node.py",
     "square-gap": "checks/subjects/test_square.py",
     "too-soon": "checks/subjects/test_square.py",
+    "unreadable": "checks/test_judge.py",
     "wrong-centre": "checks/subjects/test_path.py",
 }
 """Diagnosis -> the test that shows it: no ordinary submission leads to it, but a hostile one, or a class."""
