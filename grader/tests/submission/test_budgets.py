@@ -34,7 +34,7 @@ except TooLargeError as error:
 
 
 def doubled(join: str, first: str, lines: int = 60) -> bytes:
-    """Each name is made of the one before, twice."""
+    """Each name is made of the one before, several times."""
     names = [f"a{number} = {join.format(f'a{number - 1}')}" for number in range(1, lines)]
     return "\n".join([f"a0 = {first}", *reversed(names), f"setup(name=a{lines - 1})"]).encode()
 
@@ -46,8 +46,9 @@ def circle() -> bytes:
 SETUPS = {
     "sums": doubled("{0} + {0}", "1"),
     "texts": doubled("{0} + {0}", "''"),
-    "formatted": doubled("f'{{{0}}}{{{0}}}'", repr("x" * 1000), 18),
-    "joined": doubled("join({0}, {0}, {0}, {0}, {0}, {0})", repr("x" * 1000), 18),
+    "wide": doubled("f'" + "{{{0}}}" * 50 + "'", "''", 9),
+    "formatted": doubled("f'" + "{{{0}}}" * 8 + "'", repr("x" * 300_000), 9),
+    "joined": doubled("join({0}, {0}, {0}, {0}, {0}, {0}, {0}, {0})", repr("x" * 300_000), 9),
     "circle": circle(),
     "blanks": b"\n".join(b"'a" + b" " * 290 + b"=:'" for _ in range(1300)),
     "brackets": b"\n".join(b"'a = b:c[" + b"] " * 140 + b"x'" for _ in range(1300)),
