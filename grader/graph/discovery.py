@@ -32,6 +32,8 @@ NOTHING_THERE_S = 0.5
 """How long to listen where it cannot be known whether anybody is there: as long as the real one does."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 """How the nodes of the commands hear others of this machine."""
+PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
+"""The same for a node that runs for hours."""
 _RANGE, _PROFILE = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"
 _POLL_S = 0.01
 _WAKE_S = 0.1
@@ -43,14 +45,16 @@ _UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
 
 @contextmanager
-def cli_node(name: str | None = None) -> Iterator[Node]:
+def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bool = False) -> Iterator[Node]:
     """A hidden node that offers nothing. It leaves in order, so that others do not go on seeing it.
+
+    A `patient` node announces itself seldom: it is to run for hours.
 
     Raises:
         Ros2Error: it could not be made: say, the domain id is wrong.
     """
     _check_domain()
-    _leave_shared_memory_out()
+    _leave_shared_memory_out(PATIENT_PROFILE if patient else LOOPBACK_PROFILE)
     _leave_generator_out()
     # No log file for a look at the graph. Signals stay Python's, since rclpy's shut down in the middle of a verb.
     arguments = ["--ros-args", "--disable-external-lib-logs"]
@@ -59,7 +63,10 @@ def cli_node(name: str | None = None) -> Iterator[Node]:
         node = rclpy.create_node(
             name or f"{PREFIX}_{os.getpid()}",
             start_parameter_services=False,
-            parameter_overrides=[Parameter("start_type_description_service", value=False)],
+            parameter_overrides=[
+                Parameter("start_type_description_service", value=False),
+                Parameter("use_sim_time", value=use_sim_time),
+            ],
         )
     except Exception as error:
         rclpy.try_shutdown()
@@ -77,14 +84,15 @@ def cli_node(name: str | None = None) -> Iterator[Node]:
         rclpy.try_shutdown()
 
 
-def _leave_shared_memory_out() -> None:
+def _leave_shared_memory_out(profile: Path) -> None:
     """Under LOCALHOST, rmw_fastrtps adds shared memory whatever a profile says; loopback.xml says why not here."""
     if os.environ.get(_RANGE) == "LOCALHOST" and os.environ.get(_PROFILE) == str(FASTDDS_PROFILE):
-        os.environ.update({_RANGE: "SYSTEM_DEFAULT", _PROFILE: str(LOOPBACK_PROFILE)})
+        os.environ.update({_RANGE: "SYSTEM_DEFAULT", _PROFILE: str(profile)})
 
 
 def _this_machine_only() -> bool:
-    return os.environ.get(_RANGE) == "LOCALHOST" or os.environ.get(_PROFILE) == str(LOOPBACK_PROFILE)
+    profiles = (str(LOOPBACK_PROFILE), str(PATIENT_PROFILE))
+    return os.environ.get(_RANGE) == "LOCALHOST" or os.environ.get(_PROFILE) in profiles
 
 
 def _leave_generator_out() -> None:
@@ -106,24 +114,40 @@ def _check_domain() -> None:
         raise Ros2Error(message)
 
 
-def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> None:
-    """Wait until the graph that the node sees has settled, or until it is `enough`.
+class Settling:
+    """Whether the graph that a node sees has come to rest: by what arrives, with a deadline."""
 
-    Settled: nothing new for 0.2 s, and all participants of this machine have told what they have.
-    """
-    begun = changed = time.monotonic()
-    seen: object = None
-    most = deadline_s if deadline_s is not None else DEADLINE_S
-    while True:
-        now = time.monotonic()
-        graph = _graph(node)
-        if graph != seen:
-            seen, changed = graph, now
-        if enough() or now - begun >= most:
-            return
-        if now - changed >= QUIET_S and _complete(node, now - begun):
-            return
-        time.sleep(_POLL_S)
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._begun = self._changed = time.monotonic()
+        self._seen: object = None
+
+    def observe(self) -> None:
+        """Look whether anything has changed since the last look."""
+        graph = _graph(self._node)
+        if graph != self._seen:
+            self._seen, self._changed = graph, time.monotonic()
+
+    def settle(self, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> None:
+        """Wait until nothing new came for 0.2 s and all participants of this machine have told what they have.
+
+        `enough` ends the wait earlier. `deadline_s` is the longest wait, if the caller named one.
+        """
+        begun = time.monotonic()
+        most = deadline_s if deadline_s is not None else DEADLINE_S
+        while True:
+            self.observe()
+            now = time.monotonic()
+            if enough() or now - begun >= most:
+                return
+            if now - self._changed >= QUIET_S and _complete(self._node, now - self._begun, deadline_s):
+                return
+            time.sleep(_POLL_S)
+
+
+def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> None:
+    """Wait until the graph that a new node sees has settled, or until it is `enough`."""
+    Settling(node).settle(enough, deadline_s)
 
 
 def published(node: Node, topic: str) -> bool:
@@ -156,8 +180,11 @@ def _graph(node: Node) -> object:
     return (sorted(node.get_node_names_and_namespaces()), topics, counts, node.get_service_names_and_types())
 
 
-def _complete(node: Node, waited_s: float) -> bool:
-    """Whether as many participants were heard of as there are on this machine, and each told the names of its nodes."""
+def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool:
+    """Whether as many participants were heard of as there are on this machine, and each told the names of its nodes.
+
+    Those of other machines cannot be counted: the wait for them is as long as the user named, `named_s`.
+    """
     expected = _participants(node.context.get_domain_id())
     endpoints: list[Any] = []
     for name, _ in node.get_topic_names_and_types():
@@ -167,7 +194,7 @@ def _complete(node: Node, waited_s: float) -> bool:
     if any(endpoint.node_name == _UNKNOWN for endpoint in endpoints):
         return False
     if expected is None or not _this_machine_only():
-        return waited_s >= NOTHING_THERE_S and len(heard) >= (expected or 0)
+        return waited_s >= (NOTHING_THERE_S if named_s is None else named_s) and len(heard) >= (expected or 0)
     return len(heard) >= expected
 
 

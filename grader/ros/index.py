@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from grader.ros.failure import Ros2Error, did_you_mean
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
 _INDEX = Path("share/ament_index/resource_index")
 KINDS = ("msg", "srv", "action")
@@ -37,15 +37,15 @@ def packages() -> dict[str, Path]:
     return _resources("packages")
 
 
-def prefix_of(package: str, unknown: str) -> Path:
+def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
     """The prefix of a package.
 
     Raises:
-        Ros2Error: with the text `unknown`, and the nearest name.
+        Ros2Error: with the text `unknown`, and the nearest name of those that are `likely`, else of all.
     """
     found = packages()
     if package not in found:
-        raise Ros2Error(did_you_mean(package, found, unknown))
+        raise Ros2Error(did_you_mean(package, likely or found, unknown))
     return found[package]
 
 
@@ -65,14 +65,15 @@ def interface_packages() -> dict[str, Path]:
 
 
 def interfaces(package: str) -> list[str]:
-    """The interfaces of one package, sorted: "geometry_msgs/msg/Twist".
+    """The interfaces of one package, sorted: "geometry_msgs/msg/Twist"; none for a package without interfaces.
 
     Raises:
-        Ros2Error: there is no such package, or it has none.
+        Ros2Error: there is no such package.
     """
     found = interface_packages()
     if package not in found:
-        raise Ros2Error(did_you_mean(package, found, f"Unknown package '{package}'"))
+        prefix_of(package, f"Unknown package '{package}'", found)
+        return []
     lines = (found[package] / _INDEX / "rosidl_interfaces" / package).read_text("utf-8").split()
     files = (Path(line) for line in lines)
     return sorted(f"{package}/{file.parent}/{file.stem}" for file in files if file.suffix[1:] in KINDS)
@@ -91,17 +92,22 @@ def interface_file(name: str) -> Path:
         Ros2Error: there is none of this name.
     """
     parts = name.split("/")
-    if len(parts) != 3 or parts[1] not in KINDS:
-        text = f"Invalid name '{name}'. Expected three parts, as in 'geometry_msgs/msg/Twist'"
+    if not all(parts):
+        message = f"Invalid name '{name}'. Must not contain empty parts"
+        raise Ros2Error(message)
+    if len(parts) != 3 or ".." in parts:
+        text = f"Invalid name '{name}'. Expected three parts separated by '/'"
         raise Ros2Error(did_you_mean(name, _meant(name), text))
-    known = interfaces(parts[0])
-    if name not in known:
+    prefix = prefix_of(parts[0], f"Unknown package '{parts[0]}'", interface_packages())
+    found = prefix / "share" / parts[0] / parts[1] / f"{parts[2]}.{parts[1]}"
+    if not found.is_file():
         # The name alone is compared: what is equal in all of them must not make them alike.
+        known = interfaces(parts[0]) if parts[0] in interface_packages() else []
         ends = {candidate.rsplit("/", 1)[1]: candidate for candidate in known}
         hint = did_you_mean(parts[2], ends).replace("Did you mean '", f"Did you mean '{parts[0]}/{parts[1]}/")
-        message = f"Could not find the interface '{name}'"
+        message = f"Could not find the interface '{found.with_suffix('.idl')}'"
         raise Ros2Error(f"{message}\n{hint}" if hint else message)
-    return interface_packages()[parts[0]] / "share" / parts[0] / parts[1] / f"{parts[2]}.{parts[1]}"
+    return found
 
 
 def _meant(name: str) -> list[str]:

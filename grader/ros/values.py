@@ -1,29 +1,28 @@
-"""Values of messages: from what a user typed as YAML into a message, and from a message into YAML, CSV or text."""
+"""Values of messages: from what a user typed as YAML into a message, and parts of a message by name."""
 
 from __future__ import annotations
 
 import importlib
 import re
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import yaml
 
 from grader.ros import index
 from grader.ros.failure import Ros2Error, did_you_mean
+from grader.ros.rendering import ARRAY
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-TRUNCATED_AT = 128
-"""Elements of an array, or characters of a string, that are printed unless all are asked for."""
-_ARRAY = re.compile(r"sequence<(.+?)(?:, \d+)?>$|(.+)\[\d+\]$")
+Stamper = Callable[[Any], None]
+"""Sets a field to a time stamp (builtin_interfaces/msg/Time)."""
 
 
-def load_type(name: str, kind: str, what: str) -> Any:  # noqa: ANN401
+def load_type(name: str, kind: str, what: str = "message type", text: str = "") -> Any:  # noqa: ANN401
     """The Python class of an interface: "geometry_msgs/msg/Twist"; the middle may be left out.
 
     Raises:
-        Ros2Error: it is not installed; `what` is what it was asked for as ("message type").
+        Ros2Error: it is not installed; `what` is what it was asked for as ("message type"), `text` another message.
     """
     parts = name.split("/")
     package, last = parts[0], parts[-1]
@@ -34,15 +33,14 @@ def load_type(name: str, kind: str, what: str) -> Any:  # noqa: ANN401
     except (ImportError, AttributeError, ValueError, TypeError) as error:
         known = index.all_interfaces(kind)
         ends = [full for full in known if full.endswith(f"/{last}")]
-        text = f"The passed {what} is invalid"
-        raise Ros2Error(did_you_mean(name, ends or known, text)) from error
+        raise Ros2Error(did_you_mean(name, ends or known, text or f"The passed {what} is invalid")) from error
 
 
-def parse(text: str) -> dict[str, Any]:
-    """What a user typed: "{linear: {x: 2.0}}".
+def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
+    """What a user typed: "{linear: {x: 2.0}}"; nothing at all is an empty dictionary.
 
     Raises:
-        Ros2Error: it is not YAML, or not a dictionary.
+        Ros2Error: it is not YAML, or not a dictionary although that is asked for.
     """
     try:
         values = yaml.safe_load(text)
@@ -52,63 +50,76 @@ def parse(text: str) -> dict[str, Any]:
         problem = getattr(error, "problem", None) or "it cannot be read"
         message = (
             f"The passed value is not YAML: {problem}{where}.\n"
-            'A value looks like "{linear: {x: 2.0}, angular: {z: 1.0}}": quotes around it, a blank after each colon.'
+            'A value looks like "{linear: {x: 2.0}, angular: {z: 1.0}}": quotes around it, a space after each colon.'
         )
         raise Ros2Error(message) from error
     if values is None:
         return {}
-    if not isinstance(values, dict):
+    if dictionary and not isinstance(values, dict):
         message = "The passed value needs to be a dictionary in YAML format"
         if isinstance(values, str) and ":" in values:
-            message += '\nA blank is needed after each colon: "{x: 2.0}".'
+            message += '\nA space is needed after each colon: "{x: 2.0}".'
         raise Ros2Error(message)
     return values
 
 
-def fill(message: Any, values: dict[str, Any]) -> Any:  # noqa: ANN401
+class MisfitError(Ros2Error):
+    """Values that do not fit a message: the error that Python would raise, and what helps."""
+
+    def __init__(self, cause: Exception, hint: str = "") -> None:
+        self.cause = cause
+        self.help = hint
+        super().__init__("\n".join(part for part in (f"Failed to populate field: {cause}", hint) if part))
+
+
+def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:  # noqa: ANN401
     """Set the fields of a message that are named; the others keep their defaults. Returns the message.
 
+    With `stamps`, a header may be "auto" and a time "now": what sets them is added to the list.
+
     Raises:
-        Ros2Error: there is no such field, or a value does not fit it.
+        MisfitError: there is no such field, or a value does not fit it.
     """
     types = message.get_fields_and_field_types()
+    if not isinstance(values, dict):
+        wrong = TypeError(f"Value '{values}' is expected to be a dictionary but is a {type(values).__name__}")
+        raise MisfitError(wrong, f'A value looks like "{{{next(iter(types), "")}: ...}}".')
     for name, value in values.items():
         if name not in types:
-            text = f"Failed to populate field: '{type(message).__name__}' object has no attribute '{name}'"
-            raise Ros2Error(did_you_mean(str(name), types, text))
+            unknown = AttributeError(f"'{type(message).__name__}' object has no attribute '{name}'")
+            raise MisfitError(unknown, did_you_mean(str(name), types))
+        current = getattr(message, name)
+        if stamps is not None and _is_stamp(value, types[name]):
+            stamps.append(partial(setattr, *((message, name) if value == "now" else (current, "stamp"))))
+            continue
         try:
-            setattr(message, name, _converted(value, types[name], getattr(message, name)))
+            setattr(message, name, _converted(value, types[name], current, stamps))
         except (AssertionError, TypeError, ValueError, OverflowError) as error:
-            told = str(error) or f"the value {value!r} does not fit"
-            failed = f"Failed to populate field: '{name}' ({types[name]}): {told}"
-            raise Ros2Error(failed) from error
+            raise MisfitError(error, f"The field '{name}' has the type {types[name]}.") from error
     return message
 
 
-def _converted(value: Any, declared: str, current: Any) -> Any:  # noqa: ANN401
-    if array := _ARRAY.match(declared):
-        element = array[1] or array[2]
+def _is_stamp(value: Any, declared: str) -> bool:  # noqa: ANN401
+    return (value, declared) in (("auto", "std_msgs/Header"), ("now", "builtin_interfaces/Time"))
+
+
+def _converted(value: Any, declared: str, current: Any, stamps: list[Stamper] | None) -> Any:  # noqa: ANN401
+    if array := ARRAY.fullmatch(declared):
+        element = array["sequence"] or array["array"]
         if not isinstance(value, (list, tuple)):
             wrong = f"a list was expected, as in [1, 2], and {value!r} is none"
             raise TypeError(wrong)
         if "/" in element:
             made = load_type(element, "msg", "message type")
-            return [_converted(item, element, made()) for item in value]
+            return [fill(made(), item, stamps) for item in value]
         return [_scalar(item, element) for item in value]
     if "/" in declared:
-        if not isinstance(value, dict):
-            wrong = f"its parts were expected, as in {{{_first(current)}: ...}}, and {value!r} are none"
-            raise TypeError(wrong)
-        return fill(current, value)
+        return fill(current, value, stamps)
     return _scalar(value, declared)
 
 
-def _first(message: Any) -> str:  # noqa: ANN401
-    return next(iter(message.get_fields_and_field_types()), "")
-
-
 def _scalar(value: Any, declared: str) -> Any:  # noqa: ANN401
-    """A value of a primitive type; YAML reads 1e-3 as text and 2 as an integer, and both are numbers."""
+    """A value of a primitive type; YAML reads 1e-3 as a string and 2 as an integer, and both are numbers."""
     if isinstance(value, (dict, list)) or value is None:
         wrong = f"one value was expected, and {value!r} is none"
         raise TypeError(wrong)
@@ -129,44 +140,10 @@ def _scalar(value: Any, declared: str) -> Any:  # noqa: ANN401
     return value
 
 
-def plain(value: Any, limit: int | None = TRUNCATED_AT) -> Any:  # noqa: ANN401
-    """A message as dictionaries, lists, numbers and text; longer than `limit` ends in "..."."""
-    if hasattr(value, "get_fields_and_field_types"):
-        return {name: plain(getattr(value, name), limit) for name in value.get_fields_and_field_types()}
-    if isinstance(value, str):
-        return value if limit is None or len(value) <= limit else value[:limit] + "..."
-    if isinstance(value, (bytes, bytearray)):
-        return value[0] if len(value) == 1 else plain(list(value), limit)
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, (list, tuple)):
-        shown = [plain(item, limit) for item in value[:limit]]
-        return shown if len(shown) == len(value) else [*shown, "..."]
-    return value
-
-
-def to_yaml(value: Any, limit: int | None = TRUNCATED_AT) -> str:  # noqa: ANN401
-    """A message as block YAML, with the line break at its end; a single value as YAML writes it."""
-    text: str = yaml.safe_dump(plain(value, limit), sort_keys=False, allow_unicode=True, width=float("inf"))
-    return text.removesuffix("...\n")
-
-
-def to_csv(value: Any, limit: int | None = TRUNCATED_AT) -> str:  # noqa: ANN401
-    """The values of a message in the order of its fields, with commas between."""
-    return ",".join(str(item) for item in _flat(plain(value, limit)))
-
-
-def _flat(value: Any) -> Iterator[Any]:  # noqa: ANN401
-    parts = value.values() if isinstance(value, dict) else value if isinstance(value, list) else None
-    if parts is None:
-        yield value
-        return
-    for part in parts:
-        yield from _flat(part)
-
-
-def field(value: Any, path: str) -> Any:  # noqa: ANN401
+def field(value: Any, path: str, *, complete: bool = True) -> Any:  # noqa: ANN401
     """A part of a message: "linear.x", "poses[0].position".
+
+    Of a message that is not `complete`, elements of arrays may be missing; the part is None then.
 
     Raises:
         Ros2Error: there is no such field.
@@ -176,12 +153,14 @@ def field(value: Any, path: str) -> Any:  # noqa: ANN401
             try:
                 value = value[int(part[1:-1])]
             except (IndexError, TypeError) as error:
+                if not complete and isinstance(error, IndexError):
+                    return None
                 message = f"Invalid field '{path}': there is no element {part}"
                 raise Ros2Error(message) from error
             continue
         known = value.get_fields_and_field_types() if hasattr(value, "get_fields_and_field_types") else {}
         if part not in known:
-            owner = type(value).__name__
-            raise Ros2Error(did_you_mean(part, known, f"Invalid field '{path}': '{owner}' has no field '{part}'"))
+            text = f"Invalid field '{path}': '{type(value).__name__}' object has no attribute '{part}'"
+            raise Ros2Error(did_you_mean(part, known, text))
         value = getattr(value, part)
     return value

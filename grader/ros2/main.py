@@ -1,39 +1,32 @@
-"""The command `ros2`: hands over to a sourced ROS 2's own, sees to the environment, and calls the verb.
+"""The command `ros2`: hands over to a sourced ROS 2's own, sees to the environment, and runs the verb.
 
 Everything here is light: what a verb needs of rclpy is imported when it runs.
 """
 
 from __future__ import annotations
 
-import argparse
+import io
 import os
-import re
 import signal
 import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn
 
 from grader.errors import GraderError
-from grader.ros.failure import did_you_mean
 from grader.ros.start import hand_over, see_to_environment
+from grader.ros2.parser import make_parser
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
     from types import FrameType
 
-GROUPS = ("action", "interface", "node", "param", "pkg", "run", "service", "topic")
-INTERRUPTED = 2
-"""Exit code after Ctrl-C, as the real one's."""
 
+class _EndedError(KeyboardInterrupt):
+    """A signal asked for the end."""
 
-class Parser(argparse.ArgumentParser):
-    """argparse's, with the nearest word where a choice is wrong."""
-
-    def error(self, message: str) -> NoReturn:
-        """Print what is wrong and end with exit code 2."""
-        match = re.search(r"invalid choice: '([^']*)' \(choose from (.*)\)", message)
-        choices = re.findall(r"[\w-]+", match[2]) if match else []
-        super().error(did_you_mean(match[1], choices, message) if match else message)
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.number = number
 
 
 def main() -> NoReturn:
@@ -43,7 +36,7 @@ def main() -> NoReturn:
         sys.stderr.flush()
     # The verb has cleaned up after itself: its node has left. Taking Python and rclpy apart would take as long as
     # importing them.
-    os._exit(code)
+    os._exit(code & 0xFF)
 
 
 def run(arguments: Sequence[str] | None = None) -> int:
@@ -56,22 +49,17 @@ def run(arguments: Sequence[str] | None = None) -> int:
         see_to_environment({"rclpy", "turtlesim"})
         # What is wrong with a value is then said by its name, before it is sent.
         os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
-        parser = make_parser()
-        if "_ARGCOMPLETE" in os.environ:
-            import argcomplete
-
-            argcomplete.autocomplete(parser, always_complete_options=False)
-        args = parser.parse_args(arguments)
-        code: int = args.verb(args)
+        code = _run_verb(sys.argv[1:] if arguments is None else list(arguments))
         sys.stdout.flush()
     except GraderError as error:
         sys.stdout.flush()
         if str(error):
             print(error, file=sys.stderr)
         return error.exit_code
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as error:
         _forget_the_terminal()
-        return INTERRUPTED
+        # As the real one: 2 after Ctrl-C, 15 after SIGTERM.
+        return error.number if isinstance(error, _EndedError) else signal.SIGINT
     except BrokenPipeError:
         # Whoever read us has gone, as in `ros2 topic echo | head`.
         _forget_the_terminal()
@@ -85,34 +73,31 @@ def run(arguments: Sequence[str] | None = None) -> int:
     return code
 
 
-def make_parser() -> argparse.ArgumentParser:
-    """The parser of all groups and verbs; each ends in a function `verb(args) -> exit code`."""
-    import importlib
-
-    parser = Parser(prog="ros2", description="The commands of ROS 2 that this course uses, on the real rclpy.")
-    parser.set_defaults(verb=_help_of(parser))
-    groups = parser.add_subparsers(title="Commands", metavar="COMMAND", parser_class=Parser)
-    for name in GROUPS:
-        module = importlib.import_module(f"grader.ros2.{name}")
-        about = (module.__doc__ or "").partition(": ")[2].partition("\n")[0]
-        group = groups.add_parser(name, help=about, description=about)
-        group.set_defaults(verb=_help_of(group))
-        module.add(group)
-    return parser
+def _run_verb(words: list[str]) -> int:
+    if "_ARGCOMPLETE" in os.environ:
+        _complete()
+    args = make_parser(words).parse_args(words)
+    if not args.use_python_default_buffering and isinstance(sys.stdout, io.TextIOWrapper):
+        # As the real one: what is piped into another program arrives line by line.
+        sys.stdout.reconfigure(line_buffering=True)
+    code: int = args.run(args)
+    return code
 
 
-def _help_of(parser: argparse.ArgumentParser) -> Callable[[argparse.Namespace], int]:
-    def print_help(_: argparse.Namespace) -> int:
-        parser.print_help()
-        return 0
+def _complete() -> NoReturn:
+    """Print what the word may become on which the Tab key was pressed, and end."""
+    import argcomplete
+    from argcomplete.lexers import split_line
 
-    return print_help
+    _, _, _, words, _ = split_line(os.environ["COMP_LINE"], int(os.environ["COMP_POINT"]))
+    argcomplete.autocomplete(make_parser(words[1:]), always_complete_options=False)
+    sys.exit(1)
 
 
 def _end(number: int, _: FrameType | None) -> None:
     """End as after Ctrl-C, so that others see the node leave; a second signal ends it at once."""
     signal.signal(number, signal.SIG_DFL)
-    raise KeyboardInterrupt
+    raise _EndedError(number)
 
 
 def _forget_the_terminal() -> None:

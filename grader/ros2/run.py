@@ -1,24 +1,21 @@
-"""The verb `run`: start an executable of a package.
-
-ros2 becomes that executable: signals, the terminal and the exit code are its own, and nothing stays behind.
-"""
+"""The verb `run`: start an executable of a package, and end as it ends."""
 
 from __future__ import annotations
 
-import os
 import re
 import shlex
 import shutil
-import signal
 import sys
 from typing import TYPE_CHECKING, Any
 
 from grader.ros import index
 from grader.ros.failure import Ros2Error, did_you_mean
+from grader.ros2.completion import completes, packages
 
 if TYPE_CHECKING:
     import argparse
     from pathlib import Path
+
 
 _QUOTED = re.compile(r'#!"([^"]+)"(.*)')
 
@@ -26,40 +23,52 @@ _QUOTED = re.compile(r'#!"([^"]+)"(.*)')
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     parser.add_argument("--prefix", help="a command to start it with: --prefix 'gdb -ex run --args'")
-    parser.add_argument("package_name").completer = lambda **_: index.packages()  # type: ignore[attr-defined]
-    parser.add_argument("executable_name").completer = _executables  # type: ignore[attr-defined]
-    parser.add_argument("argv", nargs="...", help="arguments of the executable, as --ros-args -p name:=value")
-    parser.set_defaults(verb=_run)
+    completes(parser.add_argument("package_name", help="name of the package, as in turtlesim"), packages)
+    completes(parser.add_argument("executable_name", help="name of the executable"), _executables)
+    parser.add_argument("argv", nargs="...", help="arguments of the executable, as in --ros-args -p name:=value")
 
 
 def _executables(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
     return [path.name for path in index.executables(parsed_args.package_name, "")]
 
 
-def _run(args: argparse.Namespace) -> int:
-    found = index.executables(args.package_name, f"Package '{args.package_name}' not found")
-    path = next((path for path in found if path.name == args.executable_name), None)
-    if path is None:
-        names = [path.name for path in found]
+def run(args: argparse.Namespace) -> int:
+    """Start it and wait for its end; returns its exit code, less than 0 for the signal that ended it.
+
+    Raises:
+        Ros2Error: there is no such package or executable, or it cannot be started.
+    """
+    from grader.ros2.child import run_child
+
+    command = [*_words(args.prefix), *_program(_path(args)), *args.argv]
+    if shutil.which(command[0]) is None:
+        message = f"The prefix cannot be started: there is no command '{command[0]}'"
+        raise Ros2Error(message)
+    sys.stdout.flush()
+    return run_child(command)
+
+
+def _path(args: argparse.Namespace) -> Path:
+    unknown = f"Package '{args.package_name}' not found"
+    if args.package_name not in index.packages():
+        from grader.ros2.unsourced import where_it_is
+
+        hint = where_it_is(args.package_name)
+        if hint:
+            message = f"{unknown}\n{hint}"
+            raise Ros2Error(message)
+    all_of_them = index.executables(args.package_name, unknown)
+    found = [path for path in all_of_them if path.name == args.executable_name]
+    if len(found) > 1:
+        message = "\n".join(["Multiple executables found:", *(f"- {path}" for path in found)])
+        raise Ros2Error(message)
+    if not found:
+        names = [path.name for path in all_of_them]
         hint = did_you_mean(args.executable_name, names, "No executable found")
         have = ", ".join(names) if names else "none: its setup.py names them under entry_points"
         message = f"{hint}\nExecutables of {args.package_name}: {have}"
         raise Ros2Error(message)
-    command = [*_words(args.prefix), *_program(path), *args.argv]
-    program = shutil.which(command[0])
-    if program is None:
-        message = f"The prefix cannot be started: there is no command '{command[0]}'"
-        raise Ros2Error(message)
-    sys.stdout.flush()
-    # Python ignores it, and would pass that on.
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-    try:
-        os.execv(program, command)
-    except OSError as error:
-        message = (
-            f"{path} could not be started: {error.strerror}. Does its first line name an interpreter that is there?"
-        )
-        raise Ros2Error(message) from error
+    return found[0]
 
 
 def _program(path: Path) -> list[str]:

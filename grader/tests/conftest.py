@@ -23,6 +23,8 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # Not the domain of the user's programs, nor that of another test process.
 os.environ["ROS_DOMAIN_ID"] = str(default_domain())
+# Nothing that a test did not ask for stays behind it.
+os.environ["GRADER_ROS2_DAEMON"] = "0"
 
 collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
 """Submissions, some of which bring tests of their own."""

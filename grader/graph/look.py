@@ -1,0 +1,103 @@
+"""A look at the graph: nodes, topics, services and actions as plain data, without rclpy."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from grader.graph.names import hidden
+
+Named = tuple[str, tuple[str, ...]]
+"""A name and its types; more than one type when nodes disagree."""
+
+
+@dataclass(frozen=True)
+class NodeLook:
+    """A node by its full name, and what it offers and uses."""
+
+    name: str
+    subscribers: tuple[Named, ...] = ()
+    publishers: tuple[Named, ...] = ()
+    service_servers: tuple[Named, ...] = ()
+    service_clients: tuple[Named, ...] = ()
+    action_servers: tuple[Named, ...] = ()
+    action_clients: tuple[Named, ...] = ()
+
+
+@dataclass(frozen=True)
+class EndpointLook:
+    """A publisher or a subscription. `text` is how `topic info --verbose` prints it."""
+
+    topic: str
+    publishes: bool
+    node: str
+    """The name of its node without the namespace."""
+    reliability: str
+    """As in `--qos-reliability`: "reliable" or "best_effort"."""
+    durability: str
+    """As in `--qos-durability`: "volatile" or "transient_local"."""
+    text: str
+
+
+@dataclass(frozen=True)
+class Look:
+    """The graph at one moment, everything sorted by name. Counts of services: how many clients and servers."""
+
+    nodes: tuple[NodeLook, ...] = ()
+    topics: tuple[Named, ...] = ()
+    endpoints: tuple[EndpointLook, ...] = ()
+    services: tuple[Named, ...] = ()
+    service_counts: dict[str, tuple[int, int]] = field(default_factory=dict)
+    actions: tuple[Named, ...] = ()
+
+    def node_names(self, *, all_of_them: bool = False) -> list[str]:
+        """The full names of all nodes, sorted; a name that several nodes have is there several times."""
+        return [node.name for node in self.nodes if all_of_them or not _hidden_node(node.name)]
+
+    def topic_names(self, *, all_of_them: bool = False) -> list[str]:
+        """The names of all topics, sorted."""
+        return [name for name, _ in shown(self.topics, all_of_them=all_of_them)]
+
+    def service_names(self, *, all_of_them: bool = False) -> list[str]:
+        """The names of all services, sorted."""
+        return [name for name, _ in shown(self.services, all_of_them=all_of_them)]
+
+    def ends(self, topic: str, *, publishes: bool) -> list[EndpointLook]:
+        """The publishers of a topic, or its subscriptions."""
+        return [end for end in self.endpoints if end.topic == topic and end.publishes == publishes]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As JSON can hold it."""
+        return asdict(self)
+
+
+def shown(found: tuple[Named, ...], *, all_of_them: bool) -> list[Named]:
+    """Names and types, without the hidden ones unless `all_of_them` are asked for."""
+    return [(name, types) for name, types in found if all_of_them or not hidden(name)]
+
+
+def types_of(found: tuple[Named, ...], name: str) -> tuple[str, ...]:
+    """The types of a name; empty when it is not there."""
+    return next((types for known, types in found if known == name), ())
+
+
+def from_dict(data: dict[str, Any]) -> Look:
+    """What `to_dict` made, from JSON."""
+    return Look(
+        nodes=tuple(
+            NodeLook(node.pop("name"), **{key: _named(value) for key, value in node.items()}) for node in data["nodes"]
+        ),
+        topics=_named(data["topics"]),
+        endpoints=tuple(EndpointLook(**end) for end in data["endpoints"]),
+        services=_named(data["services"]),
+        service_counts={name: (counts[0], counts[1]) for name, counts in data["service_counts"].items()},
+        actions=_named(data["actions"]),
+    )
+
+
+def _named(value: Any) -> tuple[Named, ...]:  # noqa: ANN401
+    return tuple((name, tuple(types)) for name, types in value)
+
+
+def _hidden_node(full_name: str) -> bool:
+    return full_name.rpartition("/")[2].startswith("_")

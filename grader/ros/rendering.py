@@ -1,0 +1,99 @@
+"""Messages as text: YAML, CSV, in the form of `ros2 topic echo`."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import yaml
+
+TRUNCATED_AT = 128
+"""Elements of an array, or characters of a string, that are printed unless the user asks for more."""
+ARRAY = re.compile(r"sequence<(?P<sequence>.+?)(?:, (?P<most>\d+))?>|(?P<array>.+)\[(?P<size>\d+)\]")
+"""The types of fields that hold several values: "sequence<double>", "sequence<double, 5>", "double[36]"."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """How much of a message is shown: `limit` elements or characters (None: all), arrays and strings or their kind."""
+
+    limit: int | None = TRUNCATED_AT
+    arrays: bool = True
+    strings: bool = True
+    flow: bool = False
+    """YAML in one line: "{x: 1.0}"."""
+
+
+def is_message(value: Any) -> bool:  # noqa: ANN401
+    """Whether it is a message, not a value of a field that holds none."""
+    return hasattr(value, "get_fields_and_field_types")
+
+
+def plain(value: Any, form: Form | None = None, declared: str = "") -> Any:  # noqa: ANN401
+    """A message as dictionaries, lists, numbers and strings; `declared` is the type of a field."""
+    form = form or Form()
+    if is_message(value):
+        types = value.get_fields_and_field_types()
+        return {name: plain(getattr(value, name), form, kind) for name, kind in types.items()}
+    if isinstance(value, bytes):
+        return _cut("".join(map(chr, value)), form.limit)
+    if isinstance(value, str):
+        return _cut(value, form.limit) if form.strings else _length(value)
+    if isinstance(value, bool) or not hasattr(value, "__len__"):
+        # A number of numpy is one of Python's first.
+        return value.item() if hasattr(value, "item") else value
+    if not form.arrays and declared:
+        return _kind(declared, len(value))
+    found = value.tolist() if hasattr(value, "tolist") else list(value)
+    shown = [plain(item, form) for item in found[: form.limit]]
+    return shown if len(shown) == len(found) else [*shown, "..."]
+
+
+def to_yaml(value: Any, form: Form | None = None) -> str:  # noqa: ANN401
+    """A message as YAML, with the line break at its end."""
+    form = form or Form()
+    text: str = yaml.safe_dump(
+        plain(value, form), sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=form.flow
+    )
+    return text
+
+
+def to_csv(value: Any, form: Form | None = None, declared: str = "") -> str:  # noqa: ANN401
+    """The values of a message in the order of its fields, with commas between."""
+    form = form or Form()
+    if is_message(value):
+        types = value.get_fields_and_field_types()
+        return ",".join(to_csv(getattr(value, name), form, kind) for name, kind in types.items())
+    if isinstance(value, str):
+        return _cut(value, form.limit) if form.strings else _length(value)
+    if isinstance(value, bytes):
+        return str(value if form.limit is None or len(value) <= form.limit else value[: form.limit] + b"...")
+    if isinstance(value, bool) or not hasattr(value, "__len__"):
+        return str(value)
+    if not form.arrays and declared:
+        return _kind(declared, len(value))
+    found = value.tolist() if hasattr(value, "tolist") else list(value)
+    shown = [to_csv(item, form) for item in found[: form.limit]]
+    return ",".join(shown if len(shown) == len(found) else [*shown, "..."])
+
+
+def _cut(text: str, limit: int | None) -> str:
+    return text if limit is None or len(text) <= limit else text[:limit] + "..."
+
+
+def _length(text: str) -> str:
+    return f"<string length: <{len(text)}>>"
+
+
+def _kind(declared: str, length: int) -> str:
+    """What is said of an array instead of its values."""
+    match = ARRAY.fullmatch(declared)
+    if match is None:
+        return declared
+    element = re.sub(r"<\d+>$", "", match["sequence"] or match["array"])
+    element = element.replace("/", "/msg/")
+    if match["size"]:
+        return f"<array type: {element}[{match['size']}]>"
+    most = f"[{match['most']}]" if match["most"] else ""
+    return f"<sequence type: {element}{most}, length: {length}>"

@@ -1,0 +1,27 @@
+"""The verb `action list`: the names of all actions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.ros2.looking import look
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    parser.add_argument("-t", "--show-types", action="store_true", help="print the type of each action too")
+    parser.add_argument("-c", "--count-actions", action="store_true", help="print only how many actions there are")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print them, sorted."""
+    found = look(args).actions
+    if args.count_actions:
+        print(len(found))
+        return 0
+    for name, types in found:
+        print(f"{name} [{', '.join(types)}]" if args.show_types else name)
+    return 0

@@ -1,0 +1,101 @@
+"""The verb `action send_goal`: send a goal, and wait for its result; Ctrl-C cancels it."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from grader.graph.names import absolute
+from grader.ros import values
+from grader.ros.failure import Ros2Error, did_you_mean
+from grader.ros.rendering import Form, to_yaml
+from grader.ros2.completion import action_types, actions, completes, prototype
+
+if TYPE_CHECKING:
+    import argparse
+
+_CANCEL_S = 2.0
+_POLL_S = 0.02
+_STATUS = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
+"""By their numbers in action_msgs/msg/GoalStatus."""
+_WHOLE = Form(limit=None)
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    completes(parser.add_argument("action_name", help="name, as in /turtle1/rotate_absolute"), actions)
+    kind = parser.add_argument("action_type", help="its type, as in turtlesim/action/RotateAbsolute")
+    completes(kind, action_types)
+    source = parser.add_mutually_exclusive_group()
+    given = source.add_argument(
+        "goal", nargs="?", default="{}", help='the goal, as in "{theta: 1.57}"; without it all values are zero'
+    )
+    completes(given, prototype("action_type", "action", "Goal"))
+    source.add_argument("--stdin", action="store_true", help="read the goal from standard input")
+    parser.add_argument("-f", "--feedback", action="store_true", help="print the feedback while the goal is executed")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Send it; 0 whatever came of it.
+
+    Raises:
+        Ros2Error: the type is not installed, or the goal does not fit it.
+    """
+    from rclpy.action import ActionClient, get_action_names_and_types
+
+    from grader.graph.discovery import cli_node, settle
+
+    made = values.load_type(args.action_type, "action", "action type")
+    given = values.parse(sys.stdin.read() if args.stdin else args.goal, dictionary=False)
+    try:
+        goal = values.fill(made.Goal(), given)
+    except values.MisfitError as error:
+        message = "\n".join(
+            part for part in (f"Failed to populate message fields: {error.cause!r}", error.help) if part
+        )
+        raise Ros2Error(message) from error
+    name = absolute(args.action_name)
+    with cli_node(f"_ros2cli_send_goal_{args.action_type.replace('/', '_')}") as node:
+        client = ActionClient(node, made, name)
+        try:
+            print("Waiting for an action server to become available...", flush=True)
+            settle(node, client.server_is_ready)
+            if not client.server_is_ready():
+                known = [known for known, _ in get_action_names_and_types(node) if known != name]
+                hint = did_you_mean(name, known)
+                print(hint, file=sys.stderr, flush=True) if hint else None
+            while not client.server_is_ready():
+                time.sleep(_POLL_S)
+            _follow(node, client, goal, feedback=args.feedback)
+        finally:
+            client.destroy()
+    return 0
+
+
+def _follow(node: Any, client: Any, goal: Any, *, feedback: bool) -> None:  # noqa: ANN401
+    from grader.graph.discovery import spin_until
+
+    def told(message: Any) -> None:  # noqa: ANN401
+        print(f"Feedback:\n    {to_yaml(message.feedback, _WHOLE)}", flush=True)
+
+    print(f"Sending goal:\n     {to_yaml(goal, _WHOLE)}", flush=True)
+    sent = client.send_goal_async(goal, feedback_callback=told if feedback else None)
+    spin_until(node, sent.done)
+    handle = sent.result()
+    if not handle.accepted:
+        print("Goal was rejected.", flush=True)
+        return
+    print(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n", flush=True)
+    finished = handle.get_result_async()
+    try:
+        spin_until(node, finished.done)
+    except KeyboardInterrupt:
+        print("Canceling goal...", flush=True)
+        canceled = handle.cancel_goal_async()
+        if spin_until(node, canceled.done, _CANCEL_S) and canceled.result().goals_canceling:
+            print("Goal canceled.", flush=True)
+        raise
+    answer = finished.result()
+    print(f"Result:\n    {to_yaml(answer.result, _WHOLE)}", flush=True)
+    print(f"Goal finished with status: {_STATUS[answer.status]}", flush=True)

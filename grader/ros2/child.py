@@ -1,0 +1,60 @@
+"""A program that `ros2 run` has started: it has the terminal, and does not outlive the command."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import subprocess
+from typing import TYPE_CHECKING
+
+from grader.ros.failure import Ros2Error
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from types import FrameType
+
+_SAYS = "[ros2run]:"
+_PR_SET_PDEATHSIG = 1
+_PASSED_ON = (signal.SIGTERM, signal.SIGHUP)
+
+
+def run_child(command: Sequence[str]) -> int:
+    """Run a program until it ends; returns its exit code, less than 0 for the signal that ended it.
+
+    Ctrl-C reaches the program from the terminal itself; other requests to end are passed on to it.
+
+    Raises:
+        Ros2Error: it cannot be started.
+    """
+    library = ctypes.CDLL(None)
+    ours = os.getpid()
+
+    def prepare() -> None:
+        for number in (signal.SIGINT, *_PASSED_ON):
+            signal.signal(number, signal.SIG_DFL)
+        library.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+        if os.getppid() != ours:
+            os._exit(1)
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        process = subprocess.Popen(command, preexec_fn=prepare)
+    except OSError as error:
+        message = (
+            f"{command[0]} could not be started: {error.strerror}. Does its first line name an interpreter that is "
+            "there?"
+        )
+        raise Ros2Error(message) from error
+
+    def pass_on(number: int, _: FrameType | None) -> None:
+        process.send_signal(number)
+
+    for number in _PASSED_ON:
+        signal.signal(number, pass_on)
+    code = process.wait()
+    if code < 0:
+        print(_SAYS, signal.strsignal(-code), flush=True)
+    elif code:
+        print(_SAYS, f"Process exited with failure {code}", flush=True)
+    return code

@@ -1,0 +1,79 @@
+"""Asking the daemon, starting it, stopping it. Every command works without one."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import time
+from typing import Any
+
+from grader.ros2.daemon import place
+
+ANSWER_S = 8.0
+"""More than the daemon itself waits for nodes that are there and say nothing."""
+_POLL_S = 0.02
+
+
+def ask(call: str) -> dict[str, Any] | None:
+    """What the daemon answers to "look", "ping" or "stop"; None where there is no daemon."""
+    folder = place.folder()
+    if folder is None:
+        return None
+    try:
+        with (
+            place.address(folder, f"{place.name()}.socket") as address,
+            socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection,
+        ):
+            connection.settimeout(ANSWER_S)
+            connection.connect(address)
+            if not place.is_ours(connection):
+                return None
+            connection.sendall(call.encode() + b"\n")
+            text = b"".join(iter(lambda: connection.recv(1 << 16), b""))
+        answer: dict[str, Any] = json.loads(text)
+    except (OSError, ValueError):
+        return None
+    return answer
+
+
+def is_running() -> bool:
+    """Whether a daemon answers."""
+    return ask("ping") is not None
+
+
+def start(*, debug: bool = False) -> None:
+    """Start a daemon; it ends at once if there is one. With `debug` it tells on this terminal what it does."""
+    target = None if debug else subprocess.DEVNULL
+    subprocess.Popen(
+        [sys.executable, "-m", "grader.ros2.daemon.server", *(["--debug"] if debug else [])],
+        stdin=subprocess.DEVNULL,
+        stdout=target,
+        stderr=target,
+        env={**os.environ, "PYTHONSAFEPATH": "1"},
+        cwd="/",
+        # Ctrl-C in this terminal is not for it.
+        start_new_session=True,
+    )
+
+
+def start_for_later() -> None:
+    """Start a daemon for the next command, unless GRADER_ROS2_DAEMON=0 asks for none."""
+    if os.environ.get("GRADER_ROS2_DAEMON") != "0" and place.folder() is not None:
+        start()
+
+
+def wait_until_ended(timeout_s: float) -> bool:
+    """Wait until the daemon's process has ended; returns whether it has."""
+    folder = place.folder()
+    if folder is None:
+        return True
+    end = time.monotonic() + timeout_s
+    with (folder / f"{place.name()}.lock").open("w") as file:
+        while not place.lock(file):
+            if time.monotonic() >= end:
+                return False
+            time.sleep(_POLL_S)
+    return True

@@ -1,0 +1,20 @@
+"""The verb `daemon status`: whether the daemon is running."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(_: argparse.ArgumentParser) -> None:
+    """It has no arguments."""
+
+
+def run(_: argparse.Namespace) -> int:
+    """Print it; 0 either way."""
+    from grader.ros2.daemon import client
+
+    print("The daemon is running" if client.is_running() else "The daemon is not running")
+    return 0

@@ -1,0 +1,34 @@
+"""The verb `daemon stop`: stop the daemon."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.ros.failure import Ros2Error
+
+if TYPE_CHECKING:
+    import argparse
+
+_ENDED_S = 10.0
+
+
+def add(_: argparse.ArgumentParser) -> None:
+    """It has no arguments."""
+
+
+def run(_: argparse.Namespace) -> int:
+    """Stop it and wait until it has ended.
+
+    Raises:
+        Ros2Error: it does not end.
+    """
+    from grader.ros2.daemon import client
+
+    if client.ask("stop") is None:
+        print("The daemon is not running")
+        return 0
+    if not client.wait_until_ended(_ENDED_S):
+        message = "Timed out waiting for daemon to shutdown"
+        raise Ros2Error(message)
+    print("The daemon has been stopped")
+    return 0

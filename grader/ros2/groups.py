@@ -1,0 +1,107 @@
+"""The groups and verbs of `ros2`, with the line that tells what each is for; the verbs themselves are not imported."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Group:
+    """A word after `ros2`.
+
+    `verbs` maps the words that may follow it to what they are for. A group without verbs is a command by itself.
+    `flags` maps options that may stand before the verb to their explanation.
+    """
+
+    about: str
+    verbs: dict[str, str] = field(default_factory=dict)
+    flags: dict[str, str] = field(default_factory=dict)
+
+
+GROUPS = {
+    "action": Group(
+        "Various action related sub-commands",
+        {
+            "find": "Output a list of available actions of a given type",
+            "info": "Print information about an action",
+            "list": "Output a list of action names",
+            "send_goal": "Send an action goal",
+            "type": "Print a action's type",
+        },
+    ),
+    "daemon": Group(
+        "Various daemon related sub-commands",
+        {
+            "start": "Start the daemon if it isn't running",
+            "status": "Output the status of the daemon",
+            "stop": "Stop the daemon if it is running",
+        },
+    ),
+    "interface": Group(
+        "Show information about ROS interfaces",
+        {
+            "list": "List all interface types available",
+            "package": "Output a list of available interface types within one package",
+            "packages": "Output a list of packages that provide interfaces",
+            "proto": "Output an interface prototype",
+            "show": "Output the interface definition",
+        },
+    ),
+    "node": Group(
+        "Various node related sub-commands",
+        {
+            "info": "Output information about a node",
+            "list": "Output a list of available nodes",
+        },
+    ),
+    "param": Group(
+        "Various param related sub-commands",
+        {
+            "delete": "Delete parameter",
+            "describe": "Show descriptive information about declared parameters",
+            "dump": "Show all of the parameters of a node in a YAML file format",
+            "get": "Get parameter",
+            "list": "Output a list of available parameters",
+            "load": "Load parameter file for a node",
+            "set": "Set parameter",
+        },
+    ),
+    "pkg": Group(
+        "Various package related sub-commands",
+        {
+            "create": "Create a new ROS 2 package",
+            "executables": "Output a list of package specific executables",
+            "list": "Output a list of available packages",
+            "prefix": "Output the prefix path of a package",
+            "xml": "Output the XML of the package manifest or a specific tag",
+        },
+    ),
+    "run": Group("Run a package specific executable"),
+    "service": Group(
+        "Various service related sub-commands",
+        {
+            "call": "Call a service",
+            "echo": "Echo a service",
+            "find": "Output a list of available services of a given type",
+            "info": "Print information about a service",
+            "list": "Output a list of available services",
+            "type": "Output a service's type",
+        },
+        {"--include-hidden-services": "include hidden services, those with a name that starts with _"},
+    ),
+    "topic": Group(
+        "Various topic related sub-commands",
+        {
+            "bw": "Display bandwidth used by topic",
+            "delay": "Display delay of topic from timestamp in header",
+            "echo": "Output messages from a topic",
+            "find": "Output a list of available topics of a given type",
+            "hz": "Print the average publishing rate to screen",
+            "info": "Print information about a topic",
+            "list": "Output a list of available topics",
+            "pub": "Publish a message to a topic",
+            "type": "Print a topic's type",
+        },
+        {"--include-hidden-topics": "include hidden topics, those with a name that starts with _"},
+    ),
+}

@@ -1,0 +1,1 @@
+"""The verbs of `ros2 interface`, one module each."""

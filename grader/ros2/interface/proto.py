@@ -1,0 +1,32 @@
+"""The verb `interface proto`: all fields of an interface with their default values, to fill in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.ros import index
+from grader.ros2.completion import completes, interfaces
+
+if TYPE_CHECKING:
+    import argparse
+
+_PARTS = {"msg": "", "srv": "Request", "action": "Goal"}
+"""What of an interface a user fills in."""
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    completes(parser.add_argument("type", help="full name, as in geometry_msgs/msg/Twist"), interfaces)
+    parser.add_argument("--no-quotes", action="store_true", help="print it without quotes around it")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print it as YAML."""
+    from grader.ros import rendering, values
+
+    index.interface_file(args.type)
+    kind = args.type.split("/")[1]
+    made = values.load_type(args.type, kind, text=f"The interface '{args.type}' cannot be imported")
+    text = rendering.to_yaml((getattr(made, _PARTS[kind]) if _PARTS[kind] else made)(), rendering.Form(limit=None))
+    print(text if args.no_quotes else f'"{text}"')
+    return 0

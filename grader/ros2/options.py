@@ -1,0 +1,57 @@
+"""Options that many verbs have, and the checks of their values."""
+
+from __future__ import annotations
+
+import argparse
+
+
+def add_spin(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a verb that makes a node of its own."""
+    parser.add_argument(
+        "--spin-time", type=float, help="wait at most this many seconds until the graph is known (without a daemon)"
+    )
+    parser.add_argument("-s", "--use-sim-time", action="store_true", help="take the time from the topic /clock")
+
+
+def add_look(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a verb that looks at the graph."""
+    add_spin(parser)
+    parser.add_argument("--no-daemon", action="store_true", help="neither use the daemon nor start one")
+
+
+def positive_int(text: str) -> int:
+    """A whole number from 1 on, for argparse."""
+    value = _whole(text)
+    if value is None or value < 1:
+        message = "value must be a positive integer"
+        raise argparse.ArgumentTypeError(message)
+    return value
+
+
+def unsigned_int(text: str) -> int:
+    """A whole number from 0 on, for argparse."""
+    value = _whole(text)
+    if value is None or value < 0:
+        message = "value must be non-negative integer"
+        raise argparse.ArgumentTypeError(message)
+    return value
+
+
+def positive_float(text: str) -> float:
+    """A number above 0, for argparse."""
+    try:
+        value = float(text)
+    except ValueError as error:
+        message = "Expects a floating point number"
+        raise argparse.ArgumentTypeError(message) from error
+    if not 0 < value < float("inf"):
+        message = "Value must be positive"
+        raise argparse.ArgumentTypeError(message)
+    return value
+
+
+def _whole(text: str) -> int | None:
+    try:
+        return int(text)
+    except ValueError:
+        return None

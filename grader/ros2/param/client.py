@@ -1,0 +1,140 @@
+"""The parameters of another node, by its services. Needs rclpy."""
+
+from __future__ import annotations
+
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
+from rclpy.parameter import parameter_value_to_python
+
+from grader.graph.discovery import cli_node, settle, spin_until
+from grader.graph.names import absolute, hidden, nodes
+from grader.ros.failure import Ros2Error, did_you_mean
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Iterator, Sequence
+
+    from rclpy.node import Node
+
+ANSWER_S = 5.0
+"""A node that is busy does not answer; this long it may be."""
+_POLL_S = 0.02
+_TYPES = {
+    ParameterType.PARAMETER_NOT_SET: ("not set", "Parameter not set."),
+    ParameterType.PARAMETER_BOOL: ("boolean", "Boolean value is:"),
+    ParameterType.PARAMETER_INTEGER: ("integer", "Integer value is:"),
+    ParameterType.PARAMETER_DOUBLE: ("double", "Double value is:"),
+    ParameterType.PARAMETER_STRING: ("string", "String value is:"),
+    ParameterType.PARAMETER_BYTE_ARRAY: ("byte array", "Byte values are:"),
+    ParameterType.PARAMETER_BOOL_ARRAY: ("boolean array", "Boolean values are:"),
+    ParameterType.PARAMETER_INTEGER_ARRAY: ("integer array", "Integer values are:"),
+    ParameterType.PARAMETER_DOUBLE_ARRAY: ("double array", "Double values are:"),
+    ParameterType.PARAMETER_STRING_ARRAY: ("string array", "String values are:"),
+}
+
+
+class Parameters:
+    """The parameters of one node. Every method may raise Ros2Error: the node does not answer."""
+
+    def __init__(self, node: Node, node_name: str) -> None:
+        """`node_name` is the full name of the node that has them."""
+        self._node = node
+        self.node_name = node_name
+
+    def _call(self, kind: Any, service: str, request: Any) -> Any:  # noqa: ANN401
+        client = self._node.create_client(kind, f"{self.node_name}/{service}")
+        try:
+            if not spin_until(self._node, client.service_is_ready, ANSWER_S):
+                message = f"Wait for service timed out waiting for parameter services for node {self.node_name}"
+                raise Ros2Error(message)
+            future = client.call_async(request)
+            if not spin_until(self._node, future.done, ANSWER_S):
+                message = f"The node {self.node_name} did not answer within {ANSWER_S:.0f} s: is it busy?"
+                raise Ros2Error(message)
+            return future.result()
+        finally:
+            self._node.destroy_client(client)
+
+    def names(self, prefixes: Sequence[str] = ()) -> list[str]:
+        """The names, sorted; with `prefixes` only those below them."""
+        answer = self._call(ListParameters, "list_parameters", ListParameters.Request(prefixes=list(prefixes)))
+        return sorted(answer.result.names)
+
+    def get(self, name: str) -> ParameterValue | None:
+        """One value; None when the node does not know the name."""
+        found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=[name])).values
+        return found[0] if found else None
+
+    def all_values(self) -> dict[str, Any]:
+        """All values by name."""
+        names = self.names()
+        found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=names)).values
+        return {name: parameter_value_to_python(value) for name, value in zip(names, found, strict=False)}
+
+    def set(self, parameters: Sequence[Parameter]) -> list[Any]:
+        """Set them; returns a SetParametersResult for each."""
+        request = SetParameters.Request(parameters=list(parameters))
+        return list(self._call(SetParameters, "set_parameters", request).results)
+
+    def describe(self, names: Sequence[str]) -> list[Any]:
+        """The descriptor of each; the node answers with none at all when it does not know one of them."""
+        request = DescribeParameters.Request(names=list(names))
+        return list(self._call(DescribeParameters, "describe_parameters", request).descriptors)
+
+
+@contextmanager
+def parameters_of(args: argparse.Namespace) -> Iterator[Parameters]:
+    """The parameters of the node that `args.node_name` names, while this process has a node to ask with.
+
+    Raises:
+        Ros2Error: there is no such node.
+    """
+    with cli_node(use_sim_time=getattr(args, "use_sim_time", False)) as node:
+        yield Parameters(node, _found(node, args))
+
+
+def _found(node: Node, args: argparse.Namespace) -> str:
+    name = absolute(args.node_name)
+    all_of_them = getattr(args, "include_hidden_nodes", False)
+
+    def there() -> bool:
+        return name in nodes(node, all_of_them=all_of_them)
+
+    settle(node, there, getattr(args, "spin_time", None))
+    end = time.monotonic() + getattr(args, "timeout", 0)
+    while not there():
+        if time.monotonic() >= end:
+            raise Ros2Error(did_you_mean(name, nodes(node, all_of_them=all_of_them), "Node not found"))
+        time.sleep(_POLL_S)
+    return name
+
+
+def with_parameters(node: Node, *, all_of_them: bool) -> list[str]:
+    """The names of the nodes that offer parameters, sorted."""
+    offered = {service for service, _ in node.get_service_names_and_types()}
+    found = nodes(node, all_of_them=True)
+    shown = [name for name in found if all_of_them or not hidden(name.rpartition("/")[2])]
+    return [name for name in dict.fromkeys(shown) if f"{name}/list_parameters" in offered]
+
+
+def type_name(kind: int) -> str:
+    """The type of a parameter in words: "integer", "string array"."""
+    return _TYPES.get(kind, ("unknown", ""))[0]
+
+
+def told(value: ParameterValue, *, hide_type: bool) -> str:
+    """A value as `param get` prints it."""
+    python = parameter_value_to_python(value)
+    text = str(python.tolist() if hasattr(python, "tolist") else python)
+    if hide_type:
+        return text
+    return _TYPES[value.type][1] + (f" {text}" if python is not None else "")
+
+
+def not_set(name: str) -> Parameter:
+    """What takes a parameter away when it is set to it."""
+    return Parameter(name=name, value=ParameterValue(type=ParameterType.PARAMETER_NOT_SET))

@@ -1,0 +1,28 @@
+"""The verb `param delete`: take a parameter away from a node that allows it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.ros2.param.options import add_name, add_node, add_timeout
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    add_node(parser)
+    add_name(parser)
+    add_timeout(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Delete it; 0 also where the node refuses."""
+    from grader.ros2.param.client import not_set, parameters_of
+    from grader.ros2.param.set import report
+
+    with parameters_of(args) as parameters:
+        wanted = not_set(args.parameter_name)
+        report(parameters, wanted, "Deleted parameter successfully", "Deleting parameter failed")
+    return 0

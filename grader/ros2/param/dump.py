@@ -1,0 +1,40 @@
+"""The verb `param dump`: all parameters of a node as a parameter file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from grader.ros2.param.options import add_node, add_timeout
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    add_node(parser)
+    add_timeout(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print it, with an empty line at its end."""
+    from grader.ros2.param.client import parameters_of
+
+    with parameters_of(args) as parameters:
+        print(dumped(parameters.node_name, parameters.all_values()))
+    return 0
+
+
+def dumped(node_name: str, values: dict[str, Any]) -> str:
+    """The values as a parameter file: a dot in a name opens a level."""
+    import yaml
+
+    tree: dict[str, Any] = {}
+    for name, value in values.items():
+        *path, last = name.split(".")
+        level = tree
+        for part in path:
+            level = level.setdefault(part, {})
+        level[last] = value.tolist() if hasattr(value, "tolist") else value
+    text: str = yaml.safe_dump({node_name: {"ros__parameters": tree}}, default_flow_style=False, sort_keys=True)
+    return text

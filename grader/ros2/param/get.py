@@ -1,0 +1,35 @@
+"""The verb `param get`: the value of a parameter."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.ros.failure import Ros2Error, did_you_mean
+from grader.ros2.param.options import add_name, add_node, add_timeout
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    add_node(parser)
+    add_name(parser)
+    parser.add_argument("--hide-type", action="store_true", help="print only the value")
+    add_timeout(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print it.
+
+    Raises:
+        Ros2Error: the node does not have it.
+    """
+    from grader.ros2.param.client import parameters_of, told
+
+    with parameters_of(args) as parameters:
+        value = parameters.get(args.parameter_name)
+        if value is None:
+            raise Ros2Error(did_you_mean(args.parameter_name, parameters.names(), "Parameter not set"))
+        print(told(value, hide_type=args.hide_type))
+    return 0

@@ -1,0 +1,61 @@
+"""The verb `param load`: set the parameters of a node from a parameter file."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+from grader.ros.failure import Ros2Error
+from grader.ros2.param.options import add_node, add_timeout
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    add_node(parser)
+    parser.add_argument("parameter_file", help="a file as `ros2 param dump` prints it")
+    parser.add_argument(
+        "--no-use-wildcard", action="store_true", help="leave out what stands under '/**', which is for every node"
+    )
+    add_timeout(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Set them all; 0 also where the node refuses some.
+
+    Raises:
+        Ros2Error: the file cannot be read, or is not a parameter file.
+    """
+    from grader.ros2.param.client import parameters_of
+
+    with parameters_of(args) as parameters:
+        wanted = read(args.parameter_file, use_wildcard=not args.no_use_wildcard)
+        for one, result in zip(wanted, parameters.set(wanted), strict=True):
+            reason = f": {result.reason}" if result.reason else ""
+            if result.successful:
+                print(f"Set parameter {one.name} successful{reason}")
+            else:
+                print(f"Set parameter {one.name} failed{reason}", file=sys.stderr)
+    return 0
+
+
+def read(file: str, *, use_wildcard: bool) -> list[Any]:
+    """The parameters (rcl_interfaces/msg/Parameter) that a file holds.
+
+    Raises:
+        Ros2Error: it cannot be read, or is not a parameter file.
+    """
+    import yaml
+    from rclpy.parameter import parameter_dict_from_yaml_file
+
+    try:
+        return list(parameter_dict_from_yaml_file(file, use_wildcard).values())
+    except OSError as error:
+        message = f"The parameter file {file} cannot be read: {error.strerror}"
+    except RuntimeError as error:
+        message = str(error)
+    except (yaml.YAMLError, AttributeError, TypeError, ValueError) as error:
+        message = f"The file {file} is not a parameter file in YAML: {' '.join(str(error).split())}"
+    raise Ros2Error(message)

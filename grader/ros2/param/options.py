@@ -1,0 +1,37 @@
+"""Options that the verbs of `param` have in common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from grader.ros2.completion import completes, nodes
+from grader.ros2.options import add_look
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add_node(parser: argparse.ArgumentParser) -> None:
+    """Add the node whose parameters are meant."""
+    add_look(parser)
+    completes(parser.add_argument("node_name", help="name of the node, as in /turtlesim"), nodes)
+    parser.add_argument("--include-hidden-nodes", action="store_true", help="include nodes whose names start with _")
+
+
+def add_timeout(parser: argparse.ArgumentParser) -> None:
+    """Add how long to wait for the node."""
+    parser.add_argument(
+        "--timeout", metavar="N", type=int, default=1, help="wait N seconds for the node to appear (default: 1)"
+    )
+
+
+def add_name(parser: argparse.ArgumentParser, name: str = "parameter_name", **options: Any) -> None:  # noqa: ANN401
+    """Add the parameter that is meant, by name."""
+    completes(parser.add_argument(name, help="name of the parameter, as in background_r", **options), _names)
+
+
+def _names(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
+    from grader.ros2.param.client import parameters_of
+
+    with parameters_of(parsed_args) as parameters:
+        return parameters.names()

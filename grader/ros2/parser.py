@@ -1,0 +1,111 @@
+"""The parsers of `ros2`: usage, help and errors in the form of the real one.
+
+Only the module of the verb that is typed is imported, and it imports rclpy only when it runs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import re
+from typing import TYPE_CHECKING, NoReturn
+
+from grader.ros.failure import did_you_mean
+from grader.ros2.groups import GROUPS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+MODULES = {"pkg.xml": "pkg.manifest"}
+"""Verbs whose module is not called as they are: xml is a module of Python."""
+_CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
+
+
+class Parser(argparse.ArgumentParser):
+    """argparse's parser; its error names the nearest word where a choice is wrong."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print what is wrong and end with exit code 2."""
+        match = _CHOICE.search(message)
+        choices = re.findall(r"[\w-]+", match[2]) if match else []
+        super().error(did_you_mean(match[1], choices, message) if match else message)
+
+
+def make_parser(words: Sequence[str]) -> Parser:
+    """The parser for a command line; `words` are what stands after `ros2`.
+
+    It has all groups, the verbs of the group that the words name, and the arguments of the verb that they name. What
+    it parses has an attribute `run`: a function of the parsed arguments that returns the exit code.
+    """
+    chosen = [word for word in words if not word.startswith("-")]
+    group, verb = [*chosen[:2], None, None][:2]
+    root = Parser(
+        prog="ros2",
+        description="ros2 is an extensible command-line tool for ROS 2.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    root.add_argument(
+        "--use-python-default-buffering",
+        action="store_true",
+        help="write standard output as Python does: by blocks where it is not a terminal, instead of line by line",
+    )
+    root.set_defaults(run=_help_of(root))
+    _add_words(root, "command", {name: group.about for name, group in GROUPS.items()}, group, _add_group(verb))
+    return root
+
+
+def _add_words(
+    parser: argparse.ArgumentParser,
+    kind: str,
+    about: dict[str, str],
+    chosen: str | None,
+    add: Callable[[argparse.ArgumentParser, str], None],
+) -> None:
+    """Add the words that may follow, and `add` the arguments of the one that is chosen."""
+    width = max(map(len, about))
+    words = parser.add_subparsers(
+        title="Commands",
+        description="".join(f"{name.ljust(width)}  {text}\n" for name, text in sorted(about.items())),
+        metavar=f"Call `{parser.prog} <command> -h` for more detailed usage.",
+        # As the real one: no option could be called so.
+        dest=f" {kind}",
+        parser_class=Parser,
+    )
+    for name in sorted(about):
+        made = words.add_parser(
+            name,
+            prog=f"{parser.prog} {name}",
+            description=about[name],
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        if name == chosen:
+            add(made, name)
+
+
+def _add_group(verb: str | None) -> Callable[[argparse.ArgumentParser, str], None]:
+    def add(parser: argparse.ArgumentParser, name: str) -> None:
+        group = GROUPS[name]
+        for flag, text in group.flags.items():
+            parser.add_argument(flag, action="store_true", help=text)
+        if not group.verbs:
+            _add_verb(parser, name)
+            return
+        parser.set_defaults(run=_help_of(parser))
+        _add_words(parser, "verb", group.verbs, verb, lambda made, word: _add_verb(made, f"{name}.{word}"))
+
+    return add
+
+
+def _add_verb(parser: argparse.ArgumentParser, name: str) -> None:
+    """Add the arguments of a verb; its module has the functions `add(parser)` and `run(args)`."""
+    module = importlib.import_module(f"grader.ros2.{MODULES.get(name, name)}")
+    module.add(parser)
+    parser.set_defaults(run=module.run)
+
+
+def _help_of(parser: argparse.ArgumentParser) -> Callable[[argparse.Namespace], int]:
+    def print_help(_: argparse.Namespace) -> int:
+        parser.print_help()
+        return 0
+
+    return print_help

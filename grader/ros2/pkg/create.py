@@ -1,0 +1,190 @@
+"""The verb `pkg create`: a new package, with the files that its build type needs."""
+
+from __future__ import annotations
+
+import getpass
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.ros.failure import Ros2Error
+from grader.ros2.completion import completes, packages
+
+if TYPE_CHECKING:
+    import argparse
+
+_PYTHON_NAME = re.compile(r"[a-z][a-z0-9_]*")
+
+
+@dataclass(frozen=True)
+class NewPackage:
+    """What is to be made."""
+
+    name: str
+    folder: Path
+    shown: str
+    """The folder as messages name it: "./my_package"."""
+    build_type: str
+    package_format: int
+    description: str
+    maintainer: str
+    email: str
+    license: str
+    dependencies: tuple[str, ...]
+    node: str | None
+    library: str | None
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    parser.add_argument("package_name", help="name of the package: lower-case letters, digits and _")
+    parser.add_argument(
+        "--package-format",
+        "--package_format",
+        type=int,
+        default=3,
+        choices=[2, 3],
+        help="format of package.xml (default: 3)",
+    )
+    parser.add_argument("--description", default="TODO: Package description", help="what the package is for")
+    parser.add_argument(
+        "--license",
+        default="TODO: License declaration",
+        help="any text; a LICENSE file is made for the licenses that '?' lists",
+    )
+    parser.add_argument("--destination-directory", default=".", help="make the package in this directory")
+    parser.add_argument(
+        "--build-type",
+        default="ament_cmake",
+        choices=["cmake", "ament_cmake", "ament_python"],
+        help="ament_python for a package in Python (default: ament_cmake)",
+    )
+    needed = parser.add_argument("--dependencies", nargs="+", default=[], help="packages that it uses")
+    completes(needed, packages)
+    parser.add_argument("--maintainer-email", help="default: the address that git knows")
+    parser.add_argument("--maintainer-name", default=getpass.getuser(), help="default: the user's name")
+    parser.add_argument("--node-name", help="also make an executable of this name")
+    parser.add_argument("--library-name", help="also make a library of this name")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Make it.
+
+    Raises:
+        Ros2Error: the folder is there already or cannot be made, or the name is "test".
+    """
+    from grader.ros2.pkg import files, licenses
+
+    if args.license == "?":
+        print("\n".join(["Supported licenses:", *licenses.KNOWN]))
+        return 0
+    wanted = _wanted(args)
+    _check(wanted)
+    _tell(wanted, args.destination_directory)
+    try:
+        files.write(wanted)
+        licensed = licenses.write(wanted.license, wanted.folder / "LICENSE", wanted.maintainer)
+    except OSError as error:
+        message = f"\nAborted!\n{error.filename or wanted.folder} could not be written: {error.strerror}"
+        raise Ros2Error(message) from error
+    if wanted.license not in licenses.KNOWN:
+        known = "\n".join(licenses.KNOWN)
+        print(
+            f"\n[WARNING]: Unknown license '{wanted.license}'.  This has been set in the package.xml, but no LICENSE "
+            f"file has been created.\nIt is recommended to use one of the ament license identifiers:\n{known}"
+        )
+    sys.stdout.flush()
+    if wanted.license in licenses.KNOWN and not licensed:
+        print(f"The text of the license '{wanted.license}' is not on this machine: no LICENSE file.", file=sys.stderr)
+    for advice in _advice(wanted):
+        print(advice, file=sys.stderr)
+    return 0
+
+
+def _wanted(args: argparse.Namespace) -> NewPackage:
+    node = args.node_name
+    if node and node == args.library_name:
+        node = f"{node}_node"
+        print("[WARNING] node name can not be equal to the library name", file=sys.stderr)
+        print(f"[WARNING] renaming node to {node}", file=sys.stderr)
+    folder = Path(args.destination_directory, args.package_name)
+    return NewPackage(
+        name=args.package_name,
+        folder=folder,
+        shown=str(folder) if folder.is_absolute() else f"./{folder}",
+        build_type=args.build_type,
+        package_format=args.package_format,
+        description=args.description,
+        maintainer=args.maintainer_name,
+        email=args.maintainer_email or _email() or f"{args.maintainer_name}@todo.todo",
+        license=args.license,
+        dependencies=tuple(args.dependencies),
+        node=node or None,
+        library=args.library_name or None,
+    )
+
+
+def _check(wanted: NewPackage) -> None:
+    if wanted.build_type == "ament_python" and wanted.name == "test":
+        message = "Aborted since 'ament_python' packages can't be named 'test'. Please choose a different package name."
+        raise Ros2Error(message)
+    if wanted.folder.exists():
+        message = (
+            f"\nAborted!\nThe directory already exists: {wanted.shown}\n"
+            "Either remove the directory or choose a different destination directory or package name"
+        )
+        raise Ros2Error(message)
+    for what, value in (("package", wanted.name), ("node", wanted.node), ("library", wanted.library)):
+        if value is not None and (not value or "/" in value or "\0" in value or value in (".", "..")):
+            message = f"\nAborted!\nThe {what} name '{value}' cannot be the name of a file."
+            raise Ros2Error(message)
+
+
+def _advice(wanted: NewPackage) -> list[str]:
+    """What will go wrong later with what was asked for."""
+    advice = []
+    names = (("package", wanted.name), ("node", wanted.node), ("library", wanted.library))
+    odd = [f"{what} name '{value}'" for what, value in names if value is not None and not _PYTHON_NAME.fullmatch(value)]
+    if odd:
+        advice.append(
+            f"The {' and the '.join(odd)} will cause trouble: use lower-case letters, digits and _, a letter first. "
+            "Python cannot import other names, and colcon warns about them."
+        )
+    if wanted.build_type != "ament_python":
+        advice.append(
+            f"A package of build type {wanted.build_type} is written in C++. Building it needs CMake and a C++ "
+            "compiler, and a node in it needs rclcpp, which is part of a whole ROS 2. For Python use --build-type "
+            "ament_python."
+        )
+    return advice
+
+
+def _tell(wanted: NewPackage, destination: str) -> None:
+    lines = [
+        "going to create a new package",
+        f"package name: {wanted.name}",
+        f"destination directory: {Path(destination).absolute().resolve()}",
+        f"package format: {wanted.package_format}",
+        "version: 0.0.0",
+        f"description: {wanted.description}",
+        f"maintainer: {[f'{wanted.maintainer} <{wanted.email}>']}",
+        f"licenses: {[wanted.license]}",
+        f"build type: {wanted.build_type}",
+        f"dependencies: {list(wanted.dependencies)}",
+    ]
+    lines += [f"node_name: {wanted.node}"] if wanted.node else []
+    lines += [f"library_name: {wanted.library}"] if wanted.library else []
+    print("\n".join(lines))
+
+
+def _email() -> str:
+    try:
+        asked = subprocess.run(
+            ["git", "config", "user.email"], capture_output=True, text=True, check=False, errors="replace"
+        )
+    except OSError:
+        return ""
+    return asked.stdout.strip()

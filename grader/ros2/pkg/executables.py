@@ -1,0 +1,25 @@
+"""The verb `pkg executables`: what `ros2 run` can start, of all packages or of one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.ros import index
+from grader.ros2.completion import completes, packages
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    completes(parser.add_argument("package_name", nargs="?", help="name of a package; without it: all"), packages)
+    parser.add_argument("--full-path", action="store_true", help="print paths instead of names")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print them, sorted by package and path."""
+    for package in [args.package_name] if args.package_name else index.packages():
+        for path in index.executables(package, f"Package '{package}' not found"):
+            print(path if args.full_path else f"{package} {path.name}")
+    return 0

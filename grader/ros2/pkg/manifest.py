@@ -1,0 +1,48 @@
+"""The verb `pkg xml`: the manifest of a package, package.xml, or one of its tags."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from grader.ros import index
+from grader.ros.failure import Ros2Error, did_you_mean
+from grader.ros2.completion import completes, packages
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    completes(parser.add_argument("package_name", help="name of the package"), packages)
+    parser.add_argument("-t", "--tag", help="print the text of this tag only, as in version")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print it.
+
+    Raises:
+        Ros2Error: there is no such package or tag, or the manifest cannot be read.
+    """
+    from xml.etree import ElementTree as ET
+
+    file = index.prefix_of(args.package_name, "Package not found") / "share" / args.package_name / "package.xml"
+    if not file.is_file():
+        message = "Package XML manifest not found"
+        raise Ros2Error(message)
+    try:
+        tree = ET.parse(file)
+    except (ET.ParseError, OSError) as error:
+        message = f"{file} cannot be read: {error}"
+        raise Ros2Error(message) from error
+    if args.tag is None:
+        sys.stdout.write(ET.tostring(tree.getroot(), encoding="unicode").rstrip("\n") + "\n")
+        return 0
+    found = tree.getroot().findall(args.tag)
+    if not found:
+        tags = {element.tag for element in tree.getroot()}
+        raise Ros2Error(did_you_mean(args.tag, tags, "XML tag not found"))
+    for element in found:
+        print(element.text)
+    return 0

@@ -1,0 +1,24 @@
+"""The verb `pkg prefix`: the folder into which a package is installed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.ros import index
+from grader.ros2.completion import completes, packages
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    completes(parser.add_argument("package_name", help="name of the package"), packages)
+    parser.add_argument("--share", action="store_true", help="print its share folder instead")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print it."""
+    prefix = index.prefix_of(args.package_name, "Package not found")
+    print(prefix / "share" / args.package_name if args.share else prefix)
+    return 0

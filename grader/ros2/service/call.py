@@ -1,0 +1,81 @@
+"""The verb `service call`: call a service and print its answer."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from grader.graph.names import absolute, hidden
+from grader.ros import values
+from grader.ros.failure import Ros2Error, did_you_mean
+from grader.ros2.completion import completes, prototype, service_types, services
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rclpy.node import Node
+
+_POLL_S = 0.02
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    completes(parser.add_argument("service_name", help="name of the service, as in /spawn"), services)
+    completes(parser.add_argument("service_type", help="its type, as in turtlesim/srv/Spawn"), service_types)
+    source = parser.add_mutually_exclusive_group()
+    given = source.add_argument(
+        "values", nargs="?", default="{}", help='the request, as in "{x: 2.0}"; without it all values are zero'
+    )
+    completes(given, prototype("service_type", "srv", "Request"))
+    source.add_argument("--stdin", action="store_true", help="read the request from standard input")
+    parser.add_argument("-r", "--rate", metavar="N", type=float, help="call again and again, N times per second")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Call it once, or with --rate until Ctrl-C.
+
+    Raises:
+        Ros2Error: the type is not installed, or the request does not fit it.
+    """
+    from grader.graph.discovery import cli_node, nap, settle, spin_until
+
+    if args.rate is not None and not args.rate > 0:
+        message = "rate must be greater than zero"
+        raise Ros2Error(message)
+    made = values.load_type(args.service_type, "srv", "service type")
+    given = sys.stdin.read() if args.stdin else args.values
+    request = values.fill(made.Request(), values.parse(given, dictionary=False))
+    name = absolute(args.service_name)
+    package, last = args.service_type.split("/")[0], args.service_type.split("/")[-1]
+    with cli_node(f"_ros2cli_requester_{package}_{last}") as node:
+        try:
+            client = node.create_client(made, name)
+        except Exception as error:
+            message = f"The service '{args.service_name}' cannot be called: {str(error).splitlines()[0]}"
+            raise Ros2Error(message) from error
+        settle(node, client.service_is_ready)
+        if not client.service_is_ready():
+            print("waiting for service to become available...", flush=True)
+            _say_why(node, name, args.service_type)
+            while not client.service_is_ready():
+                time.sleep(_POLL_S)
+        while True:
+            print(f"requester: making request: {request!r}\n", flush=True)
+            asked = time.monotonic()
+            future = client.call_async(request)
+            spin_until(node, future.done)
+            print(f"response:\n{future.result()!r}\n", flush=True)
+            if args.rate is None:
+                return 0
+            nap(asked + 1 / args.rate - time.monotonic())
+
+
+def _say_why(node: Node, name: str, asked: str) -> None:
+    """Say what may be wrong when nobody answers: the type, or the name."""
+    found: dict[str, Any] = {name: types for name, types in node.get_service_names_and_types() if not hidden(name)}
+    # Our own client is one of those who say what type it has.
+    others = [kind for kind in found.pop(name, []) if kind != asked]
+    hint = f"The service {name} has the type {', '.join(others)}." if others else did_you_mean(name, found)
+    if hint:
+        print(hint, file=sys.stderr, flush=True)

@@ -1,0 +1,32 @@
+"""The verb `service type`: the type of a service."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.graph.look import shown, types_of
+from grader.ros.failure import Ros2Error, did_you_mean
+from grader.ros2.completion import completes, services
+from grader.ros2.looking import look
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    completes(parser.add_argument("service_name", help="full name of the service, as in /spawn"), services)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print it: a line for each type, should nodes disagree.
+
+    Raises:
+        Ros2Error: there is no such service.
+    """
+    graph = look(args)
+    types = types_of(tuple(shown(graph.services, all_of_them=args.include_hidden_services)), args.service_name)
+    if not types:
+        raise Ros2Error(did_you_mean(args.service_name, graph.service_names()))
+    print("\n".join(types))
+    return 0

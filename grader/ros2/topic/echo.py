@@ -1,0 +1,141 @@
+"""The verb `topic echo`: print what arrives on a topic."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+from grader.ros import values
+from grader.ros.failure import Ros2Error
+from grader.ros.rendering import Form, is_message, to_csv, to_yaml
+from grader.ros2 import qos
+from grader.ros2.completion import completes, topic_types, topics
+from grader.ros2.form import add_form, form_of
+from grader.ros2.options import add_look, positive_float
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable
+
+    from rclpy.node import Node
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    add_look(parser)
+    completes(parser.add_argument("topic_name", help="name of the topic, as in /turtle1/pose"), topics)
+    kind = parser.add_argument("message_type", nargs="?", help="its type, if nobody publishes yet")
+    completes(kind, topic_types)
+    qos.add_qos(parser, "sensor_data")
+    parser.add_argument(
+        "--csv", action="store_true", help="print each message on one line, with commas between the values"
+    )
+    parser.add_argument(
+        "--field", action="append", help="print only this part, as in linear.x; may be given several times"
+    )
+    add_form(parser)
+    parser.add_argument("--no-lost-messages", action="store_true", help="do not tell when a message is lost")
+    parser.add_argument("--raw", action="store_true", help="print the bytes of the messages")
+    parser.add_argument(
+        "--filter", dest="filter_expr", help="print only messages m for which this Python expression is true"
+    )
+    parser.add_argument("--once", action="store_true", help="print one message, then end")
+    parser.add_argument("--timeout", metavar="N", type=positive_float, help="end after N seconds")
+    parser.add_argument(
+        "--include-message-info", "-i", action="store_true", help="print time stamps and sequence numbers too"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print until Ctrl-C, or for as long as the options say.
+
+    Raises:
+        Ros2Error: the topic's type cannot be found, or it has no such field.
+    """
+    from grader.graph.discovery import cli_node, spin_until
+    from grader.ros2.topic import ends
+    from grader.ros2.topic.subscribe import chosen_qos, subscribe
+
+    for field in args.field or ():
+        if not field.strip("."):
+            message = f"Invalid field value '{field}'"
+            raise Ros2Error(message)
+    printer = Printer(args)
+    with cli_node(use_sim_time=args.use_sim_time) as node:
+        topic = ends.expanded(node, args.topic_name)
+        ends.find(node, topic, args)
+        profile = chosen_qos(node, topic, args)
+        made = _class(node, topic, args)
+        for field in args.field or () if not args.raw else ():
+            values.field(made(), field, complete=False)
+        subscribe(node, made, topic, printer.show, profile, args)
+        end = time.monotonic() + args.timeout if args.timeout else None
+        spin_until(node, lambda: args.once and printer.printed > 0, end - time.monotonic() if end else None)
+    return 0
+
+
+def _class(node: Node, topic: str, args: argparse.Namespace) -> Any:  # noqa: ANN401
+    from grader.ros2.topic import ends
+
+    if args.message_type:
+        return values.load_type(args.message_type, "msg")
+    made = ends.type_of(node, topic, args.topic_name)
+    if made is None:
+        ends.not_published(args.topic_name)
+        raise Ros2Error(ends.nearest_topic(node, topic, "Could not determine the type for the passed topic"))
+    return made
+
+
+def matching(expression: str) -> Callable[[Any], bool]:
+    """Whether a Python expression of the message m is true.
+
+    Raises:
+        Ros2Error: it is not Python; the function raises it too, should it fail for a message.
+    """
+    try:
+        code = compile(expression, "<filter>", "eval")
+    except (SyntaxError, ValueError) as error:
+        message = f"The filter is not a Python expression: {error}"
+        raise Ros2Error(message) from error
+
+    def holds(m: Any) -> bool:  # noqa: ANN401
+        try:
+            return bool(eval(code, {"m": m}))
+        except Exception as error:
+            message = f"The filter '{expression}' failed: {type(error).__name__}: {error}"
+            raise Ros2Error(message) from error
+
+    return holds
+
+
+class Printer:
+    """Prints messages as the options ask for; `printed` counts them."""
+
+    def __init__(self, args: argparse.Namespace) -> None:
+        self.printed = 0
+        self._args = args
+        self._form: Form = form_of(args)
+        self._wanted = matching(args.filter_expr) if args.filter_expr else None
+
+    def show(self, message: Any, info: dict[str, Any]) -> None:  # noqa: ANN401
+        """Print a message; `info` is what rclpy tells about its way."""
+        if self._args.once and self.printed:
+            return
+        parts = [values.field(message, field) for field in self._args.field or ()] or [message]
+        if self._wanted is not None and not self._wanted(parts[0] if len(parts) == 1 else message):
+            return
+        self.printed += 1
+        print(self._text(parts, info if self._args.include_message_info else {}), end="", flush=True)
+
+    def _text(self, parts: list[Any], info: dict[str, Any]) -> str:
+        if not any(map(is_message, parts)) and not (self._args.csv and len(parts) > 1):
+            # The value itself, as Python writes it; the bytes of a message with --raw.
+            before = f"---Got new message, message info:---\n{info}\n---Message data:---\n" if info else ""
+            return before + "".join(f"{part}\n---\n" for part in parts)
+        if self._args.csv:
+            return ",".join([*map(str, info.values()), *(to_csv(part, self._form) for part in parts)]) + "\n"
+        import yaml
+
+        before = yaml.safe_dump(info) + "---\n" if info else ""
+        texts = (to_yaml(part, self._form) if is_message(part) else f"{part}\n" for part in parts)
+        return before + "".join(f"{text}---\n" for text in texts)

@@ -1,0 +1,133 @@
+"""The verb `topic hz`: how often messages arrive."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from grader.ros2.completion import completes, topics
+from grader.ros2.options import add_spin, positive_int
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable, Collection
+
+WINDOW = 10000
+PRINTED_EVERY_NS = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Rate:
+    """What a row of times between messages says; times in s, the rate in Hz, `window` counts the times."""
+
+    mean_hz: float
+    min_s: float
+    max_s: float
+    std_dev_s: float
+    window: int
+
+    def __str__(self) -> str:
+        return (
+            f"average rate: {self.mean_hz:.3f}\n\tmin: {self.min_s:.3f}s max: {self.max_s:.3f}s "
+            f"std dev: {self.std_dev_s:.5f}s window: {self.window}"
+        )
+
+
+def rate(gaps_ns: Collection[int]) -> Rate:
+    """The rate of messages with these times between them (ns), at least one. All of them zero: a rate of 0."""
+    mean = sum(gaps_ns) / len(gaps_ns)
+    deviation = math.sqrt(math.fsum((gap - mean) ** 2 for gap in gaps_ns) / len(gaps_ns))
+    hertz = 1e9 / mean if mean > 0 else 0.0
+    return Rate(hertz, min(gaps_ns) * 1e-9, max(gaps_ns) * 1e-9, deviation * 1e-9, len(gaps_ns))
+
+
+class Arrivals:
+    """The times between the last messages, by a clock that may be a simulated one and may be set back."""
+
+    def __init__(self, window: int) -> None:
+        self._gaps_ns: deque[int] = deque(maxlen=window)
+        self._last_ns = -1
+        self._told_ns = 0
+
+    def add(self, now_ns: int) -> None:
+        """A message has arrived."""
+        if now_ns == 0:
+            # Simulated time that has not begun.
+            if self._gaps_ns:
+                print("time has reset, resetting counters", flush=True)
+                self._gaps_ns.clear()
+            return
+        if 0 <= self._last_ns <= now_ns:
+            self._gaps_ns.append(now_ns - self._last_ns)
+        else:
+            self._gaps_ns.clear()
+        self._last_ns = now_ns
+
+    def have_news(self) -> bool:
+        """Whether a message has come at least a second after the last news."""
+        if not self._gaps_ns:
+            return False
+        if self._told_ns == 0:
+            self._told_ns = self._last_ns
+        return self._last_ns >= self._told_ns + PRINTED_EVERY_NS
+
+    def news(self) -> Rate:
+        """The rate, once there are news."""
+        self._told_ns = self._last_ns
+        return rate(self._gaps_ns)
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    completes(parser.add_argument("topic_name", help="name of the topic, as in /turtle1/pose"), topics)
+    parser.add_argument(
+        "--window",
+        "-w",
+        type=positive_int,
+        default=WINDOW,
+        metavar="WINDOW",
+        help=f"measure over this many messages at most (default: {WINDOW})",
+    )
+    parser.add_argument(
+        "--filter",
+        dest="filter_expr",
+        metavar="EXPR",
+        help="count only messages m for which this Python expression is true",
+    )
+    parser.add_argument(
+        "--wall-time", action="store_true", help="measure in real time, also where a simulation gives the time"
+    )
+    add_spin(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print the rate every second in which something arrived, until Ctrl-C."""
+    import rclpy
+    from rclpy.clock import Clock
+    from rclpy.clock_type import ClockType
+    from rclpy.qos import qos_profile_sensor_data
+
+    from grader.graph.discovery import cli_node, spin_until
+    from grader.ros2.topic import ends
+    from grader.ros2.topic.echo import matching
+
+    wanted: Callable[[Any], bool] | None = matching(args.filter_expr) if args.filter_expr else None
+    arrivals = Arrivals(args.window)
+    with cli_node(use_sim_time=args.use_sim_time) as node:
+        topic = ends.expanded(node, args.topic_name)
+        ends.find(node, topic, args)
+        made = ends.wait_for_type(node, topic, args.topic_name)
+        clock = Clock(clock_type=ClockType.SYSTEM_TIME) if args.wall_time else node.get_clock()
+
+        def count(message: Any) -> None:  # noqa: ANN401
+            if wanted is None or wanted(message):
+                arrivals.add(clock.now().nanoseconds)
+
+        # Without a filter, what is in a message does not matter, and reading it would take time.
+        node.create_subscription(made, topic, count, qos_profile_sensor_data, raw=wanted is None)
+        while rclpy.ok():
+            spin_until(node, arrivals.have_news)
+            print(arrivals.news(), flush=True)
+    return 0

@@ -1,0 +1,47 @@
+"""The verb `topic info`: the type of a topic, and who publishes and subscribes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.graph.look import types_of
+from grader.ros.failure import Ros2Error, did_you_mean
+from grader.ros2.completion import completes, topics
+from grader.ros2.looking import look
+from grader.ros2.options import add_look
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    add_look(parser)
+    completes(parser.add_argument("topic_name", help="full name of the topic, as in /turtle1/pose"), topics)
+    parser.add_argument(
+        "--verbose",
+        "-v",
+        action="store_true",
+        help="print every publisher and subscription: node, type, type hash, GID and QoS profile",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print it.
+
+    Raises:
+        Ros2Error: there is no such topic.
+    """
+    graph = look(args)
+    name = args.topic_name
+    types = types_of(graph.topics, name)
+    if not types:
+        raise Ros2Error(did_you_mean(name, graph.topic_names(), f"Unknown topic '{name}'"))
+    end = "\n\n" if args.verbose else "\n"
+    print(f"Type: {types[0] if len(types) == 1 else list(types)}", end=end)
+    for kind, publishes in (("Publisher", True), ("Subscription", False)):
+        found = graph.ends(name, publishes=publishes)
+        print(f"{kind} count: {len(found)}", end=end)
+        for one in found if args.verbose else ():
+            print(one.text, end=end)
+    return 0

@@ -1,0 +1,166 @@
+"""The verb `topic pub`: publish a message, once or again and again."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from grader.graph.names import absolute
+from grader.ros import values
+from grader.ros.failure import Ros2Error
+from grader.ros2 import qos
+from grader.ros2.completion import completes, prototype, topic_types, topics
+from grader.ros2.options import add_spin, positive_float
+
+if TYPE_CHECKING:
+    import argparse
+
+    from rclpy.node import Node
+
+_TOLD_EVERY_S = 1.0
+_ACKNOWLEDGED_S = 1.0
+"""Ctrl-C is not noticed while messages are waited to be acknowledged."""
+_POLL_S = 0.01
+
+
+def nonnegative_int(text: str) -> int:
+    """A whole number from 0 on, for argparse, which names this function in its error."""
+    value = int(text)
+    if value < 0:
+        raise ValueError
+    return value
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    completes(parser.add_argument("topic_name", help="name of the topic, as in /turtle1/cmd_vel"), topics)
+    completes(parser.add_argument("message_type", help="its type, as in geometry_msgs/msg/Twist"), topic_types)
+    source = parser.add_mutually_exclusive_group()
+    given = source.add_argument(
+        "values", nargs="?", default="{}", help='the values, as in "{linear: {x: 2.0}}"; without them all are zero'
+    )
+    completes(given, prototype("message_type", "msg"))
+    source.add_argument("--stdin", action="store_true", help="read the values from standard input")
+    parser.add_argument(
+        "-r", "--rate", metavar="N", type=positive_float, default=1.0, help="messages per second (default: 1)"
+    )
+    parser.add_argument(
+        "-p", "--print", metavar="N", type=int, default=1, help="print only every N-th message (default: 1)"
+    )
+    times = parser.add_mutually_exclusive_group()
+    times.add_argument("-1", "--once", action="store_true", help="publish one message, then end")
+    times.add_argument("-t", "--times", type=nonnegative_int, default=0, help="publish so many messages, then end")
+    parser.add_argument(
+        "-w",
+        "--wait-matching-subscriptions",
+        type=nonnegative_int,
+        help="wait for so many subscriptions first (default: 1 with --once or --times, else 0)",
+    )
+    parser.add_argument(
+        "--max-wait-time-secs", type=positive_float, help="wait for them at most so many seconds (default: for ever)"
+    )
+    parser.add_argument(
+        "--keep-alive",
+        metavar="N",
+        type=positive_float,
+        default=0.1,
+        help="keep the node for N seconds after the last message (default: 0.1)",
+    )
+    parser.add_argument("-n", "--node-name", help="name of the node that publishes")
+    qos.add_qos(parser, "default")
+    add_spin(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Publish until Ctrl-C, or as often as asked for.
+
+    Raises:
+        Ros2Error: the type is not installed, a value does not fit, or the subscriptions do not come.
+    """
+    from grader.graph.discovery import cli_node, settle
+
+    made = values.load_type(args.message_type, "msg")
+    stamps: list[values.Stamper] = []
+    given = values.parse(sys.stdin.read() if args.stdin else args.values)
+    message = values.fill(made(), given, stamps)
+    times = 1 if args.once else args.times
+    wanted = args.wait_matching_subscriptions
+    wanted = int(times != 0) if wanted is None else wanted
+    if wanted == 0 and args.max_wait_time_secs is not None:
+        wrong = "--max-wait-time-secs option is only effective with --wait-matching-subscriptions, --once or --times"
+        raise Ros2Error(wrong)
+    topic = absolute(args.topic_name)
+    with cli_node(args.node_name, use_sim_time=args.use_sim_time) as node:
+        try:
+            publisher = node.create_publisher(made, topic, qos.profile(args))
+        except Exception as error:
+            wrong = f"The topic '{args.topic_name}' cannot be published on: {str(error).splitlines()[0]}"
+            raise Ros2Error(wrong) from error
+        # Who is there already shall get the first message too.
+        settle(node, lambda: publisher.get_subscription_count() >= max(wanted, 1), args.spin_time)
+        if wanted:
+            _wait_for_subscriptions(node, publisher, topic, wanted, args.max_wait_time_secs)
+        print("publisher: beginning loop", flush=True)
+        _publish(node, publisher, message, stamps, times, args)
+    return 0
+
+
+def _publish(
+    node: Node,
+    publisher: Any,  # noqa: ANN401
+    message: Any,  # noqa: ANN401
+    stamps: list[values.Stamper],
+    times: int,
+    args: argparse.Namespace,
+) -> None:
+    """Publish `times` messages, 0 for ever, and leave the last one time to arrive."""
+    from rclpy.duration import Duration
+
+    from grader.graph.discovery import nap, spin_until
+
+    begun = time.monotonic()
+    sent = 0
+    while not times or sent < times:
+        left = begun + sent / args.rate - time.monotonic()
+        # The node's own clock has to hear of simulated time.
+        spin_until(node, lambda: False, left) if args.use_sim_time else nap(left)
+        now = node.get_clock().now().to_msg()
+        for stamp in stamps:
+            stamp(now)
+        publisher.publish(message)
+        sent += 1
+        if args.print and sent % args.print == 0:
+            print(f"publishing #{sent}: {message!r}\n", flush=True)
+    ended = time.monotonic()
+    publisher.wait_for_all_acked(Duration(seconds=min(args.keep_alive, _ACKNOWLEDGED_S)))
+    nap(ended + args.keep_alive - time.monotonic())
+
+
+def _wait_for_subscriptions(
+    node: Node,
+    publisher: Any,  # noqa: ANN401
+    topic: str,
+    wanted: int,
+    most_s: float | None,
+) -> None:
+    from grader.ros2.topic import ends
+
+    begun = time.monotonic()
+    told_s = begun - _TOLD_EVERY_S
+    hint = ends.nearest_topic(node, topic)
+    while publisher.get_subscription_count() < wanted:
+        now = time.monotonic()
+        if now - told_s >= _TOLD_EVERY_S:
+            told_s = now
+            print(f"Waiting for at least {wanted} matching subscription(s)...", flush=True)
+            if hint:
+                print(hint, file=sys.stderr, flush=True)
+                hint = ""
+        if most_s is not None and now - begun >= most_s:
+            message = (
+                f"Timed out waiting for subscribers: Expected {wanted} subcribers but only got "
+                f"{publisher.get_subscription_count()} subscribers"
+            )
+            raise Ros2Error(message)
+        time.sleep(_POLL_S)

@@ -1,0 +1,63 @@
+"""A package that `ros2` does not find, although it is on this machine: built but not sourced, or not built."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_DEEPEST = 4
+"""Levels below src/ in which packages are looked for."""
+_MOST = 2000
+"""Folders that are looked into, at most."""
+
+
+def where_it_is(package: str) -> str:
+    """A sentence that says where the package is and what to type; empty when it is nowhere near."""
+    for workspace in _workspaces():
+        for built in (workspace / "install" / package, workspace / "install"):
+            if (built / "share" / package / "package.xml").is_file():
+                setup = _shown(workspace / "install/setup.bash")
+                return f"It is built, and not sourced in this terminal. Type: source {setup}"
+    for workspace in _workspaces():
+        for manifest in _manifests(workspace / "src"):
+            if _name(manifest) == package:
+                typed = f"cd {_shown(workspace)} && colcon build && source install/setup.bash"
+                return f"It lies in {_shown(manifest.parent)}, and is not built. Type: {typed}"
+    return ""
+
+
+def _workspaces() -> Iterator[Path]:
+    """The folders that look like workspaces: this one and those above it, and the one of the tutorials."""
+    here = Path.cwd()
+    for folder in dict.fromkeys([here, *here.parents, Path.home() / "ros2_ws"]):
+        if folder != folder.parent and any((folder / name).is_dir() for name in ("install", "src")):
+            yield folder
+
+
+def _manifests(folder: Path) -> Iterator[Path]:
+    for looked, (place, folders, files) in enumerate(os.walk(folder), 1):
+        depth = len(Path(place).relative_to(folder).parts)
+        if "package.xml" in files:
+            yield Path(place, "package.xml")
+        if depth >= _DEEPEST or looked >= _MOST or "package.xml" in files or "COLCON_IGNORE" in files:
+            folders.clear()
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+
+
+def _name(manifest: Path) -> str:
+    try:
+        match = re.search(r"<name>\s*(.*?)\s*</name>", manifest.read_text("utf-8"))
+    except (OSError, UnicodeDecodeError):
+        return ""
+    return match[1] if match else ""
+
+
+def _shown(path: Path) -> str:
+    """A path as a user would type it."""
+    home = Path.home()
+    return f"~/{path.relative_to(home)}" if path.is_relative_to(home) else str(path)
