@@ -33,17 +33,20 @@ def run_child(command: Sequence[str]) -> int:
     def prepare() -> None:
         for number in (signal.SIGINT, *_PASSED_ON):
             signal.signal(number, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
         library.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
         if os.getppid() != ours:
             os._exit(1)
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Until there is somebody to pass them on to, requests to end wait.
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
     try:
         process = subprocess.Popen(command, preexec_fn=prepare)
-    except OSError as error:
+    except (OSError, subprocess.SubprocessError) as error:
         message = (
-            f"{command[0]} could not be started: {error.strerror}. Does its first line name an interpreter that is "
-            "there?"
+            f"{command[0]} could not be started: {getattr(error, 'strerror', error)}. Does its first line name an "
+            "interpreter that is there?"
         )
         raise Ros2Error(message) from error
 
@@ -52,6 +55,7 @@ def run_child(command: Sequence[str]) -> int:
 
     for number in _PASSED_ON:
         signal.signal(number, pass_on)
+    signal.pthread_sigmask(signal.SIG_SETMASK, before)
     code = process.wait()
     if code < 0:
         print(_SAYS, signal.strsignal(-code), flush=True)

@@ -214,16 +214,16 @@ def interfaces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("interfaces")
 def test_shows_what_a_field_consists_of() -> None:
-    side = ["\tfloat64 length 1.5", "\tstring<=5 name '#1'"]
+    # As in the real one, the # of a comment that is left out stays where a space follows it.
+    side = ["\tfloat64 length 1.5 #", "\tstring<=5 name '#1' #"]
     top = ["int32 MOST=3", "# four of them", "Side[4] sides", "things/Side[] more # too", "bool[<=3] flags"]
     box = [*top[:3], *side, top[3], *side, top[4]]
     assert list(definition.lines("things/msg/Box")) == box
-    # As the real one: the # of a comment stays where a space follows it.
     plain = [line.replace(" # too", " #") for line in box if not line.startswith("#")]
     assert list(definition.lines("things/msg/Box", comments=False)) == plain
     whole = ["\t# a side", "\tfloat64 length 1.5 # in m", "", "\tstring<=5 name '#1' # its name"]
     assert list(definition.lines("things/msg/Box", nested_comments=True))[3:7] == whole
     opened = list(definition.lines("things/srv/Open"))
     assert opened[0] == "Box box"
-    assert "\t\tfloat64 length 1.5" in opened
+    assert "\t\tfloat64 length 1.5 #" in opened
     assert opened[-2:] == ["---", "bool done"]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.tests.ros2.world import World, world
+from grader.tests.waiting import HANG_S, until_gone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -61,17 +62,32 @@ def tools(still: World, tmp_path: Path) -> World:
 
 def test_run_passes_arguments_and_the_exit_code_on(tools: World) -> None:
     done = tools.run("ros2 run tools say one 'two words' --ros-args -p x:=1 --prefix")
-    assert (done.stdout, done.code) == ("one|two words|--ros-args|-p|x:=1|--prefix|\n", 7)
+    assert done.stdout.splitlines() == [
+        "one|two words|--ros-args|-p|x:=1|--prefix|",
+        "[ros2run]: Process exited with failure 7",
+    ]
+    assert done.code == 7
 
 
 def test_run_starts_it_with_a_prefix(tools: World) -> None:
-    assert tools.run("ros2 run --prefix 'sh -c \"exec $0 $@\"' tools say one").stdout == "one|\n"
+    assert tools.run("ros2 run --prefix 'sh -c \"exec $0 $@\"' tools say one").stdout.startswith("one|\n")
     assert tools.run("ros2 run --prefix echo tools say one").stdout.split()[1:] == ["one"]
 
 
-def test_run_passes_signals_on(tools: World) -> None:
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        assert tools.start("ros2 run tools wait", "waits").stop(number) == -number
+def test_run_tells_by_which_signal_the_program_ended(tools: World) -> None:
+    for number, name in ((signal.SIGINT, "Interrupt"), (signal.SIGTERM, "Terminated"), (signal.SIGHUP, "Hangup")):
+        running = tools.start("ros2 run tools wait", "waits")
+        assert running.stop(number) == 256 - number
+        assert running.lines == ["waits", f"[ros2run]: {name}"]
+
+
+def test_who_is_asked_to_end_alone_takes_the_program_along(tools: World) -> None:
+    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGKILL):
+        running = tools.start("ros2 run tools wait", "waits")
+        program = running.program
+        running.process.send_signal(number)
+        running.process.wait(HANG_S)
+        until_gone(program)
 
 
 def test_run_of_what_cannot_be_started(tools: World) -> None:
@@ -156,7 +172,12 @@ def test_whoever_is_stopped_leaves_the_graph(still: World) -> None:
 
 def test_echo_of_a_part(still: World) -> None:
     assert still.run("ros2 topic echo --once /turtle1/pose --field x").stdout == "5.544444561004639\n---\n"
-    assert still.run("ros2 topic echo --once /turtle1/pose --field x --csv").stdout == "5.544444561004639\n"
+    assert still.run("ros2 topic echo --once /turtle1/pose --field x --csv").stdout == "5.544444561004639\n---\n"
+    both = still.run("ros2 topic echo --once /turtle1/pose --field x --field y").stdout
+    assert both == "5.544444561004639\n---\n" * 2
+    assert still.run("ros2 topic echo --once --csv /turtle1/pose --field x --field y").stdout == (
+        "5.544444561004639,5.544444561004639\n"
+    )
 
 
 def test_what_is_published_arrives(still: World) -> None:
@@ -199,7 +220,7 @@ def test_options_of_lists(still: World) -> None:
         "    /turtlesim [turtlesim/action/RotateAbsolute]\n"
     )
     assert still.run("ros2 service find std_srvs/srv/Empty").stdout == "/clear\n/reset\n"
-    assert "/turtle1/rotate_absolute/_action/status" in still.run("ros2 topic list -a").stdout
+    assert "/turtle1/rotate_absolute/_action/status" in still.run("ros2 topic list --include-hidden-topics").stdout
 
 
 def test_types_and_interfaces_work_together(still: World) -> None:

@@ -49,6 +49,11 @@ class Running:
                 self._news.notify_all()
         self._ended.set()
 
+    @property
+    def program(self) -> int:
+        """The process that `ros2 run` has started, by its id."""
+        return children(self.process.pid)[0]
+
     def wait_for(self, text: str, times: int = 1) -> None:
         """Wait until so many lines contain `text`."""
         with self._news:
@@ -62,6 +67,11 @@ class Running:
         code = self.process.wait(HANG_S)
         assert self._ended.wait(HANG_S), "something that it started goes on"
         return code
+
+
+def children(pid: int) -> list[int]:
+    """The processes that a process has started and that have not ended, by their ids."""
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
 
 
 @dataclass

@@ -13,7 +13,7 @@ import pytest
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
-from grader.tests.ros2.world import World, world
+from grader.tests.ros2.world import World, children, world
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,8 +57,7 @@ def test_grader_sim_can_draw_in_the_terminal_and_says_when_there_is_none(alone: 
 
 def test_a_simulator_outlives_its_view(alone: World) -> None:
     simulator = alone.start("ros2 run turtlesim turtlesim_node --view", "Spawning turtle")
-    pid = simulator.process.pid
-    view = int(Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0])
+    (view,) = children(simulator.program)
     os.kill(view, signal.SIGKILL)
     simulator.wait_for("The view has ended; turtlesim goes on without it.")
     assert alone.run("ros2 topic echo /turtle1/pose --once").code == 0
@@ -68,9 +67,8 @@ def test_a_simulator_outlives_its_view(alone: World) -> None:
 def test_a_view_does_not_outlive_its_simulator(alone: World) -> None:
     simulator = alone.start("ros2 run turtlesim turtlesim_node --view", "Spawning turtle")
     whole(simulator)
-    pid = simulator.process.pid
-    view = int(Path(f"/proc/{pid}/task/{pid}/children").read_text().split()[0])
-    os.kill(pid, signal.SIGKILL)
+    (view,) = children(simulator.program)
+    os.kill(simulator.program, signal.SIGKILL)
     simulator.process.wait()
     ended = os.pidfd_open(view)
     try:
