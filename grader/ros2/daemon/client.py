@@ -6,10 +6,10 @@ import json
 import os
 import socket
 import subprocess
-import sys
 import time
 from typing import Any
 
+from grader.common.interpreter import interpreter
 from grader.ros2.daemon import place
 
 ANSWER_S = 8.0
@@ -47,12 +47,13 @@ def is_running() -> bool:
 def start(*, debug: bool = False) -> None:
     """Start a daemon; it ends at once if there is one. With `debug` it tells on this terminal what it does."""
     target = None if debug else subprocess.DEVNULL
+    server = interpreter("-m", "grader.ros2.daemon.server", *(["--debug"] if debug else []), searches=True)
     subprocess.Popen(
-        [sys.executable, "-m", "grader.ros2.daemon.server", *(["--debug"] if debug else [])],
+        server.argv,
         stdin=subprocess.DEVNULL,
         stdout=target,
         stderr=target,
-        env={**os.environ, "PYTHONSAFEPATH": "1"},
+        env=server.env,
         cwd="/",
         # Ctrl-C in this terminal is not for it.
         start_new_session=True,

@@ -6,36 +6,17 @@ import getpass
 import re
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.ros.failure import Ros2Error
 from grader.ros2.completion import completes, packages
+from grader.ros2.pkg.new_package import NewPackage
 
 if TYPE_CHECKING:
     import argparse
 
 _PYTHON_NAME = re.compile(r"[a-z][a-z0-9_]*")
-
-
-@dataclass(frozen=True)
-class NewPackage:
-    """What is to be made."""
-
-    name: str
-    folder: Path
-    shown: str
-    """The folder as messages name it: "./my_package"."""
-    build_type: str
-    package_format: int
-    description: str
-    maintainer: str
-    email: str
-    license: str
-    dependencies: tuple[str, ...]
-    node: str | None
-    library: str | None
 
 
 def add(parser: argparse.ArgumentParser) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
 
 if TYPE_CHECKING:
-    from grader.ros2.pkg.create import NewPackage
+    from grader.ros2.pkg.new_package import NewPackage
 
 _TEMPLATES = Path(__file__).parents[1] / "templates"
 _TEST_DEPENDS = {

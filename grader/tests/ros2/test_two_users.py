@@ -36,7 +36,12 @@ def users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Worl
         home.mkdir()
         monkeypatch.setattr(os, "getuid", lambda uid=uid: uid)
         worlds.append(
-            World(home, installation.users_environment(here, prefix, {"HOME": str(home), "PATH": os.environ["PATH"]}))
+            World(
+                home,
+                installation.users_environment(
+                    here, prefix, {"HOME": str(home), "PATH": os.environ["PATH"], "GRADER_ROS2_DAEMON": "0"}
+                ),
+            )
         )
     monkeypatch.undo()
     yield worlds
@@ -79,7 +84,7 @@ def test_two_real_users(everybodys_folder: Path) -> None:
         command = f"source <({sys.prefix}/bin/grader env) && echo $ROS_DOMAIN_ID && ros2 topic list -c"
         done = subprocess.run(
             ["bash", "-c", command],
-            env={"HOME": str(home), "PATH": "/usr/bin:/bin", "LANG": "C.UTF-8"},
+            env={"HOME": str(home), "PATH": "/usr/bin:/bin", "LANG": "C.UTF-8", "GRADER_ROS2_DAEMON": "0"},
             cwd=home,
             user=uid,
             group=uid,

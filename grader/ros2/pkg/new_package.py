@@ -1,0 +1,28 @@
+"""What `pkg create` was asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@dataclass(frozen=True)
+class NewPackage:
+    """What is to be made."""
+
+    name: str
+    folder: Path
+    shown: str
+    """The folder as messages name it: "./my_package"."""
+    build_type: str
+    package_format: int
+    description: str
+    maintainer: str
+    email: str
+    license: str
+    dependencies: tuple[str, ...]
+    node: str | None
+    library: str | None
