@@ -27,6 +27,8 @@ else:
 
 ROOT = Path(__file__).parent.parent.parent
 CASES = Path(__file__).parent / "cases"
+BASES = Path(__file__).parent / "bases"
+"""Packages as learners write them, which several cases change in a few places."""
 EXIT_CODES = {"passed": 0, "failed": 1, "usage": 2, "error": 3}
 
 
@@ -42,9 +44,9 @@ class Case:
     folder: Path = CASES
     """Where its files are; no key of expected.toml."""
     base: str = "03-circle-publisher"
-    """The solution that `files` is laid over; empty for none."""
+    """What `files` is laid over: the solution of a step, or a package in bases/; empty for none."""
     exercise: str = ""
-    """The exercise that it is graded by; empty for the one of the base."""
+    """The exercise that it is graded by; empty for the one of the base, where that is a solution."""
     edit: tuple[Mapping[str, str], ...] = ()
     """Changes of the base: in `file`, `old` becomes `new`, everywhere."""
     remove: tuple[str, ...] = ()
@@ -91,12 +93,21 @@ def read_cases(below: Path = CASES) -> tuple[Case, ...]:
     return tuple(read_case(folder) for folder in sorted(below.iterdir()) if (folder / "expected.toml").is_file())
 
 
+def base_of(case: Case) -> Path | None:
+    """The folder of what the case is laid over."""
+    if not case.base:
+        return None
+    return BASES / case.base if (BASES / case.base).is_dir() else ROOT / "solutions" / case.base
+
+
 def make_submission(case: Case, to: Path) -> Path:
     """Write what is handed in below the new folder `to`, and return its path."""
     to.mkdir(parents=True)
-    has_package = bool(case.base) and (ROOT / "solutions" / case.base / "my_robot_controller").is_dir()
-    package = to / "my_robot_controller" if has_package else to
-    if case.base:
+    base = base_of(case)
+    package = to / "my_robot_controller" if base is not None and (base / "my_robot_controller").is_dir() else to
+    if base is not None and base.parent == BASES:
+        shutil.copytree(base, to, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
+    elif base is not None:
         copy_solution(case.base, package)
     for edit in case.edit:
         text = (package / edit["file"]).read_text("utf-8")
