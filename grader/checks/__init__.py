@@ -1,1 +1,1 @@
-"""Checks: pure functions over the evidence of a submission. `judge.judge` runs them; one module a subject."""
+"""Checks: pure functions of the evidence of a submission. `judge.judge` runs them; each subject has one module."""

@@ -1,4 +1,4 @@
-"""Exercises read with the kinds of checks that there are: by their path, their name or a folder of the course."""
+"""Find and load exercises by path, by name or by a folder of the course."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 
 def find_exercise(name: str, course: Path | None = None) -> Exercise:
-    """The exercise with this id, or the only one whose id begins with `name`, as in "03" or "3". Raises UsageError."""
+    """Return the exercise with this id, or the only one whose id starts with `name`, such as "03" or "3".
+
+    Raises UsageError if there is none, or more than one.
+    """
     files = catalogue(course)
     name = f"{int(name):02}" if name.isascii() and name.isdigit() else name
     begin = [each for each in files if name and each.startswith(name)]
@@ -26,14 +29,14 @@ def find_exercise(name: str, course: Path | None = None) -> Exercise:
         return load_exercise(files[begin[0]])
     guess = nearest(name, files)
     hint = f"did you mean {guess}? " if guess else ""
-    several = f"several exercises begin with {name!r}" if begin else f"there is no exercise {name!r}"
+    several = f"several exercises start with {name!r}" if begin else f"there is no exercise {name!r}"
     named = begin or list(files)
     message = f"{several}: {hint}The exercises are {a_list(named, most=len(named))}."
     raise UsageError(message)
 
 
 def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | None:
-    """The exercise that a folder below exercises/ or solutions/ belongs to; None elsewhere."""
+    """Return the exercise of a folder below exercises/ or solutions/, or None for another folder."""
     parts = path.resolve().parts
     files = catalogue(course)
     for parent, name in zip(reversed(parts[:-1]), reversed(parts[1:]), strict=True):
@@ -43,11 +46,11 @@ def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | Non
 
 
 def load_exercise(path: Path) -> Exercise:
-    """The exercise in a file, or in the file exercise.toml of a folder.
+    """Return the exercise in a file, or in the file exercise.toml of a folder.
 
-    Raises UsageError that tells its author every problem: which key, what was seen, what is allowed.
+    Raises UsageError with every problem in the file: the key, its value, and the allowed values.
     """
-    from grader.checks.kinds import KINDS  # all checks with it: only where an exercise is read
+    from grader.checks.kinds import KINDS  # (imports all checks, so only where an exercise is read)
 
     file = path / FILE_NAME if path.is_dir() else path
     try:
@@ -59,7 +62,10 @@ def load_exercise(path: Path) -> Exercise:
 
 
 def exercise_from(sources: Sources) -> Exercise:
-    """The exercise of the course with an instructor's private checks. Raises UsageError naming every problem."""
+    """Return an exercise of the course with an instructor's private checks.
+
+    Raises UsageError with every problem in the files.
+    """
     from grader.checks.kinds import KINDS
 
     return sources.exercise(catalogue()[sources.id].parent, KINDS)

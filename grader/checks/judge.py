@@ -1,4 +1,4 @@
-"""Judge a submission: every check of the exercise, each after those that it needs."""
+"""Judge a submission: run every check of the exercise, each after the checks that it needs."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 
 def judge(evidence: Evidence) -> tuple[Outcome, ...]:
-    """The outcome of every check, in the order of the exercise.
+    """Return the outcome of every check, in the order of the exercise.
 
-    A check is skipped when one that it needs did not pass, and names the first cause. A check that needs what the
-    machine could not make (`evidence.fault`) is an `error`, and so is what needs that one.
+    A check is skipped when a check that it needs did not pass; its message names the first such check. A check whose
+    evidence the machine could not produce (`evidence.fault`) is an `error`, and so is every check that needs it.
     """
     specs = {spec.id: spec for spec in evidence.exercise.checks}
     findings: dict[str, Finding] = {}
@@ -40,19 +40,19 @@ def judge(evidence: Evidence) -> tuple[Outcome, ...]:
 
 @dataclass(frozen=True)
 class Early:
-    """What is certain before anything of a submission has run: outcomes that failed, ids that cannot pass any more."""
+    """What is certain before any code of the submission runs: failed outcomes, and ids of checks that cannot pass."""
 
     failed: tuple[Outcome, ...]
     blocked: frozenset[str]
 
     def may_run(self, evidence: Evidence) -> bool:
-        """Whether the trial may still be wanted: some check of it is not blocked."""
+        """Return whether the trial may still be needed: at least one of its checks is not blocked."""
         specs = evidence.exercise.checks
         return any(_of_this_trial(evidence, spec) and spec.id not in self.blocked for spec in specs)
 
 
 def judge_early(evidence: Evidence) -> Early:
-    """Judge what the files alone tell: nothing is built, no process starts."""
+    """Judge the files alone: nothing is built and no process starts."""
     failed_: list[Outcome] = []
     blocked: set[str] = set()
     for spec in _in_order(evidence.exercise.checks):
@@ -62,7 +62,7 @@ def judge_early(evidence: Evidence) -> Early:
             continue
         try:
             finding = kind.judge_early(evidence.from_trial(spec.trial), spec.params)
-        except Exception:  # (it is judged once more in the end, and told then)
+        except Exception:  # (the check runs again at the end and reports the error then)
             continue
         if finding is not None and finding.status is Status.FAILED and not kind.advice:
             blocked.add(spec.id)
@@ -71,7 +71,7 @@ def judge_early(evidence: Evidence) -> Early:
 
 
 def wants_trial(evidence: Evidence) -> bool:
-    """True when some check of this trial would be judged if there were a recording: else it needs not run."""
+    """Return whether any check of this trial would use a recording. If not, the trial does not have to run."""
     outcomes = {outcome.id: outcome for outcome in judge(evidence)}
     return any(
         _of_this_trial(evidence, spec) and not any(_blocked(outcomes[need]) for need in spec.needs)
@@ -80,12 +80,12 @@ def wants_trial(evidence: Evidence) -> bool:
 
 
 def near_edge(outcomes: Iterable[Outcome]) -> bool:
-    """True when some measured value is so near a tolerance's edge that simulated time must not decide."""
+    """Return whether a measured value is so close to the edge of its tolerance that simulated time must not decide."""
     return any(outcome.finding.near_edge for outcome in outcomes)
 
 
 def of_this_trial(evidence: Evidence) -> tuple[Outcome, ...]:
-    """The outcomes of the checks that judge this trial's recording."""
+    """Return the outcomes of the checks that judge the recording of this trial."""
     specs = evidence.exercise.checks
     return tuple(
         outcome for spec, outcome in zip(specs, judge(evidence), strict=True) if _of_this_trial(evidence, spec)
@@ -101,7 +101,7 @@ def _blocked(outcome: Outcome) -> bool:
 
 
 def _in_order(specs: Iterable[CheckSpec]) -> list[CheckSpec]:
-    """Each check after all that it needs, else in the order of the exercise (which was read without circles)."""
+    """Sort the checks so that each comes after all that it needs (the exercise was read without cycles)."""
     waiting = list(specs)
     done: dict[str, CheckSpec] = {}
     while waiting:
@@ -120,37 +120,37 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
     if kind.stage == "trial" and evidence.run.overwhelmed is not None:
         return _overwhelmed(evidence.run.overwhelmed)
     if not made[kind.stage]:
-        return Finding(Status.SKIPPED, "Not judged, since the node was not run.")
+        return Finding(Status.SKIPPED, "Not judged, because the node was not run.")
     try:
         return kind.judge(evidence, spec.params)
     except MachineError as error:
         return Finding(Status.ERROR, str(error))
-    except Exception as error:  # (one broken check must not take a class's other outcomes with it)
+    except Exception as error:  # (one failing check must not lose the other outcomes of a class)
         return unreadable(in_words(error))
 
 
 def unreadable(how: str) -> Finding:
-    """A failed finding on what the grader could not read: nobody may choose that the grader breaks.
+    """Return a failed finding about a submission that the grader cannot read.
 
-    A check sees nothing but what a submission has made, so whatever breaks it comes from there.
+    It is not an error: a check reads only what the submission produced, so only the submission can make it fail.
     """
     seen = f"The submission could not be read: {shorten(how, 150)}."
-    expected = "The grader can read what is handed in, and what it does."
-    cause = "Very large, very deep or damaged content does this. If yours is none of that, please report it."
+    expected = "The grader can read the submitted files and the data that the node sends."
+    cause = "Very large, deeply nested or damaged content can cause this. If yours is none of that, please report it."
     return failed("unreadable", seen, expected, cause)
 
 
 def in_words(error: Exception) -> str:
-    """An exception on one line; of ours, the text alone."""
+    """Return the exception on one line; of ours, the text alone."""
     if isinstance(error, TooLargeError):
         return str(error).rstrip(".")
     return f"{type(error).__name__}: {error}".rstrip(" :.")
 
 
 def _overwhelmed(how: str) -> Finding:
-    seen = f"The trial could not be finished: the node brought the simulator down ({shorten(how, 150)})."
-    expected = "The simulator goes on whatever is published or called at a sensible rate."
-    cause = "It sends without end, or what no simulator can read. If yours does neither, please report this."
+    seen = f"The trial could not be finished: the node made the simulator fail ({shorten(how, 150)})."
+    expected = "The simulator keeps running while the node publishes and calls services at a reasonable rate."
+    cause = "The node sends without a pause, or sends invalid data. If yours does neither, please report this."
     return failed("overwhelmed", seen, expected, cause)
 
 
@@ -158,7 +158,7 @@ def _because(cause: CheckSpec, finding: Finding) -> Finding:
     if finding.status is Status.ERROR:
         return finding
     named = "a hidden check" if cause.hidden else f'"{cause.title}"'
-    return Finding(Status.SKIPPED, f"Not judged, since {named} did not pass.")
+    return Finding(Status.SKIPPED, f"Not judged, because {named} did not pass.")
 
 
 def _outcome(spec: CheckSpec, finding: Finding) -> Outcome:

@@ -1,7 +1,7 @@
-"""Kind: a sort of check, with the parameters that exercise.toml may give it.
+"""Kind: a type of check, with the parameters that exercise.toml may set.
 
-The parameters of a kind are a dataclass beside the check; the functions `number`, `text`, `texts` and `choice` make its
-fields, so that name, default and what is allowed stand in one place and a new exercise needs no Python.
+The parameters of a kind are a dataclass next to the check function. The functions `number`, `string`, `strings` and
+`choice` create its fields, each with its name, default and allowed values. A new exercise needs no Python code.
 """
 
 # ruff: noqa: ANN401 (the functions below return what dataclasses.field returns)
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NoParams:
-    """Parameters of a kind that has none."""
+    """The parameters of a kind without parameters."""
 
 
 P = TypeVar("P")
@@ -33,10 +33,10 @@ P = TypeVar("P")
 
 @dataclass(frozen=True)
 class Kind(Generic[P]):
-    """A sort of check. `check` is pure: the same evidence and parameters give the same finding.
+    """A type of check. `check` is a pure function: the same evidence and parameters give the same finding.
 
-    `title` is the line a student reads when exercise.toml gives none. `about` says to the author of an exercise what is
-    checked (docs/kinds.md). `advice`: worth no points, fails no run.
+    `title` is the line that a student reads if exercise.toml has none. `about` tells the author of an exercise what is
+    checked (docs/kinds.md). A kind with `advice` is worth no points and never fails a submission.
     """
 
     name: str
@@ -47,22 +47,22 @@ class Kind(Generic[P]):
     about: str
     advice: bool = False
     early: Callable[[Evidence, P], Finding | None] | None = None
-    """What the files alone tell of a check that needs more: a failed finding that stands whatever comes, else None."""
+    """For a check that needs a build or a trial: the finding when the files alone show that it fails, else None."""
 
     def parameters(self) -> dict[str, Allowed]:
-        """Every parameter's name with what it may be."""
+        """Return the name of every parameter with its allowed values."""
         return {each.name: each.metadata["allowed"] for each in fields(self.params)}  # type: ignore[arg-type]
 
     def defaults(self) -> dict[str, Param]:
-        """The parameters that may be left out, with their values."""
+        """Return the optional parameters with their default values."""
         return {each.name: each.default for each in fields(self.params) if each.default is not MISSING}  # type: ignore[arg-type]
 
     def judge(self, evidence: Evidence, values: Mapping[str, Param]) -> Finding:
-        """What the check finds with these parameter values (as read from exercise.toml, defaults filled in)."""
+        """Run the check with these parameter values (read from exercise.toml, with defaults filled in)."""
         return self.check(evidence, self.params(**values))
 
     def judge_early(self, evidence: Evidence, values: Mapping[str, Param]) -> Finding | None:
-        """What is certain before anything of the submission's has run."""
+        """Return the finding that is certain before any code of the submission runs, or None."""
         if self.stage == "source":
             return self.judge(evidence, values)
         return self.early(evidence, self.params(**values)) if self.early is not None else None
@@ -76,7 +76,7 @@ def number(
     at_least: float | None = None,
     at_most: float | None = None,
 ) -> Any:
-    """A finite number; without a default it must be given."""
+    """Create a field for a finite number. Without a default, exercise.toml must set it."""
 
     def accept(value: object) -> float | None:
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
@@ -97,30 +97,30 @@ def number(
     return _field(Allowed(words, accept, about), MISSING if default is None else default)
 
 
-def text(words: str = "a text", *, about: str, start: str = "", default: str | None = None) -> Any:
-    """A text that is not empty and begins with `start`; without a default it must be given."""
+def string(words: str = "a string", *, about: str, start: str = "", default: str | None = None) -> Any:
+    """Create a field for a non-empty string that starts with `start`. Without a default, exercise.toml must set it."""
 
     def accept(value: object) -> str | None:
         return value if isinstance(value, str) and value.strip() and value.startswith(start) else None
 
     return _field(
-        Allowed(f"{words} beginning with {start}" if start else words, accept, about),
+        Allowed(f"{words} starting with {start}" if start else words, accept, about),
         MISSING if default is None else default,
     )
 
 
-def texts(*, about: str) -> Any:
-    """A list of at least one text."""
+def strings(*, about: str) -> Any:
+    """Create a field for a list of at least one string."""
 
     def accept(value: object) -> tuple[str, ...] | None:
         good = isinstance(value, list) and value and all(isinstance(item, str) and item for item in value)
         return tuple(value) if good else None  # type: ignore[arg-type]
 
-    return _field(Allowed("a list of texts, at least one", accept, about))
+    return _field(Allowed("a list of at least one string", accept, about))
 
 
 def choice(*options: str, about: str) -> Any:
-    """One of the options; the first is the default."""
+    """Create a field for one of the options; the first option is the default."""
 
     def accept(value: object) -> str | None:
         return value if isinstance(value, str) and value in options else None

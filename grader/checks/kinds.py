@@ -1,4 +1,4 @@
-"""All kinds of checks, by name: what `kind` may be in exercise.toml."""
+"""All kinds of checks by name: the values that `kind` may have in exercise.toml."""
 
 from __future__ import annotations
 

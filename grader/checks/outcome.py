@@ -1,4 +1,4 @@
-"""Outcome: what a check found."""
+"""Outcome: the result of one check."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Status(str, Enum):
-    """`failed`: the student's work is wrong. `error`: the grader or the machine is broken, no points yet."""
+    """`failed`: the student's work is wrong. `error`: the grader or the machine failed; there are no points yet."""
 
     PASSED = "passed"
     FAILED = "failed"
@@ -21,10 +21,10 @@ class Status(str, Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """What a check says: one sentence each, for a beginner. `diagnosis` is the stable id of the cause.
+    """What a check found: `seen`, `expected` and `cause` are sentences for a beginner; `diagnosis` is a stable id.
 
-    `near_edge`: the measured value lies within a fifth of a tolerance's edge, or the node did not stop under
-    simulated time; so wall time must judge.
+    `near_edge` is True when the measured value is within a fifth of the tolerance from its edge, or when the node did
+    not stop in simulated time. Such a check is judged again in wall time.
     """
 
     status: Status
@@ -37,7 +37,7 @@ class Finding:
 
 
 def passed(seen: str, *, near_edge: bool = False) -> Finding:
-    """A finding in the student's favour."""
+    """Return the finding of a check that passed."""
     return Finding(Status.PASSED, seen, near_edge=near_edge)
 
 
@@ -50,15 +50,15 @@ def failed(
     where: Where | None = None,
     near_edge: bool = False,
 ) -> Finding:
-    """A fault of the student's work."""
+    """Return the finding of a check that failed because of the student's work."""
     return Finding(Status.FAILED, seen, expected, cause, diagnosis, where, near_edge)
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """A finding with its check's id, kind and points.
+    """A finding with the id, kind and points of its check.
 
-    `advice`: the finding is worth nothing and fails no run, whatever its status.
+    With `advice`, the finding is worth no points and never fails the submission, whatever its status.
     """
 
     id: str
@@ -72,5 +72,5 @@ class Outcome:
 
     @property
     def status(self) -> Status:
-        """The finding's status."""
+        """The status of the finding."""
         return self.finding.status

@@ -1,4 +1,4 @@
-"""Tolerances: whether a measured value is inside, or so near an edge that another clock might decide otherwise."""
+"""Tolerances: whether a measured value is inside, and whether it is so close to an edge that wall time must judge."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 NEAR = 0.2
-"""A value is near an edge when this share of the tolerance or less lies between (docs/design.md, decision 3)."""
+"""A value is near an edge when its distance to the edge is at most this share of the tolerance."""
 
 
 @dataclass(frozen=True)
 class Band:
-    """The values from `low` to `high`; `low_width` and `high_width` are the tolerances that these edges came from.
+    """The values from `low` to `high`; `low_width` and `high_width` are the tolerances that gave these edges.
 
-    None: no edge on that side. NaN is never inside: comparisons with it are false, so they say what must hold.
+    None means no edge on that side. NaN is never inside: every comparison with NaN is False, so each comparison below
+    states what must be true.
     """
 
     low: float | None
@@ -28,28 +29,28 @@ class Band:
 
     @classmethod
     def around(cls, nominal: float, below: float, above: float | None = None) -> Band:
-        """From nominal - below to nominal + above (the same as below when left out)."""
+        """Return the band from nominal - below to nominal + above (`above` defaults to `below`)."""
         above = below if above is None else above
         return cls(nominal - below, nominal + above, below, above)
 
     @classmethod
     def at_most(cls, limit: float) -> Band:
-        """Only an upper edge."""
+        """Return a band with only an upper edge."""
         return cls(None, limit, 0.0, abs(limit))
 
     @classmethod
     def at_least(cls, limit: float) -> Band:
-        """Only a lower edge."""
+        """Return a band with only a lower edge."""
         return cls(limit, None, abs(limit), 0.0)
 
     def holds(self, value: float) -> bool:
-        """True inside; the edges count as inside."""
+        """Return whether the value is inside. The edges are inside."""
         above_low = self.low is None or self.low <= value
         below_high = self.high is None or value <= self.high
         return above_low and below_high and value == value  # (NaN, where there is only one edge or none)
 
     def near(self, *values: float) -> bool:
-        """True when any value lies within a fifth of the tolerance of an edge."""
+        """Return whether any value is within a fifth of the tolerance from an edge."""
         return any(self._near(value) for value in values)
 
     def _near(self, value: float) -> bool:
@@ -59,10 +60,12 @@ class Band:
 
 
 def unless_starved(finding: Finding, recording: Recording, off: float, per_s: float) -> Finding:
-    """The finding, unless the machine's stalls explain it: `off` is how far the value lies outside of its tolerance.
+    """Return the finding, or an error finding if stalls of the machine explain the failure.
 
-    `per_s`: how fast the value changes with time. A node that is kept waiting goes on with its last command.
+    `off` is the distance of the value from its tolerance; `per_s` is how much the value changes per second. While the
+    machine stalls, the turtle continues with its last command.
     """
     if finding.status is Status.FAILED and recording.stalls and off <= per_s * recording.stalled_s:
-        return Finding(Status.ERROR, "The machine was too busy to judge this in wall time. Try again when it is not.")
+        message = "The machine was too busy to judge this in wall time. Try again when it is less busy."
+        return Finding(Status.ERROR, message)
     return finding

@@ -132,7 +132,7 @@ def _refused(task: Task, exercise: Exercise, reason: str) -> Graded:
     title = f"The submission holds {what}"
     expected = f"One folder with {what} in it, or a .zip or .tar.gz of that."
     first = failed("no-package" if exercise.package else "no-answers-file", reason, expected)
-    skipped = Finding(Status.SKIPPED, f'Not judged, since "{title}" did not pass.')
+    skipped = Finding(Status.SKIPPED, f'Not judged, because "{title}" did not pass.')
     return _unjudged(task, exercise, skipped, Outcome("submission", "submission", title, 0.0, 0.0, first))
 
 

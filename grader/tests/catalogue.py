@@ -75,9 +75,8 @@ def page() -> str:
     parts = [HEAD]
     for group, diagnoses in GROUPS.items():
         rows = [f"| `{id_}` | {meaning} | {_shown(id_, shown)} |" for id_, meaning in diagnoses.items()]
-        title = group[0].upper() + group[1:]
         parts.append(
-            "\n".join([f"## {title}", "", "| id | what it means | shown by |", "| --- | --- | --- |", *rows, ""])
+            "\n".join([f"## {group}", "", "| id | what it means | shown by |", "| --- | --- | --- |", *rows, ""])
         )
     return "\n".join(parts)
 

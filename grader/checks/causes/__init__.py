@@ -1,1 +1,1 @@
-"""Likely causes of what a check found, read from the code, the traceback and the recording."""
+"""Likely causes of a failed check, found in the code, the traceback and the recording."""

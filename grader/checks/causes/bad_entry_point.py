@@ -13,15 +13,15 @@ if TYPE_CHECKING:
 
 
 def bad_entry_point(point: EntryPoint) -> Finding:
-    """A failed finding about a text in console_scripts that is of no form that setuptools knows."""
+    """Return a failed finding about an entry point that setuptools cannot read."""
     seen = f'setuptools cannot read the entry point "{shorten(point.text)}".'
-    expected = "An entry point reads NAME = PACKAGE.MODULE:FUNCTION."
-    diagnosis, cause = "entry-point-format", "Compare it sign by sign: = and : each stand once."
+    expected = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION."
+    diagnosis, cause = "entry-point-format", "Check it character by character: = and : must each appear once."
     if point.text.count("=") > 1:
-        diagnosis, cause = "entry-point-comma", "A comma is missing between two texts, so Python joins them to one."
+        diagnosis, cause = "entry-point-comma", "A comma is missing between two strings, so Python joins them into one."
     elif "/" in point.text:
-        diagnosis, cause = "entry-point-slash", "This is a file's path; a module has points between folder and file."
+        diagnosis, cause = "entry-point-slash", "This is a file path. A module name has a dot between folder and file."
     elif ":" not in point.text:
-        cause = "It names no function: after the module come a colon and the function's name."
+        cause = "It does not name a function. After the module comes a colon, then the function name."
         diagnosis = "entry-point-no-function"
     return failed(diagnosis, seen, expected, cause, where=Where("setup.py", point.line))

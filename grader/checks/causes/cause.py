@@ -1,4 +1,4 @@
-"""Cause: why something failed, as one diagnosis says it."""
+"""Cause: why a check failed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Cause:
-    """The stable id, the cause in words, and the place to look at where that is known better than by what was seen."""
+    """A diagnosis id, the cause in words, and the place to look at if it is known better than from what was seen."""
 
     diagnosis: str
     text: str

@@ -1,4 +1,4 @@
-"""Scene: the student's source around the line in which an exception happened."""
+"""CrashScene: the student's source code around the line that raised an exception."""
 
 from __future__ import annotations
 
@@ -21,38 +21,38 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 @dataclass(frozen=True)
-class Scene:
-    """The exception, and what the module around it says; without a place in the source everything is empty."""
+class CrashScene:
+    """An exception and the module that raised it. Without a line in the source code, everything is empty."""
 
     evidence: Evidence
     crash: Crash
 
     @cached_property
     def module(self) -> Module | None:
-        """The module of the line."""
+        """The module that contains the line."""
         where = self.crash.where
         return next((each for each in self.evidence.code.modules if where and each.file == where.file), None)
 
     @property
     def line(self) -> int:
-        """The line, 0 where it is not known."""
+        """The line number, or 0 if it is not known."""
         where = self.crash.where
         return (where.line if where is not None else None) or 0
 
     @cached_property
     def nodes(self) -> tuple[ast.AST, ...]:
-        """Every node of the module's tree."""
+        """Every node of the module's syntax tree."""
         return self.module.nodes if self.module is not None else ()
 
     @cached_property
     def on_line(self) -> tuple[ast.AST, ...]:
-        """What stands on the line."""
+        """The nodes on the line."""
         return tuple(
             node for node in self.nodes if getattr(node, "lineno", 0) <= self.line <= _end(node) and _small(node)
         )
 
     def calls_on_line(self, name: str) -> list[ast.Call]:
-        """The calls on the line of a function or method with this last name."""
+        """Return the calls on the line of a function or method with this name (without module or object)."""
         calls = [node for node in self.on_line if isinstance(node, ast.Call)]
         return [call for call in calls if _last(call.func) == name]
 
@@ -62,37 +62,37 @@ class Scene:
         return tuple(node for node in self.nodes if isinstance(node, ast.ClassDef))
 
     def class_named(self, name: str) -> ast.ClassDef | None:
-        """The module's class of this name."""
+        """Return the class of the module with this name, or None."""
         return next((each for each in self.classes if each.name == name), None)
 
     @cached_property
     def own_class(self) -> ast.ClassDef | None:
-        """The class that the line is in."""
+        """The class that contains the line, or None."""
         inside = [each for each in self.classes if each.lineno <= self.line <= _end(each)]
         return inside[-1] if inside else None
 
     def top_functions(self) -> list[Function]:
-        """The functions of the module's top level."""
+        """Return the functions at the top level of the module."""
         return [node for node in (self.module.body if self.module is not None else []) if isinstance(node, Function)]
 
     def functions(self, name: str) -> list[Function]:
-        """Every function or method of this name."""
+        """Return every function or method with this name."""
         return [node for node in self.nodes if isinstance(node, Function) and node.name == name]
 
     def at(self, node: ast.AST | int | None) -> Where | None:
-        """A place in this module; that of the exception for None."""
+        """Return the place of a node or line of this module; for None, the place of the exception."""
         if node is None or self.module is None:
             return self.crash.where
         return Where(self.module.file, node if isinstance(node, int) else getattr(node, "lineno", None))
 
 
 def methods(of: ast.ClassDef) -> list[Function]:
-    """The methods of a class."""
+    """Return the methods of a class."""
     return [node for node in of.body if isinstance(node, Function)]
 
 
 def attributes_set(of: ast.ClassDef) -> Iterator[tuple[str, int]]:
-    """Every attribute that is set in self, with the line."""
+    """Yield every attribute that is assigned on self, with its line."""
     for node in ast.walk(of):
         if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store) and dotted(node) == f"self.{node.attr}":
             yield node.attr, node.lineno
@@ -103,7 +103,7 @@ def _end(node: ast.AST) -> int:
 
 
 def _small(node: ast.AST) -> bool:
-    """Whether the node is part of one statement: whole functions and blocks are around a line, not on it."""
+    """Return whether the node is part of one statement. A function or block is around a line, not on it."""
     return not isinstance(
         node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef | ast.If | ast.For | ast.While | ast.Try | ast.With
     )

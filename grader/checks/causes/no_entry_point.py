@@ -1,4 +1,4 @@
-"""Why there is no executable of the exercise's name: what setup.py has instead."""
+"""Why the executable of the exercise does not exist: what setup.py has instead."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.submission.setup_py import EntryPoint, SetupPy
 
-FORM = "An entry point reads NAME = PACKAGE.MODULE:FUNCTION, in the list console_scripts of setup.py"
+FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list console_scripts of setup.py"
 
 
 def line(evidence: Evidence) -> Where:
-    """The line of setup.py with the exercise's entry point, else with the call of setup()."""
+    """Return the line of setup.py with the entry point of the exercise, else the line with the call of setup()."""
     setup = evidence.setup_py
     point = setup.entry_point(evidence.trial.executable) if setup is not None else None
     return Where("setup.py", point.line if point is not None else setup.setup_line if setup is not None else None)
 
 
 def no_entry_point(evidence: Evidence) -> Finding:
-    """A failed finding about an executable that was not installed as an entry point."""
+    """Return a failed finding about an executable that was not installed as an entry point."""
     executable, setup = evidence.trial.executable, evidence.setup_py
-    expected = f"{FORM}; NAME is {executable}."
+    expected = f"{FORM}. NAME is {executable}."
     points = (setup.entry_points if setup is not None else None) or ()
     joined = next((point for point in points if point.text.count("=") > 1), None)
     if joined is not None:
@@ -42,15 +42,15 @@ def no_entry_point(evidence: Evidence) -> Finding:
         guess = nearest(executable, [other for other in others if other != executable])
         if guess is not None:
             where = next((Where("setup.py", point.line) for point in points if point.name == guess), line(evidence))
-            text = "Compare the two letter by letter: the name is what stands before the = sign."
-            seen = f"There is no executable {executable}; there is {shorten(guess)}."
+            text = "Compare the two names letter by letter. The name is the part before the = sign."
+            seen = f"There is no executable {executable}, but there is {shorten(guess)}."
             return failed("entry-point-name", seen, expected, text, where=where)
         cause = _missing(evidence, points)
     return failed(cause.diagnosis, seen, expected, cause.text, where=cause.where or line(evidence))
 
 
 def _script(evidence: Evidence) -> Cause | None:
-    """The executable is there as a script of its own, which is no entry point."""
+    """Return the cause if the executable is a script instead of an entry point, else None."""
     executable = evidence.trial.executable
     if executable not in evidence.built.executables:
         return None
@@ -62,35 +62,35 @@ def _script(evidence: Evidence) -> Cause | None:
         return None
     first = files[script].partition(b"\n")[0].decode("utf-8", "replace")
     if not (first.startswith("#!") and "python" in first and not first.endswith("\r")):
-        text = (
-            f'{script} is installed as a script, and its first line, "{shorten(first, 40)}", does not lead to Python.'
-        )
+        text = f'{script} is installed as a script, and its first line, "{shorten(first, 40)}", does not name Python.'
         return Cause("script-shebang", text, Where(script, 1))
-    text = f"{script} is installed as a script; an entry point leads to a function in a module."
+    text = f"{script} is installed as a script. Use an entry point that names a function in a module."
     return Cause("script-for-entry-point", text, Where(script, 1))
 
 
 def _unread(evidence: Evidence, setup: SetupPy | None) -> Cause | None:
-    """A line for the executable is there, where setuptools does not look: in a comment, another group, another list."""
+    """Return the cause if setup.py has the entry point in a comment, in another group or in another list, else None."""
     executable = evidence.trial.executable
     if setup is None:
         return None
     comment = _comment(evidence.submission.files.get("setup.py", b""), executable)
     if comment is not None:
-        text = "The line for it is a comment: what comes after # is not read."
+        text = "The entry point is in a comment. Python ignores everything after #."
         return Cause("entry-point-commented", text, Where("setup.py", comment))
     stray = next((point for point in setup.stray if point.name == executable), None)
     if setup.groups and "console_scripts" not in setup.groups:
-        text = f'entry_points has the group "{shorten(setup.groups[0])}"; executables come from console_scripts.'
+        text = (
+            f'entry_points has the group "{shorten(setup.groups[0])}". Executables belong in the group console_scripts.'
+        )
         return Cause("entry-point-group", text, None if stray is None else Where("setup.py", stray.line))
     if stray is not None:
-        text = "The text for it stands in another list: console_scripts ends before it."
+        text = "The entry point is in another list. The list console_scripts ends before it."
         return Cause("entry-point-elsewhere", text, Where("setup.py", stray.line))
     return None
 
 
 def _comment(source: bytes, executable: str) -> int | None:
-    """The line of a comment that names the executable before an = sign."""
+    """Return the line of a comment that names the executable before an = sign, or None."""
     try:
         for token in tokenize.tokenize(io.BytesIO(source).readline):
             words = token.string.lstrip("# \"'").partition("=")
@@ -104,13 +104,13 @@ def _comment(source: bytes, executable: str) -> int | None:
 def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
     file = evidence.node_file or _looks_like_a_node(evidence, [point.target for point in points])
     if file is not None:
-        text = f"{shorten(file)} is there, but setup.py does not name it: a file alone is no executable."
+        text = f"{shorten(file)} is there, but setup.py has no entry point for it."
         return Cause("entry-point-missing", text)
-    return Cause("entry-point-missing", "setup.py names no such executable, and no file looks like it.")
+    return Cause("entry-point-missing", "setup.py has no entry point with this name, and no file looks like it.")
 
 
 def _looks_like_a_node(evidence: Evidence, targets: list[str | None]) -> str | None:
-    """A file that makes a publisher, and that no entry point leads to."""
+    """Return a file that creates a publisher and that no entry point names, or None."""
     taken = [module_file((target or "").partition(":")[0], evidence.submission.files) for target in targets]
     everything = read_code(evidence.submission.files, first=None)
     files = [call.module.file for call in everything.calls("create_publisher")]

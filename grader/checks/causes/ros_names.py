@@ -1,8 +1,8 @@
-"""Names of ROS 2 Jazzy that a beginner meets, for telling the nearest one to what was written."""
+"""Names in ROS 2 Jazzy that a beginner uses, to suggest the right spelling."""
 
 from __future__ import annotations
 
-LIVES_IN = {
+MODULE_OF = {
     "Node": "rclpy.node",
     "MultiThreadedExecutor": "rclpy.executors",
     "ExternalShutdownException": "rclpy.executors",
@@ -21,7 +21,7 @@ LIVES_IN = {
     "Int32": "std_msgs.msg",
     "Empty": "std_srvs.srv",
 }
-"""Class -> the module that one usually imports it from."""
+"""Class -> the module that it is usually imported from."""
 
 MODULES = (
     "rclpy",
@@ -42,7 +42,7 @@ MODULES = (
     "sys",
 )
 ROS_1 = frozenset({"rospy", "roslib", "tf", "catkin", "roscpp", "rosbag", "actionlib"})
-"""Modules that only ROS 1 has."""
+"""Modules that exist only in ROS 1."""
 
 NODE = (
     "create_publisher",
@@ -71,7 +71,7 @@ RCLPY = (
     "create_node",
     "node",
 )
-"""What the module rclpy has."""
+"""Names in the module rclpy."""
 
 FIELDS = {
     "Twist": ("linear", "angular"),
@@ -98,4 +98,4 @@ SERVICES = (
     "/turtle1/teleport_absolute",
     "/turtle1/teleport_relative",
 )
-"""What turtlesim offers."""
+"""The services of turtlesim."""

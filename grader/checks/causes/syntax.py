@@ -1,4 +1,4 @@
-"""Why Python cannot read a file: its own message, told by the mistake that is usually behind it."""
+"""Why Python cannot read a file: the usual mistake behind each message of a SyntaxError."""
 
 from __future__ import annotations
 
@@ -15,48 +15,62 @@ if TYPE_CHECKING:
     from grader.submission.code import Unreadable
 
 NOT_UTF8 = r"codec can't decode|unicode error|[Nn]on-UTF-8|encoding"
-"""What Python says of a file whose bytes are not the text that they should be."""
-EXPECTED = "A file that Python can read."
+"""Python's messages about a file that is not valid UTF-8."""
+EXPECTED = "The file is valid Python."
 
 CAUSES = (
-    (NOT_UTF8, "not-utf8", "Say UTF-8 when you save it."),
+    (NOT_UTF8, "not-utf8", "Save the file as UTF-8."),
     (
         "inconsistent use of tabs",
         "tabs-and-spaces",
-        "Some lines begin with tabs, others with blanks: they look alike and are not. Use blanks.",
+        "Some lines start with tabs and others with spaces. They look the same but are not. Use spaces.",
     ),
     (
         "Missing parentheses in call to 'print'",
         "python-2-print",
-        "That is Python 2. In Python 3 print is a function, with parentheses.",
+        "This is Python 2. In Python 3, print is a function and needs parentheses.",
     ),
-    ("expected ':'", "colon-missing", "A line with def, class, if, for, while, try or else ends with a colon."),
-    (r"was never closed", "bracket-open", "This bracket opens, and none closes it. Python notices only further down."),
-    (r"unmatched|does not match opening", "bracket-extra", "There is a closing bracket too many, or of another kind."),
-    (r"unterminated", "text-open", "A text ends with the quotation mark that it began with, on the same line."),
+    (
+        "expected ':'",
+        "colon-missing",
+        "A line that starts with def, class, if, for, while, try or else must end with a colon.",
+    ),
+    (r"was never closed", "bracket-open", "This bracket is never closed. Python often notices that only further down."),
+    (
+        r"unmatched|does not match opening",
+        "bracket-extra",
+        "There is one closing bracket too many, or it is the wrong kind of bracket.",
+    ),
+    (
+        r"unterminated",
+        "quote-open",
+        "A string must end on the same line, with the same quotation mark that it starts with.",
+    ),
     (
         r"invalid character|invalid non-printable",
         "typographic-character",
-        "This character comes from a word processor or a web page: type it anew. Texts stand in plain \" or '.",
+        "This character comes from a word processor or a web page. Type it again. Strings need plain \" or '.",
     ),
     (
         r"unindent|unexpected indent|expected an indented block",
         "indentation",
-        "The lines of one block begin at the same column, further in than the line with the colon.",
+        "All lines of a block must start at the same column, further right than the line with the colon.",
     ),
-    (r"forgot a comma", "comma-missing", "Between two arguments, or two items of a list, stands a comma."),
-    (r"instead of '='|cannot assign", "equals", "One = gives a value to a name; two == compare."),
+    (r"forgot a comma", "comma-missing", "Put a comma between two arguments and between two items of a list."),
+    (r"instead of '='|cannot assign", "equals", "= gives a value to a name. == compares two values."),
 )
-"""(what Python says, diagnosis, cause), the first that fits."""
+"""(pattern of Python's message, diagnosis, cause). The first pattern that matches counts."""
 CONFLICT = r"^(<<<<<<<|=======|>>>>>>>)"
-OTHERWISE = "Often the fault is at the end of the line before: a bracket, a colon, the indentation."
+OTHERWISE = "The mistake is often at the end of the line before: a bracket, a colon or the indentation."
 
 
 def why_unreadable(unreadable: Unreadable, data: bytes) -> Cause:
-    """The cause of a SyntaxError."""
+    """Return the cause of a SyntaxError."""
     conflict = line_of(data, CONFLICT)
     if conflict is not None:
-        text = "Git left both versions in the file, between <<<<<<< and >>>>>>>: keep one, and take the marks out."
+        text = (
+            "Git left both versions in the file, between <<<<<<< and >>>>>>>. Keep one version and delete the markers."
+        )
         return Cause("merge-conflict", text)
     for pattern, diagnosis, text in CAUSES:
         if re.search(pattern, unreadable.message):
@@ -65,13 +79,13 @@ def why_unreadable(unreadable: Unreadable, data: bytes) -> Cause:
 
 
 def unreadable_seen(file: str, unreadable: Unreadable) -> str:
-    """What was seen of a file that Python cannot read."""
-    said = shorten(unreadable.message, 120)
-    return f"Python cannot read {file}: {said}{'' if said.endswith(('.', '?', '!')) else '.'}"
+    """Return a sentence about a file that Python cannot read."""
+    message = shorten(unreadable.message, 120)
+    return f"Python cannot read {file}: {message}{'' if message.endswith(('.', '?', '!')) else '.'}"
 
 
 def unreadable_finding(file: str, unreadable: Unreadable, data: bytes) -> Finding:
-    """A failed finding about a file that Python cannot read."""
+    """Return a failed finding about a file that Python cannot read."""
     cause = why_unreadable(unreadable, data)
     seen = unreadable_seen(file, unreadable)
     return failed(cause.diagnosis, seen, EXPECTED, cause.text, where=Where(file, unreadable.line))

@@ -1,4 +1,4 @@
-"""What is wrong with a timer that never calls its method, as far as the source tells."""
+"""Why a timer never calls its callback, if the source code shows it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TimerFault:
-    """Why a timer never calls: the diagnosis, in words, and where."""
+    """Why a timer never calls its callback: the diagnosis, the cause in words, and the place."""
 
     diagnosis: str
     cause: str
@@ -23,14 +23,17 @@ class TimerFault:
 
 
 def timer_fault(evidence: Evidence) -> TimerFault | None:
-    """The first timer that waits too long or was given no method."""
+    """Return the fault of the first timer that waits too long or has no callback, or None."""
     for timer in evidence.code.calls("create_timer"):
         period = number(timer.argument(0, "timer_period_sec"), timer.module.names)
         if period is not None and period >= evidence.recording.duration_s:
-            cause = f"The timer waits {period:g} s for its first call: the period is in seconds, not milliseconds."
+            cause = f"The timer waits {period:g} s before its first call. The period is in seconds, not milliseconds."
             return TimerFault("timer-milliseconds", cause, timer.where)
         if _is_call(timer.argument(1, "callback")):
-            cause = "create_timer wants the method itself; with () behind its name it gets only the method's result."
+            cause = (
+                "create_timer needs the method itself. "
+                "With () after its name, it gets only the return value of the method."
+            )
             return TimerFault("callback-called", cause, timer.where)
     return None
 

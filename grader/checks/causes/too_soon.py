@@ -1,4 +1,4 @@
-"""Commands that were lost because nobody listened yet: the way lacks its beginning, and the rest of it is right."""
+"""Commands that were lost because no subscription was connected yet: only the start of the trajectory is missing."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ if TYPE_CHECKING:
     from grader.checks.outcome import Finding
     from grader.evidence.evidence import Evidence
 
-ASKS = ("get_subscription_count", "count_subscribers")
+WAITS_FOR_SUBSCRIBER = ("get_subscription_count", "count_subscribers")
 
 
 def too_soon(finding: Finding, evidence: Evidence) -> Finding:
-    """The finding about a way of which only the beginning is short, with its cause where that is known.
+    """Return the finding about a trajectory with a short beginning, with the cause `too-soon` if that explains it.
 
-    In simulated time the clock starts when the two sides have found each other, so nothing is lost; nor is it for a
-    node that asks who listens.
+    In simulated time the clock starts when publisher and subscription are connected, so nothing is lost. Nothing is
+    lost either if the node checks its number of subscriptions.
     """
-    if evidence.recording.clock != "wall" or any(evidence.code.calls(name) for name in ASKS):
+    if evidence.recording.clock != "wall" or any(evidence.code.calls(name) for name in WAITS_FOR_SUBSCRIBER):
         return finding
     cause = (
-        "All that follows is right: the first commands were sent before the simulator had found the publisher, and "
-        "got lost. Send none as long as get_subscription_count() says 0."
+        "Everything after that is right. The first commands were published before the simulator was connected, so "
+        "they were lost. Do not publish while get_subscription_count() returns 0."
     )
     return replace(finding, diagnosis="too-soon", cause=cause, where=evidence.place("publish"))

@@ -1,11 +1,11 @@
-"""Why a student's node crashed: the exception, the source around it, and what that usually means."""
+"""Why a student's node crashed: the exception, the source code around it, and the usual mistake."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from grader.checks.causes.cause import Cause
-from grader.checks.causes.crash_scene import Scene
+from grader.checks.causes.crash_scene import CrashScene
 from grader.checks.causes.why_calls import why_refused, why_type
 from grader.checks.causes.why_fields import why_field
 from grader.checks.causes.why_imports import why_no_import
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 
-def _always(diagnosis: str) -> Callable[[Scene], Cause]:
+def _always(diagnosis: str) -> Callable[[CrashScene], Cause]:
     return lambda scene: Cause(diagnosis, scene.crash.meaning)
 
 
-EXPLANATIONS: dict[str, Callable[[Scene], Cause | None]] = {
+EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "AssertionError": why_field,
     "AttributeError": why_no_attribute,
     "EOFError": _always("needs-stdin"),
@@ -39,18 +39,18 @@ EXPLANATIONS: dict[str, Callable[[Scene], Cause | None]] = {
     "TypeError": why_type,
     "UnboundLocalError": why_unbound,
 }
-"""Exception -> what may be told of it from the source; None where that says nothing."""
+"""Exception -> the function that finds its cause in the source code, or returns None."""
 
 
 def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
-    """The cause of a crash; no more than the exception's own meaning where the source does not tell it."""
+    """Return the cause of a crash. If the source code does not show it, explain only the exception."""
     explain = EXPLANATIONS.get(crash.error)
-    cause = explain(Scene(evidence, crash)) if explain is not None else None
+    cause = explain(CrashScene(evidence, crash)) if explain is not None else None
     return cause or Cause("crash", crash.meaning)
 
 
 def crash_finding(evidence: Evidence, crash: Crash, seen: str, expected: str) -> Finding:
-    """A failed finding for a check that a crash kept from passing."""
+    """Return a failed finding for a check that did not pass because of a crash."""
     cause = why_crashed(evidence, crash)
     where = cause.where or crash.where or evidence.place("init")
     return failed(cause.diagnosis, seen, expected, cause.text, where=where)

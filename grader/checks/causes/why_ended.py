@@ -1,4 +1,4 @@
-"""Why a program ended by itself, or ran without a node: what the source does, and does not do."""
+"""Why a program ended by itself or ran without a node, according to its source code."""
 
 from __future__ import annotations
 
@@ -17,43 +17,43 @@ SPINS = ("spin", "spin_once", "spin_until_future_complete")
 
 
 def why_ended(evidence: Evidence) -> Cause:
-    """The cause of an end without an exception before Ctrl-C."""
+    """Return the cause of a program that ended before Ctrl-C without an exception."""
     code = evidence.code
     bare = named_only(evidence, "rclpy.init", "rclpy.spin", "main")
     if bare is not None:
         return bare
     if not any(code.calls(name) for name in SPINS):
-        return Cause("no-spin", "rclpy.spin keeps a node running; it is called nowhere.", evidence.place("init"))
+        return Cause("no-spin", "rclpy.spin keeps a node running, but it is never called.", evidence.place("init"))
     if not code.calls("spin") and code.calls("spin_once") and not _loops(evidence):
-        text = "rclpy.spin_once waits for one thing and returns; rclpy.spin goes on until Ctrl-C."
+        text = "rclpy.spin_once handles one event and returns. rclpy.spin continues until Ctrl-C."
         return Cause("spin-once", text, evidence.place("spin_once"))
     ended = "ends-at-once" if ended_at_start(evidence.recording) else "ended-early"
     return Cause(ended, "", evidence.place("spin", "init"))
 
 
 def why_no_node(evidence: Evidence) -> Cause:
-    """The cause of a program that runs, and is no node."""
+    """Return the cause of a program that runs without creating a node."""
     code = evidence.code
     bare = named_only(evidence, "rclpy.init", "main")
     if bare is not None:
         return bare
     if not code.calls("init"):
-        return Cause("no-init", "rclpy.init is called nowhere.", code.start)
+        return Cause("no-init", "rclpy.init is never called.", code.start)
     for module in code.modules:
         for node in module.nodes:
             if isinstance(node, ast.ClassDef) and not code.calls(node.name) and _is_node(node):
-                text = f"The class {node.name} is there, and is never called: that is what makes a node."
+                text = f"The class {node.name} is defined but never called. Call the class to create the node."
                 return Cause("node-not-made", text, Where(module.file, node.lineno))
-    text = "Something before it waits or loops for ever, or the class of the node is never called."
+    text = "The program waits or loops forever before it creates the node, or it never creates one."
     return Cause("no-node", text, evidence.place("init"))
 
 
 def named_only(evidence: Evidence, *names: str) -> Cause | None:
-    """A line that names one of these functions and does not call it."""
+    """Return the cause if a line names one of these functions without calling it, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Expr) and dotted(node.value) in names:
-                text = f"The line names {dotted(node.value)} and does not call it: the parentheses are missing."
+                text = f"This line names {dotted(node.value)} but does not call it: the parentheses are missing."
                 return Cause("not-called", text, Where(module.file, node.lineno))
     return None
 

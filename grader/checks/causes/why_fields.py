@@ -1,4 +1,4 @@
-"""Why a message's field refused a value: the assertions of ROS 2's generated messages."""
+"""Why a message field refused a value: the assertions in the message classes of ROS 2."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from grader.checks.causes.cause import Cause
 from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
-    from grader.checks.causes.crash_scene import Scene
+    from grader.checks.causes.crash_scene import CrashScene
 
 FIELD = re.compile(r"The '(?P<field>\w+)' field must be (?:of|a sub message of) type '(?P<type>\w+)'")
 FLOAT = ("float", "double")
 READS = ("input", "get", "str", "format", "getenv")
-"""Functions that give a text."""
+"""Functions that return a string."""
 
 
-def why_field(scene: Scene) -> Cause | None:
-    """An int, a text or a numpy number in a float field; a number where a message belongs."""
+def why_field(scene: CrashScene) -> Cause | None:
+    """Return the cause of a wrong value: an int, a string or a NumPy number for a float, or a number for a message."""
     match = FIELD.search(scene.crash.message)
     if match is None:
         if "Invalid arguments passed to constructor" in scene.crash.message:
-            return Cause("message-arguments", "A message is made empty, and its fields are set after that, one by one.")
+            return Cause("message-arguments", "Create the message without arguments, then set its fields one by one.")
         return None
     field, wanted = match["field"], match["type"]
     if wanted not in FLOAT:
-        return Cause("field-type", f"The field {field} is itself a {wanted}, with parts of its own: set those.")
+        return Cause("field-type", f"The field {field} is a {wanted} with its own fields. Set those.")
     value = _assigned(scene, field)
     return _why_no_float(field, value and _resolved(scene, value))
 
@@ -36,28 +36,30 @@ def _why_no_float(field: str, value: ast.expr | None) -> Cause:
     if isinstance(value, ast.UnaryOp):
         value = value.operand
     if isinstance(value, ast.Constant) and isinstance(value.value, str):
-        return Cause("text-for-number", f"The field {field} is a float; in quotation marks it is a text.")
+        return Cause("string-for-number", f"The field {field} is a float. In quotation marks, a number is a string.")
     if isinstance(value, ast.Constant) and isinstance(value.value, bool):
-        return Cause("field-type", f"The field {field} is a float, and neither true nor false.")
+        return Cause("field-type", f"The field {field} is a float, not True or False.")
     if isinstance(value, ast.Constant) and isinstance(value.value, int):
-        return Cause("int-for-float", f"The field {field} is a float: write the number with a decimal point.")
+        return Cause("int-for-float", f"The field {field} is a float. Write the number with a decimal point.")
     names = [dotted(call.func) or "" for call in ast.walk(value) if isinstance(call, ast.Call)] if value else []
     if any(name.startswith(("np.", "numpy.")) for name in names):
         return Cause(
             "numpy-for-float",
-            f"The field {field} wants Python's own float; numpy has others. float(...) makes one of it.",
+            f"The field {field} needs a Python float, not a NumPy number. Convert it with float(...).",
         )
     if names and names[0].rpartition(".")[2] in READS:
         return Cause(
-            "text-for-number",
-            f"The field {field} is a float, and what is read is a text. float(...) makes one of it.",
+            "string-for-number",
+            f"The field {field} is a float, but the value is a string. Convert it with float(...).",
         )
     if names and names[0] in ("int", "round", "len"):
-        return Cause("int-for-float", f"The field {field} is a float, and {names[0]}(...) gives a whole number.")
-    return Cause("field-type", f"The field {field} is a float, and the value is of another type. float(...) makes one.")
+        return Cause("int-for-float", f"The field {field} is a float, but {names[0]}(...) returns an integer.")
+    return Cause(
+        "field-type", f"The field {field} is a float, but the value has another type. Convert it with float(...)."
+    )
 
 
-def _assigned(scene: Scene, field: str) -> ast.expr | None:
+def _assigned(scene: CrashScene, field: str) -> ast.expr | None:
     for node in scene.on_line:
         if isinstance(node, ast.Assign) and any(
             isinstance(each, ast.Attribute) and each.attr == field for each in node.targets
@@ -68,7 +70,7 @@ def _assigned(scene: Scene, field: str) -> ast.expr | None:
     return None
 
 
-def _resolved(scene: Scene, value: ast.expr) -> ast.expr:
-    """The expression, which stands in the scene, or the one that its name stands for."""
+def _resolved(scene: CrashScene, value: ast.expr) -> ast.expr:
+    """Return the expression, or the expression that its name stands for. The scene must have a module."""
     assert scene.module is not None
     return scene.module.names.get(dotted(value) or "") or value

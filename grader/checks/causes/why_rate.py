@@ -1,4 +1,4 @@
-"""Why something comes far too often, or ever more often: loops, callbacks of messages, timers made again and again."""
+"""Why messages or log lines arrive far too often: loops, callbacks of subscriptions, timers created again and again."""
 
 from __future__ import annotations
 
@@ -16,38 +16,41 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 OFTEN = 0.5
-"""A loop that waits for nothing goes at least so much faster than what is asked for, as a share of the period."""
+"""A loop without a pause is at least this much faster than it should be, as a share of the period."""
 FRAME_S = 0.016
-"""turtlesim tells the pose once a frame."""
+"""turtlesim publishes the pose once per frame."""
 
 
 def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
-    """A loop without a pause around `call`, or a method with it that each message calls."""
+    """Return the cause if a loop without a pause, or the callback of a subscription, contains `call`, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             where = Where(module.file, getattr(node, "lineno", None))
             busy = isinstance(node, ast.While) and _calls(node, call) and not _calls(node, "sleep", "spin_once")
             if busy and mean_s < OFTEN * period_s:
-                return Cause("loop-without-pause", f"This loop calls {call} as fast as the machine can.", where)
+                return Cause("loop-without-pause", f"This loop calls {call} without a pause.", where)
     if abs(mean_s - FRAME_S) > 0.1 * FRAME_S:
         return None
     for module, name in _callbacks(evidence):
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef) and node.name == name and _calls(node, call):
-                text = f"{name} is called by each message, 62.5 times a second, and calls {call} each time."
+                text = f"{name} is called for every message, 62.5 times per second, and calls {call} each time."
                 return Cause("every-message", text, Where(module.file, node.lineno))
     return None
 
 
 def why_timers_grow(evidence: Evidence) -> Cause | None:
-    """A timer that is made inside of a method that a timer or a message calls."""
+    """Return the cause if a callback creates a timer, else None."""
     for module in evidence.code.modules:
         called = {name for each, name in _callbacks(evidence, "create_timer", "create_subscription") if each is module}
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef) and node.name in called:
                 for inner in ast.walk(node):
                     if isinstance(inner, ast.Call) and getattr(inner.func, "attr", "") == "create_timer":
-                        text = f"{node.name} makes one more timer whenever it is called; one goes on by itself."
+                        text = (
+                            f"{node.name} creates a new timer each time it is called. "
+                            "One timer is enough, because it repeats."
+                        )
                         return Cause("timer-in-callback", text, Where(module.file, inner.lineno))
     return None
 

@@ -1,4 +1,4 @@
-"""Why a node that runs sends nothing: what keeps its timers, its methods or its messages from going anywhere."""
+"""Why a running node sends nothing: its timers, methods or messages are blocked."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 INCOMPATIBLE = "incompatible QoS"
-"""What rclpy logs of two ends of a topic that cannot talk to each other."""
+"""rclpy logs this about a publisher and a subscription that cannot communicate."""
 WAKES = ("create_timer", "create_subscription", "create_service", "create_client", "ActionServer", "ActionClient")
-"""What gives a node something to do in spin_once."""
+"""Functions that give a node something to do in spin_once."""
 ALWAYS = ("True", "1", "rclpy.ok()")
 
 
 def why_qos(evidence: Evidence) -> Cause | None:
-    """Publisher and subscription are on one topic, and their promises do not go together."""
+    """Return the cause if the QoS settings of publisher and subscription are not compatible, else None."""
     recording = evidence.recording
-    said = [recording.stderr.text, *(line.text for line in recording.log)]
-    if not any(INCOMPATIBLE in text for text in said):
+    output = [recording.stderr.text, *(line.text for line in recording.log)]
+    if not any(INCOMPATIBLE in text for text in output):
         return None
-    text = "The quality of service does not match turtlesim's: a plain queue size asks for what it has."
+    text = "The QoS settings are not compatible with those of turtlesim. A plain queue size is compatible."
     return Cause("qos-mismatch", text, evidence.place("QoSProfile", "create_publisher", "create_subscription"))
 
 
 def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
-    """The cause of a silent node; `sends` are the functions that would send or log. None: it looks right."""
+    """Return the cause of a silent node, or None. `sends` are the functions that publish or log."""
     fault = timer_fault(evidence)
     if fault is not None:
         return Cause(fault.diagnosis, fault.cause, fault.where)
@@ -53,25 +53,25 @@ def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
 def _no_spin(evidence: Evidence) -> Cause | None:
     if any(evidence.code.calls(name) for name in SPINS):
         return None
-    return Cause("no-spin", "Without rclpy.spin no timer is ever called.", evidence.code.start)
+    return Cause("no-spin", "Without rclpy.spin, no timer callback is ever called.", evidence.code.start)
 
 
 def _nothing_to_spin(evidence: Evidence) -> Cause | None:
-    """spin_once without a limit, in a node that nothing ever wakes."""
+    """Return the cause if spin_once has no timeout in a node with nothing to do, else None."""
     if any(evidence.code.calls(name) for name in WAKES):
         return None
     for call in evidence.code.calls("spin_once"):
-        # rclpy's takes the node and its executor first; an executor's own method takes the limit alone.
+        # rclpy.spin_once takes node and executor before the timeout; the method of an executor takes only the timeout.
         of_rclpy = dotted(call.node.func) in ("rclpy.spin_once", "spin_once")
         limit = call.argument(2 if of_rclpy else 0, "timeout_sec")
         if limit is None or (isinstance(limit, ast.Constant) and limit.value is None):
-            text = "spin_once waits for something to do, and this node has no timer; timeout_sec would limit the wait."
+            text = "spin_once waits for something to do, but this node has no timer. Use timeout_sec to limit the wait."
             return Cause("spin-once-waits", text, call.where)
     return None
 
 
 def _stuck(evidence: Evidence) -> Cause | None:
-    """Something that never returns: a loop or a wait in __init__, an answer waited for inside of a callback."""
+    """Return the cause if something never returns: a loop or wait in __init__, or a wait in a callback; else None."""
     for module, method in _methods(evidence):
         for node in ast.walk(method):
             where = Where(module.file, getattr(node, "lineno", None))
@@ -79,16 +79,16 @@ def _stuck(evidence: Evidence) -> Cause | None:
             if waiting is not None:
                 return Cause(waiting.diagnosis, waiting.text, where)
             if method.name == "__init__" and isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS:
-                text = "__init__ loops for ever, so rclpy.spin is never reached. A timer repeats without a loop."
+                text = "__init__ loops forever, so rclpy.spin is never reached. A timer repeats without a loop."
                 return Cause("blocks-in-init", text, where)
             if method.name != "__init__" and _waits_inside(node):
-                text = "A callback that waits for an answer keeps rclpy.spin from ever taking that answer in."
+                text = "This callback waits for a response, but rclpy.spin cannot receive it while the callback waits."
                 return Cause("waits-in-callback", text, where)
     return None
 
 
 def _waits(node: ast.AST, module: Module) -> Cause | None:
-    """A wait without end for a service that turtlesim does not have."""
+    """Return the cause if the node waits forever for a service that turtlesim does not have, else None."""
     if not isinstance(node, ast.Call) or getattr(node.func, "attr", "") != "create_client" or len(node.args) < 2:
         return None
     name = evaluate(node.args[1], module.names)
@@ -97,7 +97,7 @@ def _waits(node: ast.AST, module: Module) -> Cause | None:
         return None
     guess = nearest(f"/{name.strip('/')}", ros_names.SERVICES)
     more = f" There is {guess}." if guess else ""
-    return Cause("service-not-there", f"It waits for the service {shorten(name)}, which nobody offers.{more}")
+    return Cause("service-not-there", f"The node waits for the service {shorten(name)}, which does not exist.{more}")
 
 
 def _waits_inside(node: ast.AST) -> bool:
@@ -108,7 +108,7 @@ def _waits_inside(node: ast.AST) -> bool:
 
 
 def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
-    """The method that would send is there, and nobody calls it nor hands it to a timer or a subscription."""
+    """Return the cause if the method that sends is never called and is not a callback, else None."""
     for module, method in _methods(evidence):
         called = [
             node for node in ast.walk(method) if isinstance(node, ast.Call) and getattr(node.func, "attr", "") in sends
@@ -119,7 +119,7 @@ def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
             for node in each.nodes
         )
         if called and not named and method.name != "__init__":
-            text = f"Nothing calls {shorten(method.name)}: no timer and no subscription was handed it."
+            text = f"Nothing calls {shorten(method.name)}. It is not the callback of a timer or a subscription."
             return Cause("method-never-called", text, Where(module.file, method.lineno))
     return None
 

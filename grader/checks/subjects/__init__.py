@@ -1,1 +1,1 @@
-"""One module per subject that is judged; each defines its kinds of checks."""
+"""The subjects of checks. Each module defines the kinds of checks of one subject."""

@@ -1,4 +1,4 @@
-"""Advice: what would be better, and costs nothing."""
+"""Advice: what would make the code better. It costs no points."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
     """The submission calls create_timer somewhere."""
     timers = evidence.code.calls("create_timer")
     if timers:
-        return passed("A timer gives the rhythm.")
+        return passed("The node uses a timer.")
     if evidence.code.node_file is None:
-        return Finding(Status.SKIPPED, "Not judged, since it is not known yet which file is the node's.")
+        return Finding(Status.SKIPPED, "Not judged, because the file of the node is not known yet.")
     if evidence.code.node_file not in {module.file for module in evidence.code.modules if module.tree is not None}:
-        return Finding(Status.SKIPPED, "Not judged, since the node's file cannot be read.")
-    cause = "In a loop of its own a node hears nothing from other nodes; a timer leaves the waiting to rclpy.spin."
+        return Finding(Status.SKIPPED, "Not judged, because the file of the node cannot be read.")
+    cause = "A node that runs its own loop receives no messages. With a timer, rclpy.spin does the waiting."
     if evidence.code.calls("create_rate"):
-        cause = "What create_rate gives only wakes up while another thread spins the node; a timer needs no thread."
+        cause = "A rate from create_rate only works while another thread spins the node. A timer needs no thread."
     return failed(
         "no-timer",
-        "No timer is used.",
-        "ROS 2 nodes do regular work in a timer.",
+        "The node does not use a timer.",
+        "A ROS 2 node does regular work in a timer callback.",
         cause,
         where=evidence.place("publish", "sleep"),
     )
@@ -35,9 +35,9 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
 USES_TIMER = Kind(
     "uses_timer",
     "source",
-    "A timer gives the rhythm",
+    "The node uses a timer",
     NoParams,
     uses_timer,
     advice=True,
-    about="Advises the student to use `create_timer` if the submission calls it nowhere.",
+    about="Advises the student to use `create_timer` if the submission never calls it.",
 )

@@ -1,4 +1,4 @@
-"""Checks of answers.toml: what a student found out, against the truth asked from the ROS graph as it was recorded."""
+"""Checks of answers.toml: compare the student's answers with the recorded ROS graph."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from grader.checks.kind import Kind, NoParams, choice, number, text, texts
+from grader.checks.kind import Kind, NoParams, choice, number, string, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
 from grader.common.words import a_list, shorten
@@ -21,45 +21,47 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.trial.recording import Endpoint, Recording
 
-KEY = "the answer's name in answers.toml"
-KEEP_LOOKING = "Ask ROS 2 again, and compare letter by letter."
+KEY = "the name of the answer in answers.toml"
+STRING = "a string in quotation marks"
+LIST_OF_STRINGS = "a list of strings in quotation marks"
+KEEP_LOOKING = "Run the `ros2` command again and compare letter by letter."
 
 
 def answers(evidence: Evidence, _: NoParams) -> Finding:
-    """answers.toml is there, can be read, and has answers to what is asked and to nothing else."""
+    """answers.toml exists, can be read, and answers only questions of the exercise."""
     found = evidence.answers
-    expected = f"{FILE} is TOML with a table [answers], a line for each question."
+    expected = f"{FILE} is a TOML file with a table [answers] and one line per question."
     if found is None:
         return failed("no-answers", f"There is no {FILE}.", expected)
     if found.problem is not None:
-        cause = 'A text stands in "quotation marks", a list in [brackets], a number stands alone.'
+        cause = 'Write a string in "quotation marks", a list in [brackets], and a number without either.'
         return failed(
             "answers-unreadable", f"{FILE} cannot be read: {found.problem}.", expected, cause, where=Where(FILE)
         )
-    asked = {str(check.params["answer"]) for check in evidence.exercise.checks if "answer" in check.params}
-    other = sorted(set(found.given) - asked)
+    questions = {str(check.params["answer"]) for check in evidence.exercise.checks if "answer" in check.params}
+    other = sorted(set(found.given) - questions)
     if other:
-        seen = f"{FILE} answers {a_list([shorten(name) for name in other])}, which nobody asked."
-        cause = f"The names are {a_list(sorted(asked - set(found.given)) or sorted(asked))}."
+        seen = f"{FILE} answers {a_list([shorten(name) for name in other])}, but no question has that name."
+        cause = f"The names of the questions are {a_list(sorted(questions - set(found.given)) or sorted(questions))}."
         where = Where(FILE, found.lines.get(other[0]))
         return failed("unknown-answer", seen, expected, cause, where=where)
     if not found.given:
-        return failed("answers-empty", f"{FILE} has no answer yet.", expected, where=Where(FILE))
+        return failed("answers-empty", f"{FILE} has no answers yet.", expected, where=Where(FILE))
     return passed(f"{FILE} can be read.")
 
 
 @dataclass(frozen=True, kw_only=True)
 class OneOf:
-    """The texts that are right, whatever their capitals and blanks."""
+    """The strings that are right. Upper and lower case and spaces do not matter."""
 
-    answer: str = text(KEY, about="The name of the answer in answers.toml.")
-    accepts: tuple[str, ...] = texts(about="The right answers; capitals and spaces do not matter.")
-    cause: str = text("a reason", default=" ", about="What the student reads as the reason when the answer is wrong.")
+    answer: str = string(KEY, about="The name of the answer in answers.toml.")
+    accepts: tuple[str, ...] = strings(about="The right answers. Upper and lower case and spaces do not matter.")
+    cause: str = string("a reason", default=" ", about="What the student reads as the reason when the answer is wrong.")
 
 
 def answer_text(evidence: Evidence, params: OneOf) -> Finding:
-    """The answer is one of the texts."""
-    given = _given(evidence, params.answer, "a text", str)
+    """The answer is one of the strings."""
+    given = _given(evidence, params.answer, STRING, str)
     if isinstance(given, Finding):
         return given
     if _plain(str(given)) in {_plain(each) for each in params.accepts}:
@@ -69,47 +71,47 @@ def answer_text(evidence: Evidence, params: OneOf) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class AllOf:
-    """The texts that must all be in the list, in any order, and no others."""
+    """The strings that must all be in the list, in any order, and no others."""
 
-    answer: str = text(KEY, about="The name of the answer in answers.toml.")
-    items: tuple[str, ...] = texts(about="All items of the right answer, in any order.")
-    cause: str = text("a reason", default=" ", about="What the student reads as the reason when the answer is wrong.")
+    answer: str = string(KEY, about="The name of the answer in answers.toml.")
+    items: tuple[str, ...] = strings(about="All items of the right answer, in any order.")
+    cause: str = string("a reason", default=" ", about="What the student reads as the reason when the answer is wrong.")
 
 
 def answer_list(evidence: Evidence, params: AllOf) -> Finding:
-    """The answer is a list of exactly these texts."""
-    given = _given(evidence, params.answer, "a list of texts", tuple)
+    """The answer is a list of exactly these strings."""
+    given = _given(evidence, params.answer, LIST_OF_STRINGS, tuple)
     return given if isinstance(given, Finding) else _compare(evidence, params.answer, given, params.items, params.cause)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Asked:
-    """What is asked of the graph: of all publishers (subscriptions), those of the node whose type begins and ends so.
+class GraphQuestion:
+    """A question about the ROS graph: the topics, types or nodes of the endpoints that match all these parameters.
 
-    `heard_by`: only topics on which this node has the other end. `many`: the answer is a list.
+    With `heard_by`, only topics count on which that node has the opposite endpoint.
     """
 
-    answer: str = text(KEY, about="The name of the answer in answers.toml.")
-    find: str = choice("topic", "type", "node", about="Which name of an endpoint is the answer.")
+    answer: str = string(KEY, about="The name of the answer in answers.toml.")
+    find: str = choice("topic", "type", "node", about="What is asked about each endpoint.")
     among: str = choice("publisher", "subscription", "all", about="Which endpoints count.")
-    node: str = text("a node's full name", start="/", default="", about="Only endpoints of this node count.")
-    type_starts: str = text(
-        "the beginning of a type's name", default="", about="Only types that begin with this string count."
+    node: str = string("a node's full name", start="/", default="", about="Only endpoints of this node count.")
+    type_starts: str = string(
+        "the beginning of a type name", default="", about="Only types that start with this string count."
     )
-    type_ends: str = text("the end of a type's name", default="", about="Only types that end with this string count.")
-    heard_by: str = text(
+    type_ends: str = string("the end of a type name", default="", about="Only types that end with this string count.")
+    heard_by: str = string(
         "a node's full name", start="/", default="", about="Only topics on which this node has the other end count."
     )
     form: str = choice("text", "list", about="Whether the answer is a single string or a list of all that fit.")
 
 
-def answer_graph(evidence: Evidence, params: Asked) -> Finding:
-    """The answer is what the ROS graph said while the trial ran."""
-    truth = _ask(evidence.recording, params)
+def answer_graph(evidence: Evidence, params: GraphQuestion) -> Finding:
+    """The answer matches the ROS graph during the trial."""
+    truth = _right_answers(evidence.recording, params)
     if params.form == "list":
-        given = _given(evidence, params.answer, "a list of texts", tuple)
+        given = _given(evidence, params.answer, LIST_OF_STRINGS, tuple)
         return given if isinstance(given, Finding) else _compare(evidence, params.answer, given, truth, KEEP_LOOKING)
-    given = _given(evidence, params.answer, "a text", str)
+    given = _given(evidence, params.answer, STRING, str)
     if isinstance(given, Finding):
         return given
     answer = str(given)
@@ -120,7 +122,7 @@ def answer_graph(evidence: Evidence, params: Asked) -> Finding:
     )
 
 
-def _ask(recording: Recording, params: Asked) -> tuple[str, ...]:
+def _right_answers(recording: Recording, params: GraphQuestion) -> tuple[str, ...]:
     endpoints = [end for graph in recording.graphs for end in graph.endpoints if _counts(end, params)]
     if params.heard_by:
         both = [end for graph in recording.graphs for end in graph.endpoints if end.node == params.heard_by]
@@ -130,11 +132,11 @@ def _ask(recording: Recording, params: Asked) -> tuple[str, ...]:
 
 
 def _all(recording: Recording, find: str) -> set[str]:
-    """All that the graph has of what is asked for."""
+    """Return every topic, type or node of the graph."""
     return {getattr(end, find) for graph in recording.graphs for end in graph.endpoints}
 
 
-def _counts(end: Endpoint, params: Asked) -> bool:
+def _counts(end: Endpoint, params: GraphQuestion) -> bool:
     return (
         (params.find == "node" or end.topic not in seen_in.ROS_TOPICS)
         and params.among in (end.kind, "all")
@@ -146,35 +148,35 @@ def _counts(end: Endpoint, params: Asked) -> bool:
 
 def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]) -> tuple[str, str]:
     if find in ("topic", "node") and f"/{answer}" in truth:
-        return "no-slash", f"The full name of a {find} begins with a slash."
+        return "no-slash", f"The full name of a {find} starts with a slash."
     if find == "type" and any(each.replace("/msg/", "/") == answer for each in truth):
-        return "type-without-msg", "In ROS 2 a type has three parts: the package, msg, and the name."
+        return "type-without-msg", "In ROS 2 a type has three parts: the package, the word msg, and the name."
     if find == "type" and any(each.endswith(f"/{answer}") for each in truth):
-        return "type-without-package", "A type's full name begins with its package, as in std_msgs/msg/String."
+        return "type-without-package", "The full name of a type starts with its package, as in std_msgs/msg/String."
     if any(each.lower() == answer.lower() for each in truth):
-        return "capitals", "Capital and small letters differ."
+        return "capitals", "Upper and lower case matter."
     if answer in others:
-        return "answer-another", f"There is such a {find}, but it is not the one that is asked for."
+        return "answer-another", f"This {find} exists, but it is not the one that the question asks for."
     return "wrong-answer", KEEP_LOOKING
 
 
 @dataclass(frozen=True, kw_only=True)
 class AnswerRate:
-    """The mean rate of the messages whose type ends so, in Hz."""
+    """The mean rate (Hz) of the messages whose type has this ending."""
 
-    answer: str = text(KEY, about="The name of the answer in answers.toml.")
-    type_ends: str = text(
-        "the end of a type's name", about="The messages whose type ends with this string are measured."
+    answer: str = string(KEY, about="The name of the answer in answers.toml.")
+    type_ends: str = string(
+        "the end of a type name", about="The messages whose type ends with this string are measured."
     )
     tolerance_percent: float = number(5.0, above=0, at_most=100, about="How far the answer may be off.")
 
 
 def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
-    """The answer is the rate (Hz) that was measured in the trial."""
+    """The answer is the rate (Hz) measured in the trial."""
     arrivals = [each.t_s for each in evidence.recording.messages if each.type.endswith(params.type_ends)]
     steps = [later - earlier for earlier, later in pairwise(arrivals)]
     if not any(steps):
-        # Nothing of the student's runs in this trial.
+        # This trial runs no code of the student, so the machine is at fault.
         message = "No message of that type was recorded, so there is no rate to compare with. Try again."
         raise MachineError(message)
     truth = len(steps) / sum(steps)
@@ -184,48 +186,48 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
     assert isinstance(given, float)
     if Band.around(truth, truth * params.tolerance_percent / 100.0).holds(given):
         return passed(f"{given:g} Hz is right.")
-    diagnosis, cause = "wrong-answer", "`ros2 topic hz` counts messages a second."
-    # No answer is 0: that is how the handout writes one that is not given yet (answers_file.py).
+    diagnosis, cause = "wrong-answer", "`ros2 topic hz` shows the number of messages per second."
+    # The answer cannot be 0 here: the handout writes 0 for an answer that is still missing.
     if Band.around(truth, truth * params.tolerance_percent / 100.0).holds(1.0 / given):
         diagnosis, cause = (
             "period-for-rate",
-            "This is the time between two messages in seconds; the rate is 1 divided by it.",
+            "This is the period, the time between two messages in seconds. The rate is 1 divided by the period.",
         )
     return _wrong(evidence, params.answer, given, diagnosis, cause)
 
 
 def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Finding:
-    """The answer, or the finding that there is none of this form."""
+    """Return the answer, or the finding that it is missing or has the wrong type."""
     found = evidence.answers
     where = Where(FILE, found.lines.get(name) if found is not None else None)
     answer = found.given.get(name) if found is not None else None
     if answer is None:
-        return failed("no-answer", f"{name} is not answered yet.", f"{name} = {form}.", where=where)
+        return failed("no-answer", f"{name} is not answered yet.", f"{name} is {form}.", where=where)
     if not isinstance(answer, kind):
         seen = f"{name} is {_shown(answer)}."
         return failed(
-            "answer-form", seen, f"{name} = {form}.", "The lesson shows how an answer is written.", where=where
+            "answer-form", seen, f"{name} is {form}.", "The lesson shows how to write an answer.", where=where
         )
     return answer
 
 
 def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str], cause: str) -> Finding:
     assert isinstance(given, tuple)
-    said, right = {_plain(each) for each in given}, {_plain(each) for each in truth}
-    if said == right:
-        return passed(f"{a_list(sorted(given))}: right.")
-    extra, missing = len(said - right), len(right - said)
+    answers_, right = {_plain(each) for each in given}, {_plain(each) for each in truth}
+    if answers_ == right:
+        return passed(f"Right: {a_list(sorted(given))}.")
+    extra, missing = len(answers_ - right), len(right - answers_)
     parts = [f"{extra} too many" if extra else "", f"{missing} missing" if missing else ""]
-    told = " and ".join(part for part in parts if part)
+    difference = " and ".join(part for part in parts if part)
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
-    seen = f"{name} is {_shown(given)}: {told}."
+    seen = f"{name} is {_shown(given)}: {difference}."
     diagnosis = "wrong-list" if extra and missing else "list-too-long" if extra else "list-incomplete"
-    return failed(diagnosis, seen, "All that belong there, and no others.", cause.strip(), where=where)
+    return failed(diagnosis, seen, "The list has every right item and no others.", cause.strip(), where=where)
 
 
 def _wrong(evidence: Evidence, name: str, given: Answer, diagnosis: str, cause: str) -> Finding:
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
-    return failed(diagnosis, f"{name} is {_shown(given)}.", "What ROS 2 says.", cause, where=where)
+    return failed(diagnosis, f"{name} is {_shown(given)}.", "What ROS 2 reports.", cause, where=where)
 
 
 def _plain(answer: str) -> str:
@@ -244,7 +246,7 @@ ANSWERS = Kind(
     "answers.toml can be read",
     NoParams,
     answers,
-    about="`answers.toml` exists, is valid TOML, and answers nothing that was not asked.",
+    about="`answers.toml` exists, is valid TOML, and answers only questions of the exercise.",
 )
 TEXT = Kind(
     "answer_text", "source", "The answer is right", OneOf, answer_text, about="The answer is one of the given strings."
@@ -260,15 +262,15 @@ LIST = Kind(
 GRAPH = Kind(
     "answer_graph",
     "trial",
-    "The answer is what ROS 2 says",
-    Asked,
+    "The answer matches ROS 2",
+    GraphQuestion,
     answer_graph,
-    about="The answer is what the ROS graph said while the trial ran.",
+    about="The answer matches the ROS graph during the trial.",
 )
 RATE = Kind(
     "answer_rate",
     "trial",
-    "The rate is what was measured",
+    "The rate matches the measurement",
     AnswerRate,
     answer_rate,
     about="The answer is the rate (Hz) that was measured in the trial.",

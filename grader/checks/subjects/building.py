@@ -1,4 +1,4 @@
-"""Checks of the build: colcon built the package, and what was meant to be installed is in the install tree."""
+"""Checks of the build: colcon built the package, and the install folder has the files that it should have."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
 INSTALLED_MODULE = re.compile(r"(?:local/)?lib/python[\d.]+/(?:site|dist)-packages/(?P<path>.+\.py)")
 LAST_WORDS = re.compile(r"^(?:error|[\w.]*Error|[\w.]*Exception)\b.*", re.MULTILINE)
 SETUP_PY_FRAME = re.compile(r"(?P<before>, in run_setup\n.*\n(?:[ ^~]+\n)?\s+File )\"<string>\"")
-"""How setup.py itself appears in a traceback where colcon runs it to learn what setup() is given."""
+"""How setup.py appears in a traceback when colcon runs it to read the arguments of setup()."""
 UNREAD_SETUP = "return ast.literal_eval(output)"
-"""colcon's own line that reads what setup() was given."""
+"""The line of colcon that reads the arguments of setup()."""
 NO_FILE = re.compile(r"can't copy .*: doesn't exist")
-EXPECTED = "`colcon build` ends without an error and installs the package."
+EXPECTED = "`colcon build` succeeds and installs the package."
 
 
 def plain_files(evidence: Evidence, _: NoParams) -> Finding:
-    """Nothing in the submission had to be left out."""
+    """The submission contains only files that the grader accepts."""
     rejected = evidence.submission.rejected
     if rejected:
         seen = f"Left out: {shorten(rejected[0], 150)}"
         more = f" (and {len(rejected) - 1} more)." if len(rejected) > 1 else "."
-        return failed("rejected-file", seen.rstrip(".") + more, "A package is plain files and folders of its own.")
-    return passed("The package is plain files and folders.")
+        return failed("rejected-file", seen.rstrip(".") + more, "A package contains only normal files and folders.")
+    return passed("The package contains only normal files and folders.")
 
 
 def builds(evidence: Evidence, _: NoParams) -> Finding:
@@ -44,7 +44,7 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
     if known is not None:
         return known
     if build.timed_out:
-        cause = "setup.py should only call setup(): it must not wait, ask or loop."
+        cause = "setup.py should only call setup(). It must not sleep, ask for input or loop."
         return failed(
             "build-timeout",
             f"`colcon build` was still running after {build.seconds:.0f} s.",
@@ -53,7 +53,7 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
             where=Where("setup.py", _setup_line(evidence)),
         )
     if build.out_of is not None:
-        seen = f"`colcon build` used up the {shorten(build.out_of, 40)} that a package may use."
+        seen = f"`colcon build` used all the {shorten(build.out_of, 40)} that a package may use."
         return failed("build-limit", seen, EXPECTED, "setup.py should only call setup().", where=Where("setup.py"))
     if build.exit_code != 0:
         return _broken(evidence)
@@ -61,12 +61,12 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def early(evidence: Evidence, _: NoParams) -> Finding | None:
-    """What keeps the package from being built, whatever colcon says: a setup.py that is not there, or not Python."""
+    """Return a failed finding if setup.py is missing or has a syntax error, so that no build can succeed; else None."""
     setup = evidence.setup_py
     if setup is None:
         cause = "colcon builds an ament_python package by running its setup.py."
         where = Where("package.xml") if "package.xml" in evidence.submission.files else None
-        return failed("setup-py-missing", "There is no setup.py beside package.xml.", EXPECTED, cause, where=where)
+        return failed("setup-py-missing", "There is no setup.py next to package.xml.", EXPECTED, cause, where=where)
     if setup.unreadable is None:
         return None
     why = why_unreadable(setup.unreadable, evidence.submission.files["setup.py"])
@@ -87,27 +87,27 @@ def _broken(evidence: Evidence) -> Finding:
         return failed("setup-py-raises", f"setup.py failed: {crash.seen}.", EXPECTED, crash.meaning, where=crash.where)
     where = Where("setup.py", _setup_line(evidence))
     if UNREAD_SETUP in build.log:
-        seen = "colcon could not read from setup.py what setup() was given."
-        cause = "setup.py should only call setup(): it must not print anything, nor end the program."
+        seen = "colcon could not read the arguments of setup() in setup.py."
+        cause = "setup.py should only call setup(). It must not print anything or exit."
         return failed("setup-py-output", seen, EXPECTED, cause, where=where)
     words = [line for line in LAST_WORDS.findall(build.log) if "CalledProcessError" not in line]
-    said = f": {shorten(words[-1], 150)}" if words else f" (exit code {build.exit_code})"
+    message = f": {shorten(words[-1], 150)}" if words else f" (exit code {build.exit_code})"
     if words and NO_FILE.search(words[-1]):
-        cause = "setup.py names a file in data_files that the package does not have."
-        return failed("data-file-missing", f"`colcon build` failed{said}.", EXPECTED, cause, where=where)
-    return failed("build-failed", f"`colcon build` failed{said}.", EXPECTED, _other_type(evidence), where=where)
+        cause = "data_files in setup.py names a file that does not exist in the package."
+        return failed("data-file-missing", f"`colcon build` failed{message}.", EXPECTED, cause, where=where)
+    return failed("build-failed", f"`colcon build` failed{message}.", EXPECTED, _other_type(evidence), where=where)
 
 
 def _other_type(evidence: Evidence) -> str:
-    """A cause in words where package.xml makes colcon take the package for one of another kind; else empty."""
+    """Return a cause if package.xml gives the package another build type, else an empty string."""
     manifest = evidence.manifest
     if manifest is None or manifest.problem is not None or manifest.build_type == "ament_python":
         return ""
-    return "colcon goes by package.xml, which is not that of an ament_python package."
+    return "colcon reads the build type from package.xml, and it is not ament_python."
 
 
 def _modules(evidence: Evidence) -> Finding:
-    """Exit code 0 is not enough: the modules must be there."""
+    """Return the finding about the installed modules: colcon may install nothing and still return exit code 0."""
     files = evidence.submission.files
     modules = [import_path(path) for path in files if path.endswith(".py")]
     folders = sorted({path.partition("/")[0] for path in modules if path.count("/") == 1} - {"test", "tests", "launch"})
@@ -116,18 +116,18 @@ def _modules(evidence: Evidence) -> Finding:
     missing = not any(INSTALLED_MODULE.fullmatch(path) for path in evidence.built.installed) and not is_linked(evidence)
     if (missing or (finds and is_linked(evidence))) and bare and len(bare) == len(folders):
         seen = f"`colcon build` installed none of the Python files: the folder {shorten(bare[0])} has no __init__.py."
-        expected = "A folder with a file __init__.py (it may be empty) is a Python package."
-        cause = "find_packages in setup.py finds only such folders." if finds else ""
+        expected = "Each folder with Python files has a file __init__.py, which may be empty."
+        cause = "find_packages in setup.py finds only folders with an __init__.py." if finds else ""
         return failed("missing-init", seen, expected, cause, where=Where("setup.py", _setup_line(evidence)))
     if missing:
-        seen = "`colcon build` said that it was done, and installed none of the Python files."
-        cause = _other_type(evidence) or "The argument packages of setup() says which folders to install."
+        seen = "`colcon build` finished but installed none of the Python files."
+        cause = _other_type(evidence) or "The packages argument of setup() lists the folders to install."
         return failed("nothing-installed", seen, EXPECTED, cause, where=Where("setup.py", _setup_line(evidence)))
     return passed("`colcon build` built and installed the package.")
 
 
 def is_linked(evidence: Evidence) -> bool:
-    """True after --symlink-install, which leaves the modules where they are."""
+    """Return whether the build used --symlink-install, which does not copy the modules."""
     return any(path.endswith(".egg-link") for path in evidence.built.installed)
 
 
@@ -136,11 +136,11 @@ def _setup_line(evidence: Evidence) -> int | None:
 
 
 def installs(evidence: Evidence, _: NoParams) -> Finding:
-    """The files by which ROS 2 finds a package are installed: package.xml and the marker in the resource index."""
+    """package.xml and the marker file in the resource index are installed: ROS 2 finds the package by them."""
     installed = evidence.built.installed
     name = _package_name(evidence)
     wanted = {
-        f"share/ament_index/resource_index/packages/{name}": f"the marker resource/{name}",
+        f"share/ament_index/resource_index/packages/{name}": f"the marker file resource/{name}",
         f"share/{name}/package.xml": "package.xml",
     }
     missing = [words for path, words in wanted.items() if path not in installed]
@@ -148,13 +148,15 @@ def installs(evidence: Evidence, _: NoParams) -> Finding:
         return passed("ROS 2 finds the installed package.")
     where = Where("setup.py", _setup_line(evidence))
     seen = f"Not installed: {a_list(missing)}."
-    expected = "data_files in setup.py installs the marker into the resource index, and package.xml into share."
+    expected = "data_files in setup.py installs the marker file into the resource index and package.xml into share."
     diagnosis = "resource-marker" if "marker" in missing[0] else "package-xml-not-installed"
-    return failed(diagnosis, seen, expected, "By these files `ros2 run` and other tools find a package.", where=where)
+    return failed(
+        diagnosis, seen, expected, "`ros2 run` and other tools use these files to find a package.", where=where
+    )
 
 
 def _package_name(evidence: Evidence) -> str:
-    """The name that colcon installs the package by."""
+    """Return the name under which colcon installs the package."""
     if evidence.built.package is not None:
         return evidence.built.package
     manifest, setup = evidence.manifest, evidence.setup_py
@@ -166,7 +168,7 @@ def _package_name(evidence: Evidence) -> str:
 PLAIN_FILES = Kind(
     "plain_files",
     "source",
-    "The package is plain files",
+    "The package contains only normal files",
     NoParams,
     plain_files,
     about="The submission holds only files and folders: no link that leads out of it, no device, no huge file.",
@@ -178,12 +180,12 @@ BUILDS = Kind(
     NoParams,
     builds,
     early=early,
-    about="`colcon build` ends without an error and installs the package's Python modules.",
+    about="`colcon build` succeeds and installs the Python modules of the package.",
 )
 INSTALLS = Kind(
     "installs",
     "build",
-    "The package can be found once it is installed",
+    "ROS 2 can find the installed package",
     NoParams,
     installs,
     about="package.xml and the marker for the resource index are installed, so that ROS 2 finds the package.",

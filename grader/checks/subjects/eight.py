@@ -1,4 +1,4 @@
-"""Check of a figure eight: two round lobes, one to each side, that meet where the turtle started."""
+"""Check of a figure eight: two round lobes, one to each side, that meet at the start position."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 
 NAMES = ("first", "second")
 SMALL_RAD = 0.3
-"""A bend of less than this is no lobe."""
+"""A smaller turn than this is not a lobe."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Eight:
-    """Both lobes have this radius, and turn by 360 degrees; the first one to the left, or to the right."""
+    """Both lobes have this radius and turn by 360 degrees; the first one is to the left or to the right."""
 
     radius_m: float = number(above=0, at_most=2.5, about="The radius of both lobes.")
     radius_tolerance_m: float = number(0.1, above=0, about="How far a radius may be off.")
     residual_m: float = number(
-        0.03, above=0, about="How far a lobe may stray from its fitted circle (root mean square)."
+        0.03, above=0, about="How far a lobe may deviate from its fitted circle (root mean square)."
     )
     angle_tolerance_deg: float = number(12.0, above=0, about="How far a lobe may be from 360 degrees.")
     closing_m: float = number(0.2, above=0, about="How far from the start the first lobe may end.")
@@ -40,7 +40,7 @@ class Eight:
 
 @dataclass(frozen=True)
 class Lobe:
-    """A piece of the way that bends to one side: `turned_rad` above 0 to the left, the fitted circle, its `end`."""
+    """A part of the trajectory that bends to one side: `turned_rad` (positive: left), fitted circle, end point (m)."""
 
     turned_rad: float
     circle: Circle | None
@@ -53,7 +53,7 @@ class Lobe:
 
 
 def lobes_of(track: Track) -> list[Lobe]:
-    """The pieces of the way between one change of the turning side and the next."""
+    """Split the trajectory where it changes from left turns to right turns or back."""
     side = np.where(track.steps > RESTS_M, np.sign(np.where(np.abs(track.turn) > STRAIGHT_RAD, track.turn, 0.0)), 0.0)
     bends = np.flatnonzero(side)
     found: list[Lobe] = []
@@ -68,7 +68,7 @@ def lobes_of(track: Track) -> list[Lobe]:
 
 def eight(evidence: Evidence, params: Eight) -> Finding:
     """The turtle drives a figure eight."""
-    expected = f"An eight: a full circle of radius {params.radius_m:.1f} m to one side, then one to the other."
+    expected = f"A figure eight: a full circle of radius {params.radius_m:.1f} m to one side, then one to the other."
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     track = evidence.track
     still = not_driven(evidence, expected, where)
@@ -78,12 +78,12 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
         return failed("wall", "The turtle ran into a wall.", expected, "The lobes are too large.", where=where)
     lobes = lobes_of(track)
     if len(lobes) < 2:
-        what = f"one lobe, to the {lobes[0].side}" if lobes else "no lobe at all"
-        cause = "For the second lobe the sign of angular.z changes, once the first one is closed."
-        return failed("one-lobe", f"The way has {what}.", expected, cause, where=where)
+        what = f"only one lobe, to the {lobes[0].side}" if lobes else "no lobe"
+        cause = "When the first lobe is closed, the sign of angular.z must change for the second one."
+        return failed("one-lobe", f"The trajectory has {what}.", expected, cause, where=where)
     if params.first not in (lobes[0].side, "either"):
         seen = f"The first lobe goes to the {lobes[0].side}."
-        cause = "angular.z above 0 turns to the left."
+        cause = "A positive angular.z turns the turtle to the left."
         return failed("wrong-side-first", seen, f"The first lobe goes to the {params.first}.", cause, where=where)
     near = False
     first, second = (
@@ -94,40 +94,40 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
         if finding is not None:
             open_ = finding.diagnosis == "lobe-angle" and abs(lobes[0].turned_rad) < math.tau
             return too_soon(finding, evidence) if open_ and second[0] is None else finding
-    return passed(f"The turtle drove an eight of radius {params.radius_m:.1f} m.", near_edge=near)
+    return passed(f"The turtle drove a figure eight with radius {params.radius_m:.1f} m.", near_edge=near)
 
 
 def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: bool) -> tuple[Finding | None, bool]:
-    """What is wrong with a lobe, if anything; and whether a value is near its edge."""
+    """Return the failed finding about a lobe or None, and whether a value is near an edge."""
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
     recording = evidence.recording
-    told = f"The {name} lobe, to the {lobe.side},"
-    wanted = f"Radius {params.radius_m:.1f} m and 360 degrees, in both lobes."
+    subject = f"The {name} lobe, to the {lobe.side},"
+    wanted = f"Both lobes have a radius of {params.radius_m:.1f} m and turn by 360 degrees."
     round_ = Band.at_most(params.residual_m)
     if lobe.circle is None or not round_.holds(lobe.circle.rms):
         off = lobe.circle.rms if lobe.circle is not None else math.inf
-        seen = f"{told} is not round: it strays {off:.2f} m from the nearest circle."
-        cause = "Within a lobe every command is the same."
+        seen = f"{subject} is not round: it deviates by {off:.2f} m from the best-fitting circle."
+        cause = "All commands within one lobe must be the same."
         return failed("lobe-not-round", seen, wanted, cause, where=where), False
     size = Band.around(params.radius_m, params.radius_tolerance_m)
     radius = lobe.circle.radius
     near = size.near(radius) or round_.near(lobe.circle.rms)
     if not size.holds(radius):
         more = radius - params.radius_m
-        seen = f"{told} has a radius of {radius:.2f} m: {abs(more):.2f} m too {'large' if more > 0 else 'small'}."
+        seen = f"{subject} has a radius of {radius:.2f} m: {abs(more):.2f} m too {'large' if more > 0 else 'small'}."
         cause = "The radius is linear.x divided by angular.z."
         return failed("lobe-radius", seen, wanted, cause, where=where, near_edge=near), near
     degrees = abs(math.degrees(lobe.turned_rad))
     full = Band.around(360.0, params.angle_tolerance_deg)
-    if last:  # (whoever goes on after the eight has driven one)
+    if last:  # (a turtle that continues after the second lobe has still driven a figure eight)
         full = Band(full.low, None, params.angle_tolerance_deg)
     near |= full.near(degrees)
     if not full.holds(degrees):
         if degrees < 360.0:
-            seen = f"{told} is not closed: it ends {360.0 - degrees:.0f} degrees early."
+            seen = f"{subject} is not closed: it ends {360.0 - degrees:.0f} degrees too early."
         else:
-            seen = f"{told} goes on for {degrees - 360.0:.0f} degrees after it is closed."
-        cause = "A full circle takes 2 pi / angular.z seconds: how many calls of the timer is that?"
+            seen = f"{subject} continues for {degrees - 360.0:.0f} degrees after it was closed."
+        cause = "A full circle takes 2 pi / angular.z seconds. How many timer calls is that?"
         finding = failed("lobe-angle", seen, wanted, cause, where=evidence.place("create_timer"), near_edge=near)
         turning = math.degrees(float(np.abs(recording.frames.angular).max()))
         return unless_starved(finding, recording, abs(degrees - 360.0) - params.angle_tolerance_deg, turning), near
@@ -135,8 +135,8 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
     gap = math.dist(lobe.end, start)
     meets = Band.at_most(params.closing_m)
     if not last and not meets.holds(gap):
-        seen = f"{told} ends {gap:.2f} m beside the turtle's start."
-        finding = failed("lobe-gap", seen, "Both lobes meet at the start.", where=where, near_edge=True)
+        seen = f"{subject} ends {gap:.2f} m away from the start position."
+        finding = failed("lobe-gap", seen, "Both lobes meet at the start position.", where=where, near_edge=True)
         speed = float(recording.frames.linear.max())
         return unless_starved(finding, recording, gap - params.closing_m, speed), near
     return None, near

@@ -22,24 +22,24 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 DATA = (ast.Constant, ast.List, ast.Tuple, ast.Dict, ast.Set, ast.JoinedStr)
-"""Expressions whose value nobody can call."""
+"""Expressions whose value is not callable."""
 
 
 def entry_point(evidence: Evidence, _: NoParams) -> Finding:
-    """The executable is installed where `ros2 run` looks, and leads to a callable of a module that Python can read."""
+    """The executable is installed where `ros2 run` looks, and its entry point names a callable in a readable module."""
     executable, build = evidence.trial.executable, evidence.built
     target = build.entry_points.get(executable)
     if target is None:
         return no_entry_point(evidence)
     if executable not in build.executables:
         folder = f"lib/{build.package or evidence.exercise.package}"
-        seen = f"{executable} was not installed into the package's own folder, {folder}."
-        expected = "setup.cfg says where executables go, so that `ros2 run` finds them."
-        cause = "Compare it with the lesson's, letter by letter."
+        seen = f"{executable} was not installed in the folder of the package, {folder}."
+        expected = "setup.cfg says where to install executables, so that `ros2 run` finds them."
+        cause = "Compare it with the setup.cfg in the lesson, letter by letter."
         if "setup.cfg" not in evidence.submission.files:
             cause = "setup.cfg is missing."
         elif build.package not in (None, evidence.exercise.package):
-            cause = "It must name the folder after the package, as package.xml names that."
+            cause = "The folder name must be the package name in package.xml."
         where = Where("setup.cfg" if "setup.cfg" in evidence.submission.files else "setup.py")
         return failed("setup-cfg", seen, expected, cause, where=where)
     module, _colon, attribute = target.partition(":")
@@ -53,11 +53,11 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
         return _no_module(evidence, module_name)
     if not _is_installed(evidence, file):
         seen = f"{file} is not installed, so {module_name} cannot be imported."
-        cause = "The argument packages of setup() leaves its folder out, or the folder has no __init__.py."
+        cause = "The packages argument of setup() does not list its folder, or the folder has no __init__.py."
         return failed(
             "module-not-installed",
             seen,
-            f"The entry point {evidence.trial.executable} needs it.",
+            f"The entry point {evidence.trial.executable} needs this module.",
             cause,
             where=line(evidence),
         )
@@ -70,16 +70,16 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
 def _no_module(evidence: Evidence, module_name: str) -> Finding:
     files = evidence.submission.files
     executable = evidence.trial.executable
-    seen = f"The entry point {executable} leads to the module {shorten(module_name)}, which is not there."
+    seen = f"The entry point {executable} names the module {shorten(module_name)}, which does not exist."
     modules = [
         import_path(path)[: -len(".py")].replace("/", ".") for path in files if path.endswith(".py") and "/" in path
     ]
-    expected = "A module is named by its folder and file, as in FOLDER.FILE."
+    expected = "A module name has the form FOLDER.FILE."
     if module_name.endswith(".py"):
-        cause = "A module is named without the ending .py."
+        cause = "Write the module name without the ending .py."
         return failed("entry-point-py", seen, expected, cause, where=line(evidence))
     if module_name in evidence.exercise.package or "." not in module_name:
-        cause = "The folder comes first, then a point, then the file without its .py."
+        cause = "Write the folder first, then a dot, then the file name without .py."
     else:
         guess = nearest(module_name, modules)
         cause = f"There is a module {shorten(guess)}." if guess else "Compare it with the names of your files."
@@ -97,51 +97,54 @@ def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
     executable = evidence.trial.executable
     name = attribute.partition(".")[0]
     if not name:
-        seen = f"The entry point {executable} leads to {module.file}, and names no function in it."
-        cause = "After the module come a colon and the function's name."
+        seen = f"The entry point {executable} names the module in {module.file}, but no function."
+        cause = "After the module comes a colon, then the function name."
         return failed("entry-point-no-function", seen, f"{FORM}.", cause, where=line(evidence))
     bound = list(_bindings(module, name))
     if not bound:
         return _no_function(evidence, module, name)
     last = bound[-1]
     if isinstance(last, ast.Assign | ast.AnnAssign) and isinstance(last.value, DATA):
-        seen = f"The entry point {executable} leads to {shorten(name)}, which is no function."
+        seen = f"The entry point {executable} names {shorten(name)}, which is not a function."
         return failed(
-            "entry-point-not-callable", seen, "A function, made with def.", where=Where(module.file, last.lineno)
+            "entry-point-not-callable",
+            seen,
+            "It names a function that is defined with def.",
+            where=Where(module.file, last.lineno),
         )
-    return passed(f"The entry point {executable} leads to {shorten(name)} in {module.file}.")
+    return passed(f"The entry point {executable} names {shorten(name)} in {module.file}.")
 
 
 def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
     executable = evidence.trial.executable
     if not module.nodes[1:]:
-        expected = f"It has the function {shorten(name)}, which the entry point leads to."
+        expected = f"It contains the function {shorten(name)}, which the entry point names."
         where = Where(module.file)
-        return failed("empty-file", f"{module.file} has no code in it.", expected, "Is it saved?", where=where)
-    seen = f"The entry point {executable} leads to the function {shorten(name)}, which {module.file} does not have."
-    expected = "A function at the top level of the file."
+        return failed("empty-file", f"{module.file} contains no code.", expected, "Did you save the file?", where=where)
+    seen = f"The entry point {executable} names the function {shorten(name)}, which {module.file} does not have."
+    expected = "The function is at the top level of the file."
     functions = [node for node in module.nodes if isinstance(node, ast.FunctionDef)]
     at_top = next((node for node in module.nodes if isinstance(node, ast.Call) and _is_top_level(module, node)), None)
     if at_top is not None and not any(node.name == name for node in functions):
-        cause = "The program stands at the top level of the file: it belongs into a function of that name."
+        cause = "The program is at the top level of the file. Move it into a function with that name."
         return failed("top-level-code", seen, expected, cause, where=Where(module.file, at_top.lineno))
     inside = next((node for node in functions if node.name == name and node.col_offset), None)
     if inside is not None:
-        cause = f"{name} is indented, and so belongs to the class above it: move it to the left edge."
+        cause = f"{name} is indented, so it belongs to the class above it. Remove the indentation."
         return failed("main-in-class", seen, expected, cause, where=Where(module.file, inside.lineno))
     guess = nearest(name, [node.name for node in functions if node.col_offset == 0])
-    cause = f"It has {shorten(guess)}." if guess else "Nothing at the left edge of the file has that name."
+    cause = f"It has a function {shorten(guess)}." if guess else "Nothing at the top level of the file has that name."
     return failed("entry-point-function", seen, expected, cause, where=line(evidence))
 
 
 def _is_top_level(module: Module, call: ast.Call) -> bool:
-    """Whether the call is rclpy.init or rclpy.spin, outside of every function."""
+    """Return whether this is a call of rclpy.init or rclpy.spin outside any function."""
     top = [node for node in module.body if isinstance(node, ast.Expr | ast.Assign)]
     return dotted(call.func) in ("rclpy.init", "rclpy.spin") and any(call in ast.walk(node) for node in top)
 
 
 def early(evidence: Evidence, _: NoParams) -> Finding | None:
-    """A module that Python cannot read: no build makes it run."""
+    """Return a failed finding if the module has a syntax error, so that no build can make it run; else None."""
     setup, files = evidence.setup_py, evidence.submission.files
     point = setup.entry_point(evidence.trial.executable) if setup is not None else None
     file = module_file(point.target.partition(":")[0], files) if point is not None and point.target else None
@@ -150,7 +153,7 @@ def early(evidence: Evidence, _: NoParams) -> Finding | None:
 
 
 def _bindings(module: Module, name: str) -> Iterator[ast.stmt]:
-    """The statements of the module's top level (blocks of if, try and with opened) that give the name a value."""
+    """Yield the top-level statements (also inside if, try, with and loops) that bind the name."""
     waiting = list(module.body)
     while waiting:
         node = waiting.pop(0)
@@ -177,9 +180,9 @@ def _binds(node: ast.stmt, name: str) -> bool:
 ENTRY_POINT = Kind(
     "entry_point",
     "build",
-    "The entry point leads to a function",
+    "The entry point names a function",
     NoParams,
     entry_point,
     early=early,
-    about="`ros2 run` finds the executable, and its entry point leads to a function in a module that Python can read.",
+    about="`ros2 run` finds the executable, and its entry point names a function in a module that Python can read.",
 )

@@ -1,4 +1,4 @@
-"""Check of a drive to a goal: the turtle arrives, and stays there."""
+"""Check of a drive to a goal: the turtle arrives and stops there."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 REST_S = 0.5
-"""At the end the turtle must have stood still for this long."""
+"""The turtle must stand still for this long at the end."""
 REST_M = 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
 class Goal:
-    """Where the turtle is to be at the end (m), and how near."""
+    """The goal (m), and the largest allowed distance (m) from it at the end."""
 
     x_m: float = number(about="x of the goal.")
     y_m: float = number(about="y of the goal.")
@@ -44,23 +44,21 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     if not close.holds(end):
         seen = f"The turtle ends at x={track.x[-1]:.2f} y={track.y[-1]:.2f}, {end:.2f} m from the goal."
         if close.holds(nearest):
-            seen += f" It came as near as {nearest:.2f} m on the way."
-            cause = "It does not stop at the goal: close to it, the command is all zeros."
+            seen += f" On the way it came within {nearest:.2f} m of the goal."
+            cause = "The turtle does not stop at the goal. Near the goal, publish a command with all values 0."
             return failed("goes-on", seen, expected, cause, where=where, near_edge=near)
         if end >= away[0] - MOVED_M:
-            cause = "The direction to the goal is atan2(goal_y - y, goal_x - x); the turtle's own is theta."
+            cause = "The direction to the goal is atan2(goal_y - y, goal_x - x). The direction of the turtle is theta."
             return failed("away-from-goal", seen, expected, cause, where=where, near_edge=near)
-        cause = (
-            "The nearer, the slower is right, but not so slow that it never arrives; or it turns the wrong way round."
-        )
+        cause = "The turtle may drive too slowly near the goal, or it may turn in the wrong direction."
         if track.wall.any():
-            cause = "It ran into a wall. An angle beyond pi must be brought back: atan2(sin(a), cos(a))."
+            cause = "The turtle ran into a wall. Keep the angle between -pi and pi with atan2(sin(a), cos(a))."
         return failed("not-there", seen, expected, cause, where=where, near_edge=near)
     late = track.t_s >= track.t_s[-1] - REST_S
     drift = float(track.steps[late].sum())
     if not drift <= REST_M:
-        seen = f"The turtle still drives at the end: {drift:.2f} m in the last {REST_S:g} s."
-        cause = "Close to the goal the command is all zeros."
+        seen = f"The turtle is still moving at the end: {drift:.2f} m in the last {REST_S:g} s."
+        cause = "Near the goal, publish a command with all values 0."
         return failed("still-moving", seen, expected, cause, where=where)
     start = math.dist((float(track.x[0]), float(track.y[0])), (params.x_m, params.y_m))
     return passed(f"The turtle drove to its goal, {start:.1f} m away, and stopped.", near_edge=near)

@@ -1,4 +1,4 @@
-"""Checks of the log, where logging is the task: lines in the lesson's format, at a rate, with a rising counter."""
+"""Checks of the log in exercises about logging: lines in the right format, at the right rate, with a counter."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 from grader.checks.causes.crash import crash_of, end_seen, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_silent import why_nothing, why_qos
-from grader.checks.kind import Kind, number, text
+from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.rate import Rate, Subject, rate_of
-from grader.common.words import number as shown
 from grader.common.words import shorten
 from grader.evidence import lines
 from grader.evidence.arrivals import measure_arrivals
@@ -22,37 +21,40 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 LOG_LINE = Subject("log line", "info")
-FORMAT = "The format of a line, with its numbers in braces, as in `Hello {counter}` or `x={x:.2f}`."
+FORMAT = "The format of a line with its numbers in braces, such as `Hello {counter}` or `x={x:.2f}`."
 LEVELS = ("info", "warning", "warn", "error", "fatal")
 
 
 @dataclass(frozen=True, kw_only=True)
 class LogFormat:
-    """The format of a line, its numbers in braces: "Hello {counter}", "x={x:.2f}"."""
+    """The format of a log line with its numbers in braces: "Hello {counter}", "x={x:.2f}"."""
 
-    format: str = text("a line of the log, with its numbers in braces", about=FORMAT)
+    format: str = string("a log line with its numbers in braces", about=FORMAT)
 
 
 def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
     """Lines in the format arrive on /rosout."""
     example = lines.Format(params.format).example()
-    expected = f'Lines such as "{example}" in the log.'
+    expected = f'The log contains lines such as "{example}".'
     if lines.in_format(evidence.recording, params.format):
-        return passed(f'The log has lines such as "{example}".')
+        return passed(expected)
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_seen(evidence), expected)
-    said = [line.text for line in lines.students(evidence.recording)]
+    logged = [line.text for line in lines.students(evidence.recording)]
     qos = why_qos(evidence)
     if qos is not None:
-        seen = "No message reached the subscription, and no line came."
+        seen = "No message reached the subscription, and nothing was logged."
         return failed(qos.diagnosis, seen, expected, qos.text, where=qos.where)
-    if said:
-        return _other_format(evidence, params, said, expected)
+    if logged:
+        return _other_format(evidence, params, logged, expected)
     pattern = lines.Format(params.format).pattern()
     if any(pattern.search(line) for line in evidence.recording.stdout.text.splitlines()):
-        seen = "The lines are printed, and not logged."
-        cause = "print writes to this terminal alone; get_logger().info(...) tells ROS 2 too, with time and node."
+        seen = "The lines are printed, not logged."
+        cause = (
+            "print only writes to the terminal. get_logger().info(...) also sends the line to ROS 2, "
+            "with the time and the node name."
+        )
         return failed("print-instead", seen, expected, cause, where=evidence.place("print"))
     return _silent(evidence, expected)
 
@@ -61,42 +63,42 @@ def _silent(evidence: Evidence, expected: str) -> Finding:
     seen = f"The node logged nothing. {end_seen(evidence)}".rstrip()
     code = evidence.code
     if not any(code.calls(level) for level in LEVELS):
-        cause = "get_logger().info(...) is called nowhere."
+        cause = "get_logger().info(...) is never called."
         return failed("no-log", seen, expected, cause, where=code.start)
     why = why_nothing(evidence, LEVELS)
     if why is not None:
         return failed(why.diagnosis, seen, expected, why.text, where=why.where)
-    cause = "create_timer is called nowhere." if not code.calls("create_timer") else "The line is never reached."
+    cause = "create_timer is never called." if not code.calls("create_timer") else "The line is never reached."
     return failed("never-logs", seen, expected, cause, where=evidence.place(*LEVELS))
 
 
-def _other_format(evidence: Evidence, params: LogFormat, said: list[str], expected: str) -> Finding:
-    line = said[-1]
-    seen = f'The log says "{shorten(line, 90)}".'
-    diagnosis, cause = "log-format", "Compare it letter by letter: capitals, blanks and points count."
+def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expected: str) -> Finding:
+    line = logged[-1]
+    seen = f'The last log line is "{shorten(line, 90)}".'
+    diagnosis, cause = "log-format", "Compare it letter by letter: capital letters, spaces and dots count."
     pattern = lines.Format(params.format).pattern()
     if re.fullmatch(pattern.pattern, line, re.IGNORECASE | re.ASCII):
-        diagnosis, cause = "log-capitals", "Capital and small letters differ."
-    elif re.search(rf"{pattern.pattern}(?!\.?\d)", line, re.ASCII):  # (not a number of which a part fits)
-        diagnosis, cause = "log-more", "There is more on the line than what is asked for."
+        diagnosis, cause = "log-capitals", "Upper and lower case matter."
+    elif re.search(rf"{pattern.pattern}(?!\.?\d)", line, re.ASCII):  # (not only the first digits of a number)
+        diagnosis, cause = "log-more", "The line contains more than it should."
     elif _same_words(line, params.format):
-        diagnosis, cause = "log-numbers", "The words are right; the numbers have another form, or are missing."
+        diagnosis, cause = "log-numbers", "The words are right, but the numbers are missing or have the wrong format."
         if ":." in params.format:
-            cause += " In an f-string {value:.2f} writes two digits behind the point."
+            cause += " In an f-string, {value:.2f} writes two decimal places."
     return failed(diagnosis, seen, expected, cause, where=evidence.place(*LEVELS))
 
 
 def _same_words(line: str, format_: str) -> bool:
-    """Whether only the numbers differ."""
+    """Return whether only the numbers differ."""
     words = re.sub(r"[-+]?[\d.]+(e[-+]?\d+)?|\bnan\b|\binf\b", "", line)
     return "".join(words.split()) == "".join(lines.FIELD.sub("", format_).split())
 
 
 @dataclass(frozen=True, kw_only=True)
 class LogRate(Rate):
-    """As the rate of commands, for lines in the format."""
+    """Like the rate of commands, but for log lines in the format."""
 
-    format: str = text("a line of the log, with its numbers in braces", about=FORMAT)
+    format: str = string("a log line with its numbers in braces", about=FORMAT)
 
 
 def log_rate(evidence: Evidence, params: LogRate) -> Finding:
@@ -107,42 +109,48 @@ def log_rate(evidence: Evidence, params: LogRate) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class Counter:
-    """The number in the line that counts, by the name that it has in the format, and where it begins."""
+    """The name that the counter has in the format, and its first value."""
 
-    format: str = text("a line of the log, with its numbers in braces", about=FORMAT)
-    counts: str = text("the name of a number in the format", about="The number in the format that counts.")
-    first: float = number(0.0, about="Where the counter begins.")
+    format: str = string("a log line with its numbers in braces", about=FORMAT)
+    counts: str = string("the name of a number in the format", about="The name of the counter in the format.")
+    first: float = number(0.0, about="The first value of the counter.")
 
 
 def log_counter(evidence: Evidence, params: Counter) -> Finding:
-    """The number begins as asked and rises by one from line to line."""
+    """The number starts at the right value and increases by one with each line."""
     numbers = [line.numbers[params.counts] for line in lines.in_format(evidence.recording, params.format)]
     form = lines.Format(params.format)
     expected = f'"{form.example(params.first)}", then "{form.example(params.first + 1)}", and so on.'
     where = evidence.place(*LEVELS)
     if len(numbers) < 2:
-        seen = "There are not two lines to compare."
+        seen = "There are fewer than two lines to compare."
         return failed("too-few-log-lines", seen, expected, ended_early(evidence), where=where)
     steps = [later - earlier for earlier, later in pairwise(numbers)]
     if not any(steps):
-        seen = f"The number stays {numbers[0]:.0f}."
-        cause = "What must live from one call to the next is kept in self, and raised in each."
+        seen = f"The number is always {numbers[0]:.0f}."
+        cause = "Store the counter as an attribute of self and increase it in every call."
         return failed("counter-stuck", seen, expected, cause, where=where)
     if any(step != 1.0 for step in steps):
         at = next(index for index, step in enumerate(steps) if step != 1.0)
-        seen = f"After {numbers[at]:.0f} comes {numbers[at + 1]:.0f}."
-        return failed("counter-step", seen, expected, "Each line is to be one more than the one before.", where=where)
+        seen = f"The number after {numbers[at]:.0f} is {numbers[at + 1]:.0f}."
+        return failed(
+            "counter-step", seen, expected, "Each number must be one more than the number before.", where=where
+        )
     if numbers[0] != params.first:
         seen = f"The first number is {numbers[0]:.0f}."
-        cause = "Log first, then count." if numbers[0] == params.first + 1 else f"Begin with {shown(params.first)}."
+        cause = (
+            "Log the number first, then increase it."
+            if numbers[0] == params.first + 1
+            else f"Start with {params.first:.0f}."
+        )
         return failed("counter-start", seen, expected, cause, where=where)
-    return passed(f"The counter rises from {params.first:.0f}, by one a line.")
+    return passed(f"The counter starts at {params.first:.0f} and increases by one per line.")
 
 
 LOG_LINES = Kind(
     "log_lines",
     "trial",
-    "The log has the lines",
+    "The log contains the lines",
     LogFormat,
     log_lines,
     about="The node logs lines in the given format.",
@@ -150,7 +158,7 @@ LOG_LINES = Kind(
 LOG_RATE = Kind(
     "log_rate",
     "trial",
-    "Log lines come at the right rate",
+    "Log lines arrive at the right rate",
     LogRate,
     log_rate,
     about="Lines in the given format arrive at the given rate, from soon after the start until the end.",
@@ -158,8 +166,8 @@ LOG_RATE = Kind(
 LOG_COUNTER = Kind(
     "log_counter",
     "trial",
-    "The counter rises",
+    "The counter increases by one",
     Counter,
     log_counter,
-    about="A number in the lines begins as given and rises by one from line to line.",
+    about="A number in the lines starts at the given value and increases by one with each line.",
 )

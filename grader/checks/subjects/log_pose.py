@@ -1,4 +1,4 @@
-"""Checks of what a node logs of the turtle: where it is, how far it has come; against the simulator's own frames."""
+"""Checks of the logged position and distance of the turtle, compared with the simulator's own frames."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.kind import Kind, number, text
+from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.common.lazy import np
 from grader.evidence import lines
@@ -19,124 +19,135 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 EARLY_S = 0.02
-"""A frame and a little: the simulator's frame and the line bear times of their own."""
+"""A little more than one frame: the frame and the log line are stamped at different moments."""
 FEWEST = 3
 
 
 @dataclass(frozen=True, kw_only=True)
 class LogPosition:
-    """A line's x and y may be that old (`lag_s`), and off by the tolerance."""
+    """The logged x and y may be at most `lag_s` old and may differ by the tolerance."""
 
-    format: str = text(
-        "a line of the log, with x and y in it", about="The format of a line; its numbers `x` and `y` count."
-    )
+    format: str = string("a log line with x and y in it", about="The format of a line with the numbers `x` and `y`.")
     tolerance_m: float = number(0.02, above=0, about="How far x and y may be off.")
     lag_s: float = number(0.15, above=0, about="How old the position in a line may be.")
 
 
 @dataclass(frozen=True, kw_only=True)
 class LogDistance:
-    """A line's distance, the way driven since the start, may be that old (`lag_s`), and off by the tolerance."""
+    """The logged distance driven since the start may be at most `lag_s` old and may differ by the tolerance."""
 
-    format: str = text(
-        "a line of the log, with distance in it", about="The format of a line; its number `distance` counts."
-    )
+    format: str = string("a log line with distance in it", about="The format of a line with the number `distance`.")
     tolerance_m: float = number(0.05, above=0, about="How far the distance may be off.")
     lag_s: float = number(0.15, above=0, about="How old the distance in a line may be.")
 
 
 def log_position(evidence: Evidence, params: LogPosition) -> Finding:
-    """Every line says where the turtle was when it was logged."""
+    """Every line shows where the turtle was when it was logged."""
     recording, frames = evidence.recording, evidence.recording.frames
-    said = _trusted(recording, params.format)
-    expected = "Each line says where the turtle is at that moment, to two digits behind the point."
-    if len(said) < FEWEST:
+    logged = _trusted(recording, params.format)
+    expected = "Each line shows where the turtle is at that moment, with two decimal places."
+    if len(logged) < FEWEST:
         return _too_few(evidence, params.format)
 
     def off(line: Line, x: float, y: float) -> float:
         near = _window(recording, line.t_s, params.lag_s)
         return float(np.hypot(frames.x[near] - x, frames.y[near] - y).min())
 
-    wrong = [line for line in said if not off(line, line.numbers["x"], line.numbers["y"]) <= params.tolerance_m]
+    wrong = [line for line in logged if not off(line, line.numbers["x"], line.numbers["y"]) <= params.tolerance_m]
     if not wrong:
-        return passed("Each line says where the turtle is.")
+        return passed("Each line shows where the turtle is.")
     line = wrong[0]
     x, y = _at(recording, line.t_s, frames.x), _at(recording, line.t_s, frames.y)
     seen = (
-        f"At {line.t_s:.0f} s the line says x={line.numbers['x']:.2f} y={line.numbers['y']:.2f}, "
-        f"and the turtle was at x={x:.2f} y={y:.2f}."
+        f"At {line.t_s:.0f} s the line shows x={line.numbers['x']:.2f} y={line.numbers['y']:.2f}, "
+        f"but the turtle was at x={x:.2f} y={y:.2f}."
     )
-    diagnosis, cause = "wrong-position", "x and y are fields of the message that the subscription hands to your method."
-    if all(off(each, each.numbers["y"], each.numbers["x"]) <= params.tolerance_m for each in said):
-        diagnosis, cause = "x-y-swapped", "x and y have changed places."
-    elif len({(each.numbers["x"], each.numbers["y"]) for each in said}) == 1:
-        diagnosis, cause = "stale-pose", "The numbers never change: keep what each new message says, in self."
+    diagnosis, cause = "wrong-position", "x and y are fields of the message that your callback receives."
+    if all(off(each, each.numbers["y"], each.numbers["x"]) <= params.tolerance_m for each in logged):
+        diagnosis, cause = "x-y-swapped", "x and y are swapped."
+    elif len({(each.numbers["x"], each.numbers["y"]) for each in logged}) == 1:
+        diagnosis, cause = "stale-pose", "The numbers never change. Store x and y in self each time a message arrives."
     return failed(diagnosis, seen, expected, cause, where=evidence.place("info", "create_subscription"))
 
 
 def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
-    """Every line says how far the turtle has driven since the start."""
+    """Every line shows how far the turtle has driven since the start."""
     recording, frames = evidence.recording, evidence.recording.frames
-    said = _trusted(recording, params.format)
-    expected = "The distance is the length of the way driven so far, in metres; it never gets less."
-    if len(said) < FEWEST:
+    logged = _trusted(recording, params.format)
+    expected = "The distance is the length of the trajectory so far, in metres. It never gets smaller."
+    if len(logged) < FEWEST:
         return _too_few(evidence, params.format)
     x, y = np.append(recording.start.x, frames.x), np.append(recording.start.y, frames.y)
-    way = np.cumsum(np.hypot(np.diff(x), np.diff(y)))
+    driven = np.cumsum(np.hypot(np.diff(x), np.diff(y)))
 
     def holds(values: Floats, number_of: Callable[[Line], float]) -> bool:
         return all(
             float(np.abs(values[_window(recording, line.t_s, params.lag_s)] - number_of(line)).min())
             <= params.tolerance_m
-            for line in said
+            for line in logged
         )
 
-    if holds(way, lambda line: line.numbers["distance"]):
-        return passed("Each line says how far the turtle has driven.")
-    worst = max(said, key=lambda line: abs(line.numbers["distance"] - _at(recording, line.t_s, way)))
+    if holds(driven, lambda line: line.numbers["distance"]):
+        return passed("Each line shows how far the turtle has driven.")
+    worst = max(logged, key=lambda line: abs(line.numbers["distance"] - _at(recording, line.t_s, driven)))
     seen = (
-        f"At {worst.t_s:.0f} s the line says distance={worst.numbers['distance']:.2f}, "
-        f"and the turtle had driven {_at(recording, worst.t_s, way):.2f} m."
+        f"At {worst.t_s:.0f} s the line shows distance={worst.numbers['distance']:.2f}, "
+        f"but the turtle had driven {_at(recording, worst.t_s, driven):.2f} m."
     )
     where = evidence.place("hypot", "sqrt", "dist", "info")
-    numbers = [line.numbers["distance"] for line in said]
+    numbers = [line.numbers["distance"] for line in logged]
     if not any(numbers):
-        return failed("distance-zero", seen, expected, "The distance stays 0: add to it with every pose.", where=where)
+        return failed(
+            "distance-zero",
+            seen,
+            expected,
+            "The distance stays 0. Add a step to it each time a pose arrives.",
+            where=where,
+        )
     if holds(
         np.hypot(frames.x - recording.start.x, frames.y - recording.start.y), lambda line: line.numbers["distance"]
     ):
-        cause = "This is the straight line back to the start. The way is the sum of all the small steps between poses."
+        cause = (
+            "This is the straight line back to the start. The distance is the sum of all small steps between two poses."
+        )
         return failed("distance-from-start", seen, expected, cause, where=where)
     if holds(np.hypot(frames.x, frames.y), lambda line: line.numbers["distance"]) or _one_step_too_many(
-        said, way, recording
+        logged, driven, recording
     ):
-        cause = "The first pose has none before it: there is nothing to add yet. Not even the way from x=0 y=0."
-        return failed("distance-from-zero", seen, expected, cause, where=where)
-    if _is_chords(said, numbers):
         cause = (
-            "It adds one straight line a second, between the places that are logged; a turtle that turns in between "
-            "goes further. Add a step with every pose that arrives."
+            "There is no pose before the first one, so there is nothing to add yet, not even the distance from x=0 y=0."
+        )
+        return failed("distance-from-zero", seen, expected, cause, where=where)
+    if _is_chords(logged, numbers):
+        cause = (
+            "It adds one straight line per second, between the logged positions. On a curve the turtle drives further "
+            "than that. Add a step each time a pose arrives."
         )
         return failed("distance-by-chords", seen, expected, cause, where=where)
-    cause = "Between two poses the turtle moves by the root of dx squared plus dy squared; their sum is the distance."
+    cause = (
+        "Between two poses the turtle moves by the square root of dx * dx + dy * dy. "
+        "The distance is the sum of these steps."
+    )
     return failed("wrong-distance", seen, expected, cause, where=where)
 
 
-def _trusted(recording: Recording, text_: str) -> list[Line]:
-    """The lines in the format that no stall of the machine delayed."""
-    return [line for line in lines.in_format(recording, text_) if not recording.stalled(line.t_s)]
+def _trusted(recording: Recording, format_: str) -> list[Line]:
+    """Return the lines in the format that no stall of the machine delayed."""
+    return [line for line in lines.in_format(recording, format_) if not recording.stalled(line.t_s)]
 
 
 def _too_few(evidence: Evidence, text_: str) -> Finding:
     if len(lines.in_format(evidence.recording, text_)) >= FEWEST:
-        return Finding(Status.ERROR, "The machine was too busy in wall time. Try again when it is not.")
-    expected = f"At least {FEWEST} lines in the format."
+        return Finding(
+            Status.ERROR, "The machine was too busy to judge this in wall time. Try again when it is less busy."
+        )
+    expected = f"The log has at least {FEWEST} lines in this format."
     where = evidence.place("info")
     return failed("too-few-log-lines", "There are too few lines to compare.", expected, where=where)
 
 
 def _window(recording: Recording, t_s: float, lag_s: float) -> slice:
-    """The frames that a line of this time may speak of; at least one."""
+    """Return the frames that a line logged at this time may describe; at least one."""
     times = recording.frames.t_s
     begin = int(np.searchsorted(times, t_s - lag_s))
     end = int(np.searchsorted(times, t_s + EARLY_S))
@@ -145,33 +156,33 @@ def _window(recording: Recording, t_s: float, lag_s: float) -> slice:
 
 
 def _at(recording: Recording, t_s: float, values: Floats) -> float:
-    """The value of the last frame before this time."""
+    """Return the value at the last frame before this time."""
     return float(values[max(int(np.searchsorted(recording.frames.t_s, t_s)) - 1, 0)])
 
 
-def _is_chords(said: list[Line], numbers: list[float]) -> bool:
-    steps = np.hypot(np.diff([line.numbers["x"] for line in said]), np.diff([line.numbers["y"] for line in said]))
+def _is_chords(logged: list[Line], numbers: list[float]) -> bool:
+    steps = np.hypot(np.diff([line.numbers["x"] for line in logged]), np.diff([line.numbers["y"] for line in logged]))
     return bool(np.allclose(np.diff(numbers), steps, atol=0.03)) and any(numbers)
 
 
-def _one_step_too_many(said: list[Line], way: Floats, recording: Recording) -> bool:
+def _one_step_too_many(logged: list[Line], driven: Floats, recording: Recording) -> bool:
     first = math.hypot(recording.start.x, recording.start.y)
-    return all(abs(line.numbers["distance"] - _at(recording, line.t_s, way) - first) < 0.5 for line in said)
+    return all(abs(line.numbers["distance"] - _at(recording, line.t_s, driven) - first) < 0.5 for line in logged)
 
 
 LOG_POSITION = Kind(
     "log_position",
     "trial",
-    "The log says where the turtle is",
+    "The log shows where the turtle is",
     LogPosition,
     log_position,
-    about="Every line in the format says where the turtle was when it was logged.",
+    about="Every line in the format shows where the turtle was when it was logged.",
 )
 LOG_DISTANCE = Kind(
     "log_distance",
     "trial",
-    "The log says how far it has come",
+    "The log shows how far the turtle has driven",
     LogDistance,
     log_distance,
-    about="Every line in the format says how far the turtle had driven when it was logged.",
+    about="Every line in the format shows how far the turtle had driven when it was logged.",
 )

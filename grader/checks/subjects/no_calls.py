@@ -1,11 +1,11 @@
-"""Check that the node does its work without certain functions, where doing without them is the task."""
+"""Check that the node does not call certain functions, for exercises that forbid them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.kind import Kind, text, texts
+from grader.checks.kind import Kind, string, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list
 
@@ -15,10 +15,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class NoCalls:
-    """The last names of functions that the node's file must not call, and why."""
+    """The names of functions (without module or object) that the node's file must not call, and the reason."""
 
-    names: tuple[str, ...] = texts(about="The last names of the functions, as `sleep` for `time.sleep`.")
-    cause: str = text("a reason", about="What the student reads as the reason.")
+    names: tuple[str, ...] = strings(
+        about="The names of the functions without module or object, such as `sleep` for `time.sleep`."
+    )
+    cause: str = string("a reason", about="What the student reads as the reason.")
 
 
 def no_calls(evidence: Evidence, params: NoCalls) -> Finding:
@@ -27,7 +29,7 @@ def no_calls(evidence: Evidence, params: NoCalls) -> Finding:
     calls = [call for name in params.names for call in evidence.code.calls(name) if call.module.file == file]
     if calls:
         name = (calls[0].node.func.attr if hasattr(calls[0].node.func, "attr") else None) or params.names[0]
-        expected = f"No call of {a_list(params.names, 'or')}."
+        expected = f"The node does not call {a_list(params.names, 'or')}."
         return failed("forbidden-call", f"The node calls {name}.", expected, params.cause, where=calls[0].where)
     return passed(f"The node does not call {a_list(params.names, 'or')}.")
 
@@ -35,7 +37,7 @@ def no_calls(evidence: Evidence, params: NoCalls) -> Finding:
 NO_CALLS = Kind(
     "no_calls",
     "source",
-    "The node does without certain functions",
+    "The node does not call certain functions",
     NoCalls,
     no_calls,
     about="The node's file calls none of the given functions.",

@@ -1,4 +1,4 @@
-"""Checks of the node: it starts, and is named as the exercise says."""
+"""Checks of the node: it starts and has the right name."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 
 
 def starts(evidence: Evidence, _: NoParams) -> Finding:
-    """A node of the submission was in the ROS graph, and lived until the scenario began."""
+    """A node of the submission appeared in the ROS graph and ran until the scenario began."""
     recording = evidence.recording
     executable = evidence.trial.executable
-    expected = "The node starts, and runs until Ctrl-C."
+    expected = "The node starts and runs until Ctrl-C."
     if seen_in.ended_at_start(recording):
         crash = crash_of(evidence)
         if crash is not None:
-            return crash_finding(evidence, crash, f"{executable} crashed at its start: {crash.seen}.", expected)
+            return crash_finding(evidence, crash, f"{executable} crashed at startup: {crash.seen}.", expected)
         why = why_ended(evidence)
-        seen = f"{executable} ended by itself at its start."
+        seen = f"{executable} ended by itself at startup."
         return failed(why.diagnosis, seen, expected, why.text, where=why.where)
     if not seen_in.nodes(recording):
         return _no_node(evidence)
@@ -36,22 +36,24 @@ def starts(evidence: Evidence, _: NoParams) -> Finding:
 def _no_node(evidence: Evidence) -> Finding:
     crash = crash_of(evidence)
     seen = f"{evidence.trial.executable} ran, but no node appeared in the ROS graph."
-    expected = "The program makes a node, and spins it."
+    expected = "The program creates a node and spins it."
     if crash is not None:
-        seen = f"{evidence.trial.executable} crashed before it had made a node: {crash.seen}."
+        seen = f"{evidence.trial.executable} crashed before it created a node: {crash.seen}."
         return crash_finding(evidence, crash, seen, expected)
     why = why_no_node(evidence)
     return failed(why.diagnosis, seen, expected, why.text, where=why.where)
 
 
 def name(evidence: Evidence, _: NoParams) -> Finding:
-    """A node of the submission has the exercise's name."""
+    """A node of the submission has the name that the exercise asks for."""
     wanted = f"/{evidence.trial.node}"
     names = seen_in.nodes(evidence.recording)
     if wanted in names:
         return passed(f"The node is named {evidence.trial.node}.")
     if not names:
-        return failed("no-node", "No node appeared in the ROS graph.", f"A node named {evidence.trial.node}.")
+        return failed(
+            "no-node", "No node appeared in the ROS graph.", f"A node named {evidence.trial.node} appears."
+        )
     guess = nearest(wanted, names) or names[0]
     seen = f"The node is named {shorten(guess)}."
     if len(names) > 1:
@@ -60,7 +62,7 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     where = evidence.place("create_node", "__init__")
     if guess.endswith(wanted):
         return failed("node-namespace", seen, expected, "The node is in a namespace.", where=where)
-    cause = "The name is the text that the node's class hands to its parent, Node, when it is made."
+    cause = "The node name is the string that the class passes to super().__init__."
     return failed("node-name", seen, expected, cause, where=where)
 
 
@@ -70,7 +72,7 @@ STARTS = Kind(
     "The node starts",
     NoParams,
     starts,
-    about="The executable starts, its node appears in the ROS graph, and it lives until the scenario begins.",
+    about="The executable starts, its node appears in the ROS graph, and it runs until the scenario begins.",
 )
 NAME = Kind(
     "node_name",

@@ -1,4 +1,4 @@
-"""Checks of the circle with a student's own numbers, which stand in my_numbers.toml of the package."""
+"""Checks of the circle with a student's own numbers, from my_numbers.toml in the package."""
 
 from __future__ import annotations
 
@@ -17,34 +17,32 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 EARLY, LATE = 0.8, 1.3
-"""An interval may be so much shorter or longer than the period."""
+"""The shortest and the longest allowed interval, as a share of the period."""
 
 
 def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
-    """The numbers are there, are those of the student whom they name, and it is that student who handed them in."""
+    """The numbers exist, belong to the student named in the file, and that student submitted them."""
     found = _read(evidence)
     if isinstance(found, Finding):
         return found
     by = evidence.submission.student
     if by is not None and found.student.strip().casefold() != by.strip().casefold():
-        seen = (
-            f'The numbers in {FILE} were drawn for "{shorten(found.student)}"; this was handed in by "{shorten(by)}".'
-        )
-        expected = "Everybody drives a circle of their own."
-        cause = f"`grader start 07 --student {shorten(by)} --fresh` draws yours; your work is kept aside."
+        seen = f'The numbers in {FILE} were drawn for "{shorten(found.student)}", but "{shorten(by)}" submitted them.'
+        expected = "Every student drives their own circle."
+        cause = f"`grader start 07 --student {shorten(by)} --fresh` draws yours and keeps a copy of your work."
         return failed("numbers-of-another", seen, expected, cause, where=Where(FILE))
     wanted = draw_numbers(found.student)
     if found != wanted:
-        seen = f"The numbers in {FILE} are not those that were drawn for its student."
-        expected = f"{wanted.radius_m} m, {wanted.sense}, {wanted.rate_hz} Hz."
-        cause = "Leave the file as it is; the numbers go into your node."
+        seen = f"The numbers in {FILE} are not the ones that were drawn for this student."
+        expected = f"Radius {wanted.radius_m} m, {wanted.sense}, {wanted.rate_hz} Hz."
+        cause = "Do not change the file. Use its numbers in your node."
         return failed("numbers-changed", seen, expected, cause, where=Where(FILE))
-    return passed(f"A circle of {found.radius_m} m, {found.sense}, {found.rate_hz} commands a second.")
+    return passed(f"Radius {found.radius_m} m, {found.sense}, {found.rate_hz} commands per second.")
 
 
 def _read(evidence: Evidence) -> OwnNumbers | Finding:
     data = evidence.submission.files.get(FILE)
-    expected = f"{FILE} stands beside package.xml, as `grader start` wrote it."
+    expected = f"{FILE} is next to package.xml, as `grader start` wrote it."
     if data is None:
         return failed("no-numbers", f"There is no {FILE}.", expected)
     try:
@@ -60,24 +58,24 @@ def _drawn(evidence: Evidence) -> OwnNumbers | Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class OwnCircle:
-    """As for the kind `circle`; radius and sense are the student's own."""
+    """Like the kind `circle`, but radius and direction are the student's own."""
 
     radius_tolerance_m: float = number(0.05, above=0, about="How far the radius may be off.")
     centre_tolerance_m: float = number(0.05, above=0, about="How far the centre may be off.")
     residual_m: float = number(
-        0.02, above=0, about="How far the trajectory may stray from the fitted circle (root mean square)."
+        0.02, above=0, about="How far the trajectory may deviate from the fitted circle (root mean square)."
     )
     turns: float = number(1.0, above=0, about="How many turns the turtle must drive at least.")
 
 
 def own_circle(evidence: Evidence, params: OwnCircle) -> Finding:
     """The turtle drives the student's own circle."""
-    asked = own_circle_params(evidence, params)
-    return asked if isinstance(asked, Finding) else circle(evidence, asked)
+    wanted = own_circle_params(evidence, params)
+    return wanted if isinstance(wanted, Finding) else circle(evidence, wanted)
 
 
 def own_circle_params(evidence: Evidence, params: OwnCircle) -> CircleParams | Finding:
-    """The circle that this student is asked for; the finding where the numbers cannot be read."""
+    """Return the circle that this student must drive, or a failed finding if the numbers cannot be read."""
     own = _drawn(evidence)
     if isinstance(own, Finding):
         return own
@@ -93,24 +91,24 @@ def own_circle_params(evidence: Evidence, params: OwnCircle) -> CircleParams | F
 
 @dataclass(frozen=True, kw_only=True)
 class OwnRate:
-    """As for the kind `rate`; the rate is the student's own."""
+    """Like the kind `rate`, but the rate is the student's own."""
 
     tolerance_percent: float = number(5.0, above=0, at_most=100, about="How far the mean rate may be off.")
 
 
 def own_rate(evidence: Evidence, params: OwnRate) -> Finding:
-    """Commands arrive at the student's own rate."""
+    """The commands arrive at the student's own rate."""
     own = _drawn(evidence)
     if isinstance(own, Finding):
         return own
-    asked = Rate(
+    wanted = Rate(
         rate_hz=own.rate_hz,
         tolerance_percent=params.tolerance_percent,
         min_interval_s=EARLY / own.rate_hz,
         max_interval_s=LATE / own.rate_hz,
         first_within_s=3.0,
     )
-    return rate(evidence, asked)
+    return rate(evidence, wanted)
 
 
 NUMBERS = Kind(
@@ -119,7 +117,7 @@ NUMBERS = Kind(
     "The numbers are your own",
     NoParams,
     own_numbers,
-    about="`my_numbers.toml` holds the numbers that are drawn from the id of the student who handed it in.",
+    about="`my_numbers.toml` holds the numbers that are drawn from the id of the student who submitted it.",
 )
 CIRCLE = Kind(
     "own_circle",
@@ -127,7 +125,7 @@ CIRCLE = Kind(
     "The turtle drives your own circle",
     OwnCircle,
     own_circle,
-    about="As the kind `circle`. Radius and direction are the student's own numbers.",
+    about="Like the kind `circle`, but radius and direction are the student's own numbers.",
 )
 RATE = Kind(
     "own_rate",
@@ -135,5 +133,5 @@ RATE = Kind(
     "Commands arrive at your own rate",
     OwnRate,
     own_rate,
-    about="As the kind `rate`. The rate is the student's own number.",
+    about="Like the kind `rate`, but the rate is the student's own number.",
 )

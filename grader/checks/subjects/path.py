@@ -1,4 +1,4 @@
-"""Checks of the turtle's way: the circle that was asked for, clear of the walls."""
+"""Checks of the turtle's trajectory: it is the right circle, and it does not touch a wall."""
 
 from __future__ import annotations
 
@@ -22,23 +22,24 @@ if TYPE_CHECKING:
     from grader.trial.recording import Pose
 
 MOVED_M = 0.05
-"""A turtle that got no further than this did not move."""
+"""A turtle with a shorter trajectory than this did not move."""
 TURNED_RAD = 0.1
 STRAIGHT_RADIUS_M = 50.0
-"""A circle larger than this looks straight on a canvas of 11 m."""
+"""A larger circle than this looks straight on a canvas of 11 m."""
 LIVES_S = 1.0
-"""How long a command moves a turtle."""
+"""How long one command moves a turtle."""
 MEANS = frozenset({"reset", "kill", "teleport_absolute", "teleport_relative", "rotate_absolute", "set_parameters"})
-"""Calls that move a turtle, take it away or change how it moves; the pen and other turtles are anybody's."""
+"""Calls that move a turtle, remove it or change how it moves. Calls for the pen and for other turtles are allowed."""
 POLYGON_SHARE = 0.6
-"""A way of which more than this was driven straight is told as sides and corners."""
+"""If a larger share of the trajectory than this is straight, the message describes sides and corners."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CircleParams:
-    """The circle; its centre lies `radius_m` to the left of the turtle's start (clockwise: to the right).
+    """The circle. Its centre is `radius_m` to the left of the turtle's start pose (clockwise: to the right).
 
-    `residual_m`: root of the mean squared distance of the way from the fitted circle. `turns`: at least so many.
+    `residual_m` is the largest allowed root mean square distance between the trajectory and the fitted circle; `turns`
+    is the smallest allowed number of turns.
     """
 
     radius_m: float = number(
@@ -49,14 +50,14 @@ class CircleParams:
     radius_tolerance_m: float = number(0.05, above=0, about="How far the radius may be off.")
     centre_tolerance_m: float = number(0.05, above=0, about="How far the centre may be off.")
     residual_m: float = number(
-        0.02, above=0, about="How far the trajectory may stray from the fitted circle (root mean square)."
+        0.02, above=0, about="How far the trajectory may deviate from the fitted circle (root mean square)."
     )
     turns: float = number(1.0, above=0, about="How many turns the turtle must drive at least.")
     sense: str = choice("counter-clockwise", "clockwise", about="The direction of the turn.")
 
 
 def expected_centre(start: Pose, params: CircleParams) -> tuple[float, float]:
-    """The centre (m) of the circle that was asked for, seen from the turtle's start."""
+    """Return the centre (m) of the right circle for a turtle with this start pose."""
     side = 1.0 if params.sense == "counter-clockwise" else -1.0
     return (
         start.x - side * params.radius_m * math.sin(start.theta),
@@ -65,7 +66,7 @@ def expected_centre(start: Pose, params: CircleParams) -> tuple[float, float]:
 
 
 def circle(evidence: Evidence, params: CircleParams) -> Finding:
-    """The turtle drives the circle: round, in the right sense, of the right size, in the right place, all the way."""
+    """The turtle drives the circle: round, in the right direction, size and place, and for enough turns."""
     turns = "1 turn" if params.turns == 1.0 else f"{params.turns:g} turns"
     expected = f"A circle of radius {params.radius_m:.1f} m, {params.sense}, at least {turns}."
     moved = moved_otherwise(evidence, expected)
@@ -76,17 +77,17 @@ def circle(evidence: Evidence, params: CircleParams) -> Finding:
 
 
 def moved_otherwise(evidence: Evidence, expected: str) -> Finding | None:
-    """A failed finding where something other than commands moved the turtle."""
+    """Return a failed finding if something other than velocity commands moved the turtle, else None."""
     means = next((each for each in evidence.recording.interventions if each in MEANS), None)
     if means is None:
         return None
-    seen = f"Something moved the turtle by other means: {shorten(means)}."
-    cause = "The turtle is to be driven by velocity commands alone."
+    seen = f"Something other than a velocity command moved the turtle: {shorten(means)}."
+    cause = "Drive the turtle only with velocity commands."
     return failed("intervention", seen, expected, cause, where=evidence.place("create_client", "ActionClient"))
 
 
 def not_driven(evidence: Evidence, expected: str, where: Where | None) -> Finding | None:
-    """A failed finding where commands did not move the turtle: nothing did, or something else."""
+    """Return a failed finding if the turtle did not drive, or if something other than commands moved it, else None."""
     moved = moved_otherwise(evidence, expected)
     if moved is not None or (evidence.track.finite and evidence.track.length_m > MOVED_M):
         return moved
@@ -94,13 +95,15 @@ def not_driven(evidence: Evidence, expected: str, where: Where | None) -> Findin
 
 
 def _no_circle(evidence: Evidence, track: Track, expected: str) -> Finding | None:
-    """What makes a way no circle at all, the most telling reason first."""
+    """Return a failed finding if the trajectory is nothing like a circle, with the most helpful reason first."""
     if not track.finite:
         seen = "The turtle's position became NaN (not a number)."
-        return failed("not-a-number", seen, expected, "A command was no finite number.", where=_line(evidence))
+        return failed(
+            "not-a-number", seen, expected, "A command contained a number that is not finite.", where=_line(evidence)
+        )
     if track.length_m <= MOVED_M:
         if track.turned_rad > TURNED_RAD:
-            cause = "linear.x is the speed forwards; without it there is nothing but turning."
+            cause = "linear.x is the forward speed. Without it the turtle only turns."
             return failed("turns-on-the-spot", "The turtle turned on the spot.", expected, cause, where=_line(evidence))
         return failed("not-moving", "The turtle did not move.", expected, _all_zero(evidence), where=_line(evidence))
     if track.wall.any():
@@ -108,8 +111,8 @@ def _no_circle(evidence: Evidence, track: Track, expected: str) -> Finding | Non
         return failed("wall", seen, expected, _size(evidence), where=_line(evidence))
     fitted = track.circle
     if fitted is None or fitted.radius > STRAIGHT_RADIUS_M:
-        cause = "A turtle that never turns drives straight on: angular.z is the turning speed."
-        return failed("straight-line", "The turtle drove straight on.", expected, cause, where=_line(evidence))
+        cause = "The turtle never turns. angular.z is the turning speed."
+        return failed("straight-line", "The turtle drove in a straight line.", expected, cause, where=_line(evidence))
     return None
 
 
@@ -124,16 +127,19 @@ def _measured(evidence: Evidence, params: CircleParams, track: Track, expected: 
         return _not_round(evidence, track, fitted, expected, near_edge=round_.near(fitted.rms))
     forward = turns if params.sense == "counter-clockwise" else -turns
     if not forward > 0.0:
-        sense = "clockwise" if turns < 0.0 else "counter-clockwise"
-        cause = "The sign of angular.z decides: above 0 turns to the left, counter-clockwise."
-        return failed("wrong-sense", f"The turtle drove its circle {sense}.", expected, cause, where=_line(evidence))
+        direction = "clockwise" if turns < 0.0 else "counter-clockwise"
+        cause = "The sign of angular.z sets the direction: a positive value turns left, which is counter-clockwise."
+        seen = f"The turtle drove the circle {direction}."
+        return failed("wrong-direction", seen, expected, cause, where=_line(evidence))
     near = round_.near(fitted.rms) or size.near(fitted.radius) or place.near(centre) or long.near(forward)
     if not size.holds(fitted.radius):
-        seen = f"The circle's radius is {shown(round(fitted.radius, 2))} m."
+        seen = f"The radius of the circle is {shown(round(fitted.radius, 2))} m."
         return failed("wrong-radius", seen, expected, _size(evidence), where=_line(evidence), near_edge=near)
     if not place.holds(centre):
-        seen = f"The circle is right in size, but lies {centre:.2f} m beside its place."
-        cause = "The turtle left its start before the circle began: the first commands differ from the rest."
+        seen = f"The circle has the right size, but it is {centre:.2f} m away from where it should be."
+        cause = (
+            "The first commands differ from the others, so the turtle left its start position before the circle began."
+        )
         return failed("wrong-centre", seen, expected, cause, where=_line(evidence), near_edge=near)
     if not long.holds(forward):
         return _too_short(evidence, track, forward, expected, near_edge=near)
@@ -141,21 +147,17 @@ def _measured(evidence: Evidence, params: CircleParams, track: Track, expected: 
 
 
 def _not_round(evidence: Evidence, track: Track, fitted: Circle, expected: str, *, near_edge: bool) -> Finding:
-    off = f"it strays {max(fitted.rms, 0.01):.2f} m (RMS) from the nearest circle"
+    off = f"it deviates by {max(fitted.rms, 0.01):.2f} m (RMS) from the best-fitting circle"
     if track.straight_share > POLYGON_SHARE:
         if track.sides == 1:
-            return failed("straight-line", "The turtle drove straight on.", expected, "", where=_line(evidence))
-        seen = f"The way is {track.sides} straight sides with corners; {off}."
-        cause = "A circle is driven by going forwards and turning at the same time, in every command."
+            return failed("straight-line", "The turtle drove in a straight line.", expected, "", where=_line(evidence))
+        seen = f"The trajectory has {track.sides} straight sides with corners; {off}."
+        cause = "To drive a circle, every command must move forward and turn at the same time."
         return failed("polygon", seen, expected, cause, where=_line(evidence), near_edge=near_edge)
     changed = len({(command.linear, command.angular) for command in evidence.commands}) > 1
-    cause = (
-        "The commands change on the way; a circle needs the same command all the time."
-        if changed
-        else ended_early(evidence)
-    )
+    cause = "The commands change. A circle needs the same command all the time." if changed else ended_early(evidence)
     return failed(
-        "not-round", f"The way is not round: {off}.", expected, cause, where=_line(evidence), near_edge=near_edge
+        "not-round", f"The trajectory is not round: {off}.", expected, cause, where=_line(evidence), near_edge=near_edge
     )
 
 
@@ -166,31 +168,31 @@ def _too_short(evidence: Evidence, track: Track, turns: float, expected: str, *,
         return failed("ended-early", seen, expected, early, where=evidence.place("publish"), near_edge=near_edge)
     if track.rests:
         seen = f"The turtle drove {turns:.2f} of a turn, with {count(track.rests, 'stop')} on the way."
-        diagnosis, cause = "stops-and-goes", "A turtle stops when no command comes for 1 s."
+        diagnosis, cause = "stops-and-goes", "The turtle stops when no command arrives for 1 s."
     elif seen_in.end_s(evidence.recording) - evidence.commands[-1].t_s > LIVES_S:
-        seen = f"The turtle drove {turns:.2f} of a turn; the last command came at {evidence.commands[-1].t_s:.1f} s."
-        diagnosis, cause = "stopped-early", "A turtle stops when no command comes for 1 s."
+        seen = f"The turtle drove {turns:.2f} of a turn; the last command arrived at {evidence.commands[-1].t_s:.1f} s."
+        diagnosis, cause = "stopped-early", "The turtle stops when no command arrives for 1 s."
     else:
         speed = _steady(evidence)
         turn_s = 2.0 * math.pi / abs(speed[1]) if speed and speed[1] else 0.0
-        cause = f"At angular.z {shown(speed[1])} rad/s a turn takes {turn_s:.1f} s." if speed and turn_s else ""
+        cause = f"With angular.z {shown(speed[1])} rad/s, one turn takes {turn_s:.1f} s." if speed and turn_s else ""
         return failed("too-short", seen, expected, cause, where=_line(evidence), near_edge=near_edge)
     return failed(diagnosis, seen, expected, cause, where=evidence.place("publish"), near_edge=near_edge)
 
 
 def _steady(evidence: Evidence) -> tuple[float, float] | None:
-    """linear.x (m/s) and angular.z (rad/s) of the commands when they are all the same."""
+    """Return linear.x (m/s) and angular.z (rad/s) if they are the same in all commands, else None."""
     found = {(command.linear[0], command.angular[2]) for command in evidence.commands}
     return next(iter(found)) if len(found) == 1 else None
 
 
 def _size(evidence: Evidence) -> str:
-    """What size of circle the commands ask for, in words."""
+    """Return a sentence about the radius that follows from the commands."""
     speed = _steady(evidence)
     if speed is None or not all(map(math.isfinite, speed)):
         return ""
     if not speed[1]:
-        return "angular.z is 0, so the turtle drives straight on."
+        return "angular.z is 0, so the turtle drives in a straight line."
     radius = abs(speed[0] / speed[1])
     return f"The radius is linear.x divided by angular.z: {shown(speed[0])} / {shown(speed[1])} = {shown(radius)} m."
 
@@ -198,7 +200,7 @@ def _size(evidence: Evidence) -> str:
 def _all_zero(evidence: Evidence) -> str:
     commands = evidence.commands
     zero = commands and not any(command.linear[0] or command.angular[2] for command in commands)
-    return "In every command linear.x and angular.z are 0." if zero else ""
+    return "linear.x and angular.z are 0 in every command." if zero else ""
 
 
 def _line(evidence: Evidence) -> Where | None:
@@ -207,24 +209,24 @@ def _line(evidence: Evidence) -> Where | None:
 
 
 def _wall_s(track: Track) -> float:
-    """When the turtle first was at a wall (s)."""
+    """Return when the turtle first touched a wall (s)."""
     return float(track.t_s[int(track.wall.argmax())])
 
 
 def no_wall(evidence: Evidence, _: NoParams) -> Finding:
-    """No frame was clamped to the canvas; nothing is said of a turtle that never moved."""
+    """No frame was clamped to the canvas. The check is skipped for a turtle that never moved."""
     track = evidence.track
-    # Whoever is put back in time never meets a wall.
-    moved = moved_otherwise(evidence, "It stays clear of the walls all the time.")
+    # A turtle that is teleported back in time would never touch a wall.
+    moved = moved_otherwise(evidence, "The turtle never touches a wall.")
     if moved is not None:
         return moved
     if track.wall.any():
         seen = f"The turtle ran into a wall after {_wall_s(track):.1f} s."
-        expected = "It stays clear of the walls all the time."
+        expected = "The turtle never touches a wall."
         return failed("wall", seen, expected, _size(evidence), where=_line(evidence))
     if not (track.finite and track.length_m > MOVED_M):
-        return Finding(Status.SKIPPED, "Not judged, since the turtle did not drive.")
-    return passed("The turtle stayed clear of the walls.")
+        return Finding(Status.SKIPPED, "Not judged, because the turtle did not drive.")
+    return passed("The turtle did not touch a wall.")
 
 
 CIRCLE = Kind(
@@ -236,5 +238,5 @@ CIRCLE = Kind(
     about="The turtle drives a circle by commands: round, in the right direction, of the right size and place.",
 )
 NO_WALL = Kind(
-    "no_wall", "trial", "The turtle touches no wall", NoParams, no_wall, about="The turtle never touches a wall."
+    "no_wall", "trial", "The turtle does not touch a wall", NoParams, no_wall, about="The turtle never touches a wall."
 )

@@ -1,4 +1,4 @@
-"""Check of the rate at which commands arrive, by their arrival at the turtle."""
+"""Check of the rate at which commands arrive at the turtle."""
 
 from __future__ import annotations
 
@@ -22,18 +22,19 @@ if TYPE_CHECKING:
     from grader.submission.where import Where
 
 FEWEST = 3
-"""Commands: with fewer there is at most one interval, and no rate to speak of."""
+"""With fewer commands there is at most one interval, which is not enough for a rate."""
 TRUSTED = 0.5
-"""A wall-clock trial in which the machine stalled judges the other intervals, if they are at least this share."""
+"""If the machine stalled in a wall-clock trial, the other intervals are judged if they are at least this share."""
 SAME = 0.1
-"""A number of the source explains a measured interval when they differ by less than this share."""
+"""A number in the source code explains a measured interval if they differ by less than this share."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rate:
-    """The mean rate, first to last arrival, and its tolerance; the limits of each single interval.
+    """The mean rate from the first to the last arrival with its tolerance, and the limits of each single interval.
 
-    The first command may come `first_within_s` after the start, the last one `max_interval_s` before the end.
+    The first command may arrive up to `first_within_s` after the start, and the last one up to `max_interval_s` before
+    the end.
     """
 
     rate_hz: float = number(above=0, at_most=1000, about="The mean rate, from the first to the last arrival.")
@@ -47,14 +48,14 @@ class Rate:
 
 @dataclass(frozen=True)
 class Subject:
-    """What comes again and again: its name, and the method of the student's that sends it."""
+    """What arrives at the rate: its name, and the method of the student's code that sends it."""
 
     noun: str
     call: str
 
     @property
     def plural(self) -> str:
-        """Several of them, at the beginning of a sentence."""
+        """The plural, for the beginning of a sentence."""
         return f"{self.noun.capitalize()}s"
 
 
@@ -62,26 +63,26 @@ COMMAND = Subject("command", "publish")
 
 
 def measure(evidence: Evidence) -> Measured:
-    """The arrivals of the commands before SIGINT."""
+    """Return the arrivals of the commands before SIGINT."""
     return measure_arrivals(evidence.recording, (command.t_s for command in evidence.commands))
 
 
 def rate(evidence: Evidence, params: Rate) -> Finding:
-    """Commands arrive at the rate: on average, each one, from soon after the start until the end."""
+    """The commands arrive at the rate: on average and each one, from soon after the start until the end."""
     return rate_of(evidence, params, COMMAND, measure(evidence))
 
 
 def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured) -> Finding:
-    """They arrive at the rate: on average, each one, from soon after the start until the end."""
+    """Commands or log lines arrive at the rate: on average and each one, from soon after the start until the end."""
     period = 1.0 / params.rate_hz
-    expected = f"Every {period:.2f} s ({params.rate_hz:.1f} Hz)."
+    expected = f"One {what.noun} every {period:.2f} s ({params.rate_hz:.1f} Hz)."
     if len(measured.arrivals) < FEWEST:
         return _few(
-            evidence, what, measured, f"A {what.noun} every {period:.2f} s ({params.rate_hz:.1f} Hz) until Ctrl-C."
+            evidence, what, measured, f"One {what.noun} every {period:.2f} s ({params.rate_hz:.1f} Hz) until Ctrl-C."
         )
     if measured.trusted < TRUSTED:
         return Finding(
-            Status.ERROR, "The machine was too busy to measure a rate in wall time. Try again when it is not."
+            Status.ERROR, "The machine was too busy to measure a rate in wall time. Try again when it is less busy."
         )
     share = params.tolerance_percent / 100.0
     mean_hz = 1.0 / measured.mean_s if measured.mean_s > 0.0 else float("inf")
@@ -94,9 +95,13 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
     worst = max(measured.intervals, key=lambda interval: abs(interval - period))
     if not all(each.holds(interval) for interval in measured.intervals):
         at = measured.begins[measured.intervals.index(worst)]
-        seen = f"{what.plural} came unevenly: {worst:.2f} s passed between two of them, {at:.1f} s after the start."
+        seen = (
+            f"{what.plural} arrived at uneven intervals: {worst:.2f} s passed between two of them, "
+            f"{at:.1f} s after the start."
+        )
         wanted = (
-            f"Every {period:.2f} s, each interval from {params.min_interval_s:.2f} to {params.max_interval_s:.2f} s."
+            f"Every {period:.2f} s, with each interval from {params.min_interval_s:.2f} to "
+            f"{params.max_interval_s:.2f} s."
         )
         cause = _uneven_cause(evidence, what)
         grow = why_timers_grow(evidence)
@@ -104,8 +109,8 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
             return failed(grow.diagnosis, seen, wanted, grow.text, where=grow.where, near_edge=near)
         return failed("uneven-rate", seen, wanted, cause, where=evidence.place(what.call), near_edge=near)
     if not first.holds(measured.first_s):
-        seen = f"The first {what.noun} came {measured.first_s:.1f} s after the start."
-        wanted = f"It comes within {params.first_within_s:.1f} s."
+        seen = f"The first {what.noun} arrived {measured.first_s:.1f} s after the start."
+        wanted = f"It arrives within {params.first_within_s:.1f} s."
         return failed(
             "late-start", seen, wanted, _late_cause(evidence), where=evidence.place("sleep", what.call), near_edge=near
         )
@@ -129,7 +134,7 @@ def _few(evidence: Evidence, what: Subject, measured: Measured, expected: str) -
         why = why_ended(evidence)
         return failed(why.diagnosis, f"{seen} {end_seen(evidence)}", expected, why.text, where=why.where)
     if amount == 1:
-        cause = f"{what.call} is called once; a timer calls a method again and again."
+        cause = f"{what.call} is called only once. A timer calls a method again and again."
         return failed("published-once" if what is COMMAND else "logged-once", seen, expected, cause, where=where)
     return failed(
         "too-few-commands" if what is COMMAND else "too-few-log-lines",
@@ -155,35 +160,35 @@ def _wrong_mean(
     if diagnosis == "timer-period" and abs(mean - params.rate_hz) <= SAME * params.rate_hz:
         diagnosis, cause = (
             "rate-for-period",
-            "create_timer wants the period in seconds, not the rate: one is 1 divided by the other.",
+            "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate.",
         )
     return failed(diagnosis, seen, expected, cause, where=where, near_edge=near_edge)
 
 
 def _why_mean(evidence: Evidence, what: Subject, mean: float) -> tuple[str, str, Where | None]:
-    """The diagnosis, in words, and where: a timer with that period, a sleep of that length, or none of them."""
+    """Return the diagnosis, its cause in words, and the place: a timer or a sleep with that period, or neither."""
     code = evidence.code
     timers = [
         (call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in code.calls("create_timer")
     ]
     for timer, period in timers:
         if period is not None and abs(period - mean) <= SAME * mean:
-            return "timer-period", "The timer's period is the first argument of create_timer, in seconds.", timer.where
+            return "timer-period", "The first argument of create_timer is the timer period in seconds.", timer.where
     for sleep in code.calls("sleep"):
         length = constant(sleep.argument(0, "secs"), sleep.module.names)
         if timers and length is not None:
-            cause = "While a method sleeps nothing else of the node runs, its timer neither."
+            cause = "While a method sleeps, nothing else in the node runs, not even its timer."
             return "sleep-in-callback", cause, sleep.where
         if length is not None and abs(length - mean) <= SAME * mean:
-            return "sleep-period", f"Between two {what.noun}s the node sleeps {length:g} s.", sleep.where
+            return "sleep-period", f"The node sleeps for {length:g} s between two {what.noun}s.", sleep.where
     if len(timers) > 1:
         return (
             "several-timers",
-            f"There are {len(timers)} timers: each one calls its method on its own.",
+            f"There are {len(timers)} timers, and each of them calls its own method.",
             timers[1][0].where,
         )
     where = timers[0][0].where if timers else evidence.place(what.call)
-    return "wrong-rate", f"The time between two calls of {what.call} is what counts.", where
+    return "wrong-rate", f"The time between two calls of {what.call} sets the rate.", where
 
 
 def _uneven_cause(evidence: Evidence, what: Subject) -> str:
@@ -195,12 +200,16 @@ def _uneven_cause(evidence: Evidence, what: Subject) -> str:
 
 def _late_cause(evidence: Evidence) -> str:
     if evidence.code.calls("sleep"):
-        return "The node sleeps before it begins."
-    return "Something before it waits, such as wait_for_service." if evidence.code.calls("wait_for_service") else ""
+        return "The node sleeps first."
+    return (
+        "The node waits for something first, such as a service (wait_for_service)."
+        if evidence.code.calls("wait_for_service")
+        else ""
+    )
 
 
 def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: str, *, near_edge: bool) -> Finding:
-    seen = f"The last {what.noun} came at {measured.arrivals[-1]:.1f} s, {measured.rest_s:.1f} s before the end."
+    seen = f"The last {what.noun} arrived at {measured.arrivals[-1]:.1f} s, {measured.rest_s:.1f} s before the end."
     wanted = f"{expected[:-1]}, until Ctrl-C."
     crash = crash_of(evidence)
     if crash is not None:

@@ -23,16 +23,16 @@ if TYPE_CHECKING:
 SIDES = 4
 ORDINALS = ("first", "second", "third", "fourth")
 STRAIGHT_RAD_M = 0.2
-"""A way that bends by no more than this many radians a metre (a radius of 5 m) is a side, not a curve."""
+"""A part that bends by at most this many radians per metre (a radius of 5 m) counts as straight, not as a curve."""
 CURVED_SHARE = 0.1
-"""More of the way than this in curves is no square."""
+"""If a larger share of the trajectory than this is curved, it is not a square."""
 SHORT_M = 0.05
-"""A straight piece shorter than this is no side."""
+"""A shorter straight part than this is not a side."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Square:
-    """Sides of this length, corners of 90 degrees, the turtle back at its start after the fourth side."""
+    """Sides of this length and corners of 90 degrees; the fourth side ends at the start position."""
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
     side_tolerance_m: float = number(0.15, above=0, about="How far a side may be off.")
@@ -43,7 +43,7 @@ class Square:
 
 @dataclass(frozen=True)
 class Sides:
-    """Straight pieces: how long each is (m), by how much it is turned between them (rad), where each ends (m)."""
+    """The straight parts: their lengths (m), the turns between them (rad), and their end points (m)."""
 
     lengths: tuple[float, ...]
     corners: tuple[float, ...]
@@ -52,13 +52,13 @@ class Sides:
 
 
 def sides_of(track: Track) -> Sides:
-    """Take the way apart at its corners."""
+    """Split the trajectory at its corners."""
     moves = track.steps > RESTS_M
     straight = moves & (np.abs(track.turn) <= STRAIGHT_RAD_M * track.steps)
     curved = moves & ~straight
     frames = np.flatnonzero(straight)
     turned = np.cumsum(track.turn)
-    # A side ends where the heading has changed by more than noise before the next straight frame.
+    # A side ends where the heading changes by more than noise before the next straight frame.
     breaks = np.flatnonzero(np.abs(np.diff(turned[frames])) > math.radians(10.0)) + 1
     pieces = [piece for piece in np.split(frames, breaks) if track.steps[piece].sum() > SHORT_M]
     return Sides(
@@ -71,23 +71,24 @@ def sides_of(track: Track) -> Sides:
 
 def square(evidence: Evidence, params: Square) -> Finding:
     """The turtle drives a square."""
-    expected = f"Four straight sides of {params.side_m:.1f} m, with a turn of 90 degrees on the spot after each."
+    expected = f"Four straight sides of {params.side_m:.1f} m, with a turn of 90 degrees on the spot after each side."
     where = evidence.place("publish")
     track = evidence.track
     still = not_driven(evidence, expected, where)
     if still is not None:
         return still
     if track.wall.any():
-        return failed("wall", "The turtle ran into a wall.", expected, "Some side is too long.", where=where)
+        return failed("wall", "The turtle ran into a wall.", expected, "A side is too long.", where=where)
     sides = sides_of(track)
     if sides.curved_share > CURVED_SHARE:
-        seen = f"{100.0 * sides.curved_share:.0f} % of the way are curves."
-        cause = "Drive with angular.z 0, then turn with linear.x 0: never both at once."
+        seen = f"{100.0 * sides.curved_share:.0f} % of the trajectory is curved."
+        cause = "Drive with angular.z at 0, then turn with linear.x at 0. Never do both at once."
         return failed("curves", seen, expected, cause, where=where)
     if len(sides.lengths) < SIDES:
-        seen = f"The way has {count(len(sides.lengths), 'side')}."
+        seen = f"The trajectory has {count(len(sides.lengths), 'side')}."
         cause = (
-            "Four sides and the turns between them must fit into the time; and the state must change back each time."
+            "Four sides and the turns between them must fit into the time. "
+            "The node must switch back from turning to driving each time."
         )
         return failed("too-few-sides", seen, expected, cause, where=where)
     return _measured(evidence, params, sides, expected)
@@ -101,13 +102,13 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
     sign = -1.0 if params.sense == "clockwise" or (params.sense == "either" and corners[0] < 0.0) else 1.0
     near = long.near(*sides.lengths[:SIDES]) or right.near(*(sign * corner for corner in corners))
     if all(sign * corner < 0.0 for corner in corners):
-        seen = "The turtle turns to the wrong side at its corners."
-        return failed("wrong-sense", seen, f"The square is driven {params.sense}.", where=where)
+        seen = "The turtle turns in the wrong direction at the corners."
+        return failed("wrong-direction", seen, f"The turtle drives the square {params.sense}.", where=where)
     for name, length in zip(ORDINALS, sides.lengths, strict=False):
         if not long.holds(length):
             more = length - params.side_m
             seen = f"The {name} side is {length:.2f} m long: {abs(more):.2f} m too {'long' if more > 0 else 'short'}."
-            cause = "A side is speed times time, and the time is a number of calls of the timer."
+            cause = "The length of a side is speed times time. The time is a number of timer calls."
             finding = failed("side-length", seen, expected, cause, where=where, near_edge=near)
             if name == ORDINALS[0] and more < 0.0 and all(map(long.holds, sides.lengths[1:SIDES])):
                 finding = too_soon(finding, evidence)
@@ -115,17 +116,18 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
     for name, corner in zip(ORDINALS, corners, strict=False):
         if not right.holds(sign * corner):
             seen = f"The {name} corner turns by {sign * corner:.0f} degrees."
-            cause = "A quarter turn is pi / 2 rad: turning speed times time."
+            cause = "A quarter turn is pi / 2 rad, which is turning speed times time."
             finding = failed("corner-angle", seen, expected, cause, where=where, near_edge=near)
             off = abs(sign * corner - 90.0) - params.corner_tolerance_deg
             return unless_starved(finding, recording, off, math.degrees(float(np.abs(recording.frames.angular).max())))
     gap = math.dist(sides.ends[SIDES - 1], (evidence.recording.start.x, evidence.recording.start.y))
     closed = Band.at_most(params.closing_m)
     if not closed.holds(gap):
-        seen = f"The fourth side ends {gap:.2f} m beside the start."
+        seen = f"The fourth side ends {gap:.2f} m away from the start position."
         finding = failed("square-gap", seen, expected, where=where, near_edge=True)
         return unless_starved(finding, recording, gap - params.closing_m, SIDES * float(speed.max()))
-    return passed(f"The turtle drove a square of {params.side_m:.1f} m.", near_edge=near or closed.near(gap))
+    seen = f"The turtle drove a square with sides of {params.side_m:.1f} m."
+    return passed(seen, near_edge=near or closed.near(gap))
 
 
 SQUARE = Kind(

@@ -1,4 +1,4 @@
-"""Check of the end: the node stops on Ctrl-C, and not before."""
+"""Check of the end: the node runs until Ctrl-C and then stops."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Stop:
-    """How long after SIGINT the node may take to end (s of wall time)."""
+    """How long the node may take to end after SIGINT (s of wall time)."""
 
     within_s: float = number(3.0, above=0, at_most=60, about="How long after Ctrl-C the node may run (wall time).")
 
 
 def stop(evidence: Evidence, params: Stop) -> Finding:
-    """The node ran until SIGINT and was gone soon after. With which exit code or traceback does not matter."""
+    """The node runs until SIGINT and ends soon after it. Its exit code and a traceback do not matter."""
     end = evidence.recording.end
-    expected = f"The node runs until Ctrl-C, and stops within {params.within_s:.0f} s of it."
+    expected = f"The node runs until Ctrl-C and then stops within {params.within_s:.0f} s."
     if end.by == "itself":
         return _too_early(evidence, expected)
     limit = Band.at_most(params.within_s)
@@ -35,10 +35,10 @@ def stop(evidence: Evidence, params: Stop) -> Finding:
         return passed("The node stops on Ctrl-C.", near_edge=limit.near(took))
     if end.by == "SIGINT":
         seen = f"The node stopped {took:.1f} s after Ctrl-C."
-        cause = "Something may still be waited for after Ctrl-C: a sleep, a thread, an answer."
+        cause = "The node may still be waiting for something after Ctrl-C: a sleep, a thread or a service response."
         return failed("slow-stop", seen, expected, cause, where=evidence.place("spin"), near_edge=True)
     force = "it had to be killed" if end.by == "SIGKILL" else "only SIGTERM ended it"
-    cause = "A loop that never ends, or an except that catches everything, keeps it from seeing Ctrl-C."
+    cause = "A loop that never ends, or an except that catches everything, can hide Ctrl-C from the node."
     where = evidence.place("spin", "init")
     return failed("ignores-ctrl-c", f"The node ignored Ctrl-C: {force}.", expected, cause, where=where, near_edge=True)
 

@@ -1,4 +1,4 @@
-"""Checks of the topic: messages of the right type arrive on it, and no others."""
+"""Checks of the topic: only messages of the right type arrive on it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from grader.checks.causes.crash import crash_of, end_seen
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_silent import why_nothing, why_qos
-from grader.checks.kind import Kind, text
+from grader.checks.kind import Kind, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
 from grader.evidence import observed as seen_in
@@ -23,21 +23,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Topic:
-    """The topic's full name, and its type as in "geometry_msgs/msg/Twist"."""
+    """The full name of the topic, and its message type as in "geometry_msgs/msg/Twist"."""
 
-    topic: str = text("a topic's full name", start="/", about="The topic.")
-    type: str = text("a message type, as in geometry_msgs/msg/Twist", about="The type of its messages.")
+    topic: str = string("the full name of a topic", start="/", about="The topic.")
+    type: str = string("a message type, as in geometry_msgs/msg/Twist", about="The type of its messages.")
 
 
 COMMANDS = Topic(topic="/turtle1/cmd_vel", type="geometry_msgs/msg/Twist")
-"""What the simulator itself saw: Recording.commands."""
+"""The commands that the simulator itself received are in Recording.commands."""
 
 
 def publishes(evidence: Evidence, params: Topic) -> Finding:
     """Messages of the type arrived on the topic before SIGINT."""
     recording = evidence.recording
     if _arrived(evidence, params):
-        return passed(f"{params.type} arrives on {params.topic}.")
+        return passed(_expected(params))
     publishers = seen_in.endpoints(recording, "publisher")
     on_topic = [publisher for publisher in publishers if publisher.topic == params.topic]
     if any(publisher.type == params.type for publisher in on_topic):
@@ -60,13 +60,13 @@ def _arrived(evidence: Evidence, params: Topic) -> bool:
 
 
 def _expected(params: Topic) -> str:
-    return f"{params.type} arrives on {params.topic}."
+    return f"{params.type} messages arrive on {params.topic}."
 
 
 def _wrong_type(evidence: Evidence, params: Topic, publishers: list[Endpoint]) -> Finding:
     types = a_list(sorted({shorten(publisher.type) for publisher in publishers}))
-    seen = f"{params.topic} gets messages of the type {types}, which the turtle does not understand."
-    cause = "The type is the first argument of create_publisher."
+    seen = f"{params.topic} receives messages of type {types}, which the turtle does not understand."
+    cause = "The message type is the first argument of create_publisher."
     return failed("wrong-type", seen, _expected(params), cause, where=_publisher_line(evidence, params.topic))
 
 
@@ -75,23 +75,29 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     topics = sorted({publisher.topic for publisher in same_type or publishers})
     guess = nearest(params.topic, topics)
     shown = [guess] if guess is not None else topics
-    seen = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, where no turtle listens."
+    seen = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but no turtle subscribes to that."
     diagnosis, cause = _why_topic(params.topic, shown[0])
     return failed(diagnosis, seen, _expected(params), cause, where=_publisher_line(evidence, shown[0]))
 
 
 def _why_topic(wanted: str, topic: str) -> tuple[str, str]:
-    """What is wrong with a topic's name, as far as the two names tell."""
+    """Return the diagnosis and the cause for a wrong topic name, as far as the two names show it."""
     last = wanted.rpartition("/")[2]
     if topic == f"/{last}":
-        return "topic-without-turtle", "Each turtle has a topic of its own: the turtle's name is part of the topic's."
+        return (
+            "topic-without-turtle",
+            "Each turtle has its own topic, so the topic name contains the name of the turtle.",
+        )
     if topic.lower() == wanted.lower():
-        return "topic-capitals", "Capital and small letters differ."
+        return "topic-capitals", "Upper and lower case matter."
     if topic.endswith(wanted):
-        return "topic-namespace", "The name has a namespace before it: one that begins with a slash is taken as it is."
+        return (
+            "topic-namespace",
+            "The node adds its namespace to the name. A name that starts with a slash stays as it is.",
+        )
     if topic.endswith(f"/{last}") and topic.count("/") == 2 and nearest(topic, [wanted]):
-        return "topic-other-turtle", "There is no turtle of that name here."
-    return "wrong-topic", "The topic's name is the second argument of create_publisher; compare it letter by letter."
+        return "topic-other-turtle", "There is no turtle with that name."
+    return "wrong-topic", "The topic name is the second argument of create_publisher. Compare it letter by letter."
 
 
 def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
@@ -100,7 +106,7 @@ def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
         return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
     subscribed = [each for each in seen_in.endpoints(evidence.recording, "subscription") if each.topic == params.topic]
     if subscribed:
-        cause = "A subscription only listens; create_publisher makes what sends."
+        cause = "A subscription only receives messages. Use create_publisher to send them."
         where = evidence.place("create_subscription")
         return failed(
             "subscription-instead", f"The node subscribes to {params.topic}.", _expected(params), cause, where=where
@@ -109,13 +115,13 @@ def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
     why = why_nothing(evidence, ("publish",)) if evidence.code.calls("create_publisher") else None
     if why is not None:
         return failed(why.diagnosis, seen, _expected(params), why.text, where=why.where)
-    cause = "" if evidence.code.calls("create_publisher") else "create_publisher is called nowhere."
+    cause = "" if evidence.code.calls("create_publisher") else "create_publisher is never called."
     return failed("no-publisher", seen, _expected(params), cause, where=evidence.place("create_publisher"))
 
 
 def _silent(evidence: Evidence, params: Topic) -> Finding:
-    """There is a publisher of the right type on the right topic, and nothing came."""
-    seen = f"The publisher on {params.topic} is there, but after the start no message came."
+    """Return the finding about a publisher with the right topic and type that sent nothing."""
+    seen = f"There is a publisher on {params.topic}, but no message arrived after the start."
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
@@ -129,16 +135,18 @@ def _silent(evidence: Evidence, params: Topic) -> Finding:
 def _why_silent(evidence: Evidence) -> tuple[str, str, Where | None]:
     code = evidence.code
     if not code.calls("publish"):
-        return "The method publish is called nowhere.", "no-publish", code.start
+        return "publish is never called.", "no-publish", code.start
     why = why_qos(evidence) or why_nothing(evidence, ("publish",))
     if why is not None:
         return why.text, why.diagnosis, why.where or code.start
-    cause = "The line that publishes is never reached, or only at the start, when nobody has found the publisher yet."
+    cause = (
+        "The line that publishes is never reached, or it runs only at the start, before a subscription is connected."
+    )
     return cause, "never-publishes", evidence.place("publish")
 
 
 def _publisher_line(evidence: Evidence, topic: str) -> Where | None:
-    """The line that makes the publisher of this topic, as far as that can be told."""
+    """Return the line that creates the publisher of this topic, if the source code shows it."""
     calls = evidence.code.calls("create_publisher")
     for call in calls:
         value = evaluate(call.argument(1, "topic"), call.module.names)
@@ -148,40 +156,39 @@ def _publisher_line(evidence: Evidence, topic: str) -> Where | None:
 
 
 def only_type(evidence: Evidence, params: Topic) -> Finding:
-    """The submission publishes no other type on the topic."""
+    """The submission publishes no other message type on the topic."""
+    expected = f"Only {params.type} messages are published on {params.topic}."
     found = seen_in.endpoints(evidence.recording, "publisher")
     types = {publisher.type for publisher in found if publisher.topic == params.topic}
     types |= {message.type for message in evidence.recording.messages if message.topic == params.topic}
     others = sorted(types - {params.type})
     if others:
-        seen = f"{params.topic} also gets messages of the type {a_list([shorten(other) for other in others])}."
-        cause = "A topic has one type: two publishers on one name, with different types, do not go together."
-        return failed(
-            "second-type", seen, f"Only {params.type} there.", cause, where=_publisher_line(evidence, params.topic)
-        )
-    return passed(f"Only {params.type} is published on {params.topic}.")
+        seen = f"{params.topic} also receives messages of type {a_list([shorten(other) for other in others])}."
+        cause = "A topic has one type. Two publishers with different types cannot use the same topic name."
+        return failed("second-type", seen, expected, cause, where=_publisher_line(evidence, params.topic))
+    return passed(expected)
 
 
 def subscribes(evidence: Evidence, params: Topic) -> Finding:
-    """The submission subscribes to the topic, with the type."""
+    """The submission subscribes to the topic with the right message type."""
     found = seen_in.endpoints(evidence.recording, "subscription")
-    expected = f"The node subscribes to {params.topic}, with the type {params.type}."
+    expected = f"The node subscribes to {params.topic} with the type {params.type}."
     where = evidence.place("create_subscription")
     if any((each.topic, each.type) == (params.topic, params.type) for each in found):
         return passed(expected)
     on_topic = [each.type for each in found if each.topic == params.topic]
     if on_topic:
-        seen = f"The node subscribes to {params.topic} with the type {shorten(on_topic[0])}, so nothing reaches it."
-        cause = "The type is the first argument of create_subscription."
+        seen = f"The node subscribes to {params.topic} with the type {shorten(on_topic[0])}, so no message reaches it."
+        cause = "The message type is the first argument of create_subscription."
         return failed("wrong-type", seen, expected, cause, where=where)
     if found:
         seen = f"The node subscribes to {a_list(sorted({shorten(each.topic) for each in found}))}."
-        cause = "The topic's name is the second argument of create_subscription; compare it letter by letter."
+        cause = "The topic name is the second argument of create_subscription. Compare it letter by letter."
         return failed("wrong-topic", seen, expected, cause, where=where)
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_seen(evidence), expected)
-    cause = "" if evidence.code.calls("create_subscription") else "create_subscription is called nowhere."
+    cause = "" if evidence.code.calls("create_subscription") else "create_subscription is never called."
     return failed("no-subscription", "The node has no subscription.", expected, cause, where=where)
 
 
@@ -196,7 +203,7 @@ PUBLISHES = Kind(
 ONLY_TYPE = Kind(
     "topic_type",
     "trial",
-    "The topic carries one type",
+    "The topic has one message type",
     Topic,
     only_type,
     about="The student's node publishes nothing but this type on the topic.",
@@ -204,7 +211,7 @@ ONLY_TYPE = Kind(
 SUBSCRIBES = Kind(
     "subscribes",
     "trial",
-    "The node listens on the topic",
+    "The node subscribes to the topic",
     Topic,
     subscribes,
     about="The student's node has a subscription of this type on the topic.",

@@ -1,4 +1,4 @@
-"""Check of the values: what stands in every command that arrived."""
+"""Check of the values in every command that arrived."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 FIELDS = ("linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z")
 Six = tuple[float, ...]
-"""A command's values in the order of FIELDS: m/s three times, rad/s three times."""
+"""The values of a command in the order of FIELDS: three in m/s, three in rad/s."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Values:
-    """What each command must say; the fields that are left out must be 0."""
+    """The values that each command must have. Fields that are not given must be 0."""
 
     linear_x_m_s: float = number(0.0, about="linear.x of each command.")
     linear_y_m_s: float = number(0.0, about="linear.y of each command.")
@@ -52,7 +52,7 @@ class Values:
 
 
 def values(evidence: Evidence, params: Values) -> Finding:
-    """Every command before SIGINT says what it should, in all six fields."""
+    """Every command before SIGINT has the right value in all six fields."""
     bands = params.bands
     amounts = Counter(_six(command) for command in evidence.commands)
     near = any(band.near(value) for six in amounts for band, value in zip(bands, six, strict=True))
@@ -61,29 +61,32 @@ def values(evidence: Evidence, params: Values) -> Finding:
     if not amounts:
         return failed("no-commands", "No command arrived.", expected)
     if not wrong:
-        return passed(f"Every command says {expected[:-1]}.", near_edge=near)
+        return passed(f"Every command has {expected[0].lower()}{expected[1:]}", near_edge=near)
     first = wrong[0]
     off = [index for index, band in enumerate(bands) if not band.holds(first[index])]
-    said = a_list([_said(index, shown(first[index], params.wanted[index])) for index in off])
+    actual = a_list([_field(index, shown(first[index], params.wanted[index])) for index in off])
     total, bad = sum(amounts.values()), sum(amounts[six] for six in wrong)
     amount = (
         f"All {total} commands were" if bad == total else f"{bad} of {total} commands {'was' if bad == 1 else 'were'}"
     )
     alike = len({str(six) for six in wrong}) == 1
-    seen = f"{amount} wrong: {said}{'' if alike else ' in the first of them'}."
+    seen = f"{amount} wrong: {actual}{'' if alike else ' in the first of them'}."
     diagnosis, cause, field = _why(first, params.wanted, off)
     if diagnosis == "wrong-value" and bad < total:
-        diagnosis, cause = "values-change", "The other commands were right: something changes the values on the way."
+        diagnosis, cause = (
+            "values-change",
+            "The other commands were right. Something changes the values while the node runs.",
+        )
     return failed(diagnosis, seen, expected, cause, where=_line(evidence, field), near_edge=near)
 
 
 def _expected(wanted: Six) -> str:
-    right = a_list([_said(index, shown(value)) for index, value in enumerate(wanted) if value])
+    right = a_list([_field(index, shown(value)) for index, value in enumerate(wanted) if value])
     return f"{right}, all other fields 0." if right else "All fields 0."
 
 
-def _said(index: int, value: str) -> str:
-    """A field with its value and unit."""
+def _field(index: int, value: str) -> str:
+    """Return a field with its value and unit."""
     return f"{FIELDS[index]} {value} {'m/s' if FIELDS[index].startswith('linear') else 'rad/s'}"
 
 
@@ -105,39 +108,47 @@ def _same(value: float, other: float) -> bool:
 
 
 def _why(six: Six, wanted: Six, off: list[int]) -> tuple[str, str, str]:
-    """The diagnosis, its cause in words, and the field to look at."""
+    """Return the diagnosis, its cause in words, and the field to look at."""
     first = FIELDS[off[0]]
     not_numbers = [FIELDS[index] for index in off if not math.isfinite(six[index])]
     if not_numbers:
-        return "not-a-number", "Such a value comes from a calculation that has no answer.", not_numbers[0]
+        return (
+            "not-a-number",
+            "Such a value comes from a calculation that has no result, such as infinity minus infinity.",
+            not_numbers[0],
+        )
     if not any(six):
-        return "empty-twist", "A new Twist is all zeros: its fields must be set before it is published.", first
+        return "empty-twist", "All fields of a new Twist are 0. Set them before you publish it.", first
     if any(wanted) and _same(six[0], wanted[5]) and _same(six[5], wanted[0]) and not _same(wanted[0], wanted[5]):
-        return "values-swapped", "The forward speed and the turning speed have changed places.", "linear.x"
+        return "values-swapped", "The forward speed and the turning speed are swapped.", "linear.x"
     for index in off:
         if wanted[index] and not six[index]:
             other = [each for each in off if _same(six[each], wanted[index]) and not wanted[each]]
             if other:
                 cause = (
-                    f"{FIELDS[other[0]]} has the number that belongs to {FIELDS[index]}: {_meaning(FIELDS[other[0]])}"
+                    f"{FIELDS[other[0]]} has the value that belongs in {FIELDS[index]}: {_meaning(FIELDS[other[0]])}"
                 )
                 return "wrong-field", cause, FIELDS[other[0]]
     return _scaled(six, wanted, off) or ("wrong-value", MEANING, first)
 
 
-MEANING = "linear.x is the speed forwards, angular.z how fast it turns to the left."
+MEANING = "linear.x is the forward speed, and angular.z is how fast the turtle turns to the left."
 
 
 def _meaning(field: str) -> str:
     if field in ("linear.y", "linear.z"):
         return "the turtle drives along linear.x only."
-    return "on a plane a robot turns about the axis that points up."
+    return "the turtle turns about the axis that points up, z."
 
 
 SCALES: tuple[tuple[str, str, Callable[[float], float]], ...] = (
-    ("wrong-sign", "The sign is the other way round.", lambda value: -value),
-    ("degrees", "Angles are in radians here; this looks like degrees.", math.degrees),
-    ("degrees", "This looks like degrees turned into radians, where the number was in radians already.", math.radians),
+    ("wrong-sign", "The sign is wrong.", lambda value: -value),
+    ("degrees", "Angles are in radians. This value looks like degrees.", math.degrees),
+    (
+        "degrees",
+        "This value looks like a conversion from degrees to radians, but the number was already in radians.",
+        math.radians,
+    ),
 )
 
 
@@ -153,7 +164,7 @@ def _scaled(six: Six, wanted: Six, off: list[int]) -> tuple[str, str, str] | Non
 VALUES = Kind(
     "values",
     "trial",
-    "The commands say the right values",
+    "The commands have the right values",
     Values,
     values,
     about="Each command has the given values; a value that is not given must be 0.",

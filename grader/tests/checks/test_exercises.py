@@ -32,7 +32,7 @@ def test_several_exercises_that_begin_alike_are_named(tmp_path: Path) -> None:
     for name in ("03-a", "03-b"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "exercise.toml").touch()
-    with pytest.raises(UsageError, match=r"several exercises begin with '03'.*03-a and 03-b"):
+    with pytest.raises(UsageError, match=r"several exercises start with '03'.*03-a and 03-b"):
         find_exercise("03", tmp_path)
 
 

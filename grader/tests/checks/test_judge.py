@@ -61,7 +61,7 @@ def test_what_needs_a_failed_check_is_skipped_and_names_the_first_cause() -> Non
         "installed", "entry-point", "start", "node-name", "topic", "type", "rate", "values", "circle", "wall", "stop",
     }  # fmt: skip
     assert {outcome.finding.seen for outcome in skipped} == {
-        'Not judged, since "colcon builds and installs the package" did not pass.'
+        'Not judged, because "colcon builds and installs the package" did not pass.'
     }
 
 

@@ -139,7 +139,7 @@ def test_an_int_in_a_float_field_is_explained() -> None:
     )
     crash = read_traceback(text, FILES)
     assert crash is not None
-    assert crash.meaning == "This field is a float: write the number with a decimal point."
+    assert crash.meaning == "This field is a float. Write the number with a decimal point."
 
 
 def test_calls_are_found_in_the_node_and_what_it_imports_and_nowhere_else() -> None:

@@ -172,7 +172,7 @@ def test_without_scripts_the_page_is_whole(browser: Browser, pages: Path) -> Non
     tab.goto((pages / "failed.html").as_uri())
     assert not tab.locator(".player").is_visible()
     assert tab.locator("svg.canvas").is_visible()
-    assert tab.get_by_text("The circle's radius is 2.2 m.").is_visible()
+    assert tab.get_by_text("The radius of the circle is 2.2 m.").is_visible()
     tab.close()
 
 

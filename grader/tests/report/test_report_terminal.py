@@ -91,7 +91,7 @@ def test_a_failure_says_what_why_and_where() -> None:
     text = told(report("failed"))
     start = text.index("✗ The turtle drives a circle  0/25\n")
     assert text[start:].splitlines()[1:5] == [
-        "    seen: The circle's radius is 2.2 m.",
+        "    seen: The radius of the circle is 2.2 m.",
         "    expected: A circle of radius 2.0 m, counter-clockwise, at least 1 turn.",
         "    why: The radius is linear.x divided by angular.z: 2.2 / 1.0 = 2.2 m.",
         "    where: my_robot_controller/draw_circle.py:15",
@@ -117,7 +117,7 @@ def test_an_error_has_no_points_yet_and_says_what_to_do() -> None:
 
 def test_one_cause_for_many_checks_is_told_once() -> None:
     assert told(report("error")).count("The disk is full") == 1
-    assert told(report("skipped")).count("Not judged, since") == 1
+    assert told(report("skipped")).count("Not judged, because") == 1
 
 
 def test_where_the_stream_cannot_say_more_signs_are_ascii() -> None:
@@ -136,9 +136,9 @@ def test_of_a_hidden_check_only_the_line_is_shown() -> None:
 
 def test_advice_is_told_apart_from_failures() -> None:
     made = report("passed")
-    advice = replace(made.outcomes[-1], finding=failed("no-timer", "No timer is used.", "A timer."))
+    advice = replace(made.outcomes[-1], finding=failed("no-timer", "The node does not use a timer.", "A timer."))
     text = told(replace(made, outcomes=(*made.outcomes[:-1], advice)))
-    assert "i A timer gives the rhythm\n    seen: No timer is used.\n" in text
+    assert "i The node uses a timer\n    seen: The node does not use a timer.\n" in text
     assert "Passed: 100 of 100 points." in text
 
 

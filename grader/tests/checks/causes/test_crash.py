@@ -34,7 +34,7 @@ def traceback(error: str, line: int = 14, file: str = f"/ws/{NODE_FILE}") -> str
         (ended("SIGINT", 0), None, "", ""),
         (ended("SIGINT", stderr=TRACEBACK), None, "", ""),
         (ended(exit_code=0), None, "The node ended by itself.", "The node ended by itself after 3.0 s."),
-        (ended(exit_code=0, t_s=0.0), None, "The node ended by itself.", "The node ended by itself at its start."),
+        (ended(exit_code=0, t_s=0.0), None, "The node ended by itself.", "The node ended by itself at startup."),
         (ended(exit_code=0, t_s=0.4), None, "The node ended by itself.", "The node ended by itself after 0.4 s."),
         (ended(), "exit code 1", "The node crashed: exit code 1.", "The node crashed after 3.0 s: exit code 1."),
         (ended(exit_code=-11), "SIGSEGV", "The node crashed: SIGSEGV.", "The node crashed after 3.0 s: SIGSEGV."),
@@ -54,7 +54,7 @@ def traceback(error: str, line: int = 14, file: str = f"/ws/{NODE_FILE}") -> str
         ),
         (
             ended("SIGKILL", out_of="memory"),
-            "it used up the memory that a node may use",
+            "it used all the memory that a node may use",
             "",
             "",
         ),
@@ -73,9 +73,9 @@ def test_an_exception_is_told_with_its_words_if_it_has_any() -> None:
 @pytest.mark.parametrize(
     ("crash", "meaning"),
     [
-        (Crash("AssertionError", "The 'x' field must be of type 'float'"), "This field is a float:"),
-        (Crash("AssertionError", "it is so"), "Something that the code, or a message field,"),
-        (Crash("TypeError", "The 'x' field must be of type 'float'"), "A function got another number"),
+        (Crash("AssertionError", "The 'x' field must be of type 'float'"), "This field is a float."),
+        (Crash("AssertionError", "it is so"), "An assertion failed: something that the code or a message field"),
+        (Crash("TypeError", "The 'x' field must be of type 'float'"), "A function was called with the wrong number"),
     ],
 )
 def test_an_error_has_a_meaning(crash: Crash, meaning: str) -> None:

@@ -35,7 +35,12 @@ def setup_py(instead: str, more: str = "") -> Files:
     [
         (setup_py(""), "entry-point-missing", "setup.py:5", f"{NODE_FILE} is there, but"),
         ({**setup_py(""), NODE_FILE: None, OTHER: NODE}, "entry-point-missing", "setup.py:5", f"{OTHER} is there, but"),
-        ({**setup_py(""), NODE_FILE: None}, "entry-point-missing", "setup.py:5", "setup.py names no such executable,"),
+        (
+            {**setup_py(""), NODE_FILE: None},
+            "entry-point-missing",
+            "setup.py:5",
+            "setup.py has no entry point with this name,",
+        ),
         (
             {
                 **setup_py('            "go = my_robot_controller.circle:main",\n'),
@@ -44,7 +49,7 @@ def setup_py(instead: str, more: str = "") -> Files:
             },
             "entry-point-missing",
             "setup.py:5",
-            "setup.py names no such executable,",
+            "setup.py has no entry point with this name,",
         ),
         (
             setup_py('            "a = b.c:main" "draw_circle = my_robot_controller.draw_circle:main",\n'),
@@ -52,12 +57,17 @@ def setup_py(instead: str, more: str = "") -> Files:
             "setup.py:14",
             "A comma is missing",
         ),
-        (setup_py(f"            # {POINT.strip()}\n"), "entry-point-commented", "setup.py:14", "The line for it is a"),
+        (
+            setup_py(f"            # {POINT.strip()}\n"),
+            "entry-point-commented",
+            "setup.py:14",
+            "The entry point is in a comment",
+        ),
         (
             setup_py("", f"    tests_require=[\n{POINT}    ],\n"),
             "entry-point-elsewhere",
             "setup.py:13",
-            "The text for it stands in another list",
+            "The entry point is in another list.",
         ),
         ({"setup.py": None}, "entry-point-missing", "setup.py", f"{NODE_FILE} is there, but"),
         ({"setup.py": "setup(\n"}, "entry-point-missing", "setup.py", f"{NODE_FILE} is there, but"),
@@ -97,7 +107,7 @@ def test_comments_that_are_no_entry_point_are_none() -> None:
 def test_an_executable_of_nearly_that_name_is_named(build: Build) -> None:
     got = found(setup_py(POINT.replace("draw_circle =", "draw_cirle =")), build)
     assert (got.diagnosis, str(got.where)) == ("entry-point-name", "setup.py:14")
-    assert got.seen == "There is no executable draw_circle; there is draw_cirle."
+    assert got.seen == "There is no executable draw_circle, but there is draw_cirle."
 
 
 SCRIPT = replace(BUILD, entry_points={})
@@ -135,9 +145,9 @@ def test_a_script_is_no_entry_point(files: Files, diagnosis: str, where: str, wo
     ("files", "package", "where", "cause"),
     [
         ({"setup.cfg": None}, "my_robot_controller", "setup.py", "setup.cfg is missing."),
-        ({}, "my_robot_controller", "setup.cfg", "Compare it with the lesson's, letter by letter."),
-        ({}, None, "setup.cfg", "Compare it with the lesson's, letter by letter."),
-        ({}, "my_robot", "setup.cfg", "It must name the folder after the package, as package.xml names that."),
+        ({}, "my_robot_controller", "setup.cfg", "Compare it with the setup.cfg in the lesson, letter by letter."),
+        ({}, None, "setup.cfg", "Compare it with the setup.cfg in the lesson, letter by letter."),
+        ({}, "my_robot", "setup.cfg", "The folder name must be the package name in package.xml."),
     ],
 )
 def test_an_executable_in_another_folder_is_told(files: Files, package: str | None, where: str, cause: str) -> None:
@@ -162,24 +172,24 @@ def leads_to(target: str) -> Build:
         (
             "draw_circle:main",
             "entry-point-module",
-            "The folder comes first, then a point, then the file without its .py.",
+            "Write the folder first, then a dot, then the file name without .py.",
         ),
-        ("my_robot:main", "entry-point-module", "The folder comes first, then a point, then the file without its .py."),
-        ("my_robot_controller.draw_circle.py:main", "entry-point-py", "A module is named without the ending .py."),
-        ("my_robot_controller.draw_circle:mian", "entry-point-function", "It has main."),
+        ("my_robot:main", "entry-point-module", "Write the folder first, then a dot, then the file name without .py."),
+        ("my_robot_controller.draw_circle.py:main", "entry-point-py", "Write the module name without the ending .py."),
+        ("my_robot_controller.draw_circle:mian", "entry-point-function", "It has a function main."),
         (
             "my_robot_controller.draw_circle:send_it",
             "entry-point-function",
-            "Nothing at the left edge of the file has that name.",
+            "Nothing at the top level of the file has that name.",
         ),
-        ("my_robot_controller.draw_circle:", "entry-point-no-function", "After the module come a colon"),
+        ("my_robot_controller.draw_circle:", "entry-point-no-function", "After the module comes a colon,"),
     ],
 )
 def test_an_entry_point_that_leads_nowhere_is_explained_by_the_files(target: str, diagnosis: str, cause: str) -> None:
     got = found({}, leads_to(target))
     assert (got.diagnosis, str(got.where)) == (diagnosis, "setup.py:14")
     assert got.cause.startswith(cause)
-    assert "draw_circle leads to" in got.seen
+    assert "draw_circle names" in got.seen
 
 
 def test_a_module_that_was_not_installed_is_none_unless_it_is_linked() -> None:

@@ -15,7 +15,7 @@ WORDS = {
     "'(' was never closed": "bracket-open",
     "unmatched ')'": "bracket-extra",
     "closing parenthesis ']' does not match opening parenthesis '('": "bracket-extra",
-    "unterminated string literal (detected at line 3)": "text-open",
+    "unterminated string literal (detected at line 3)": "quote-open",
     "invalid character '\u201c' (U+201C)": "typographic-character",
     "invalid non-printable character U+00A0": "typographic-character",
     "unindent does not match any outer indentation level": "indentation",

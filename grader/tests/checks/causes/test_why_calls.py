@@ -64,9 +64,9 @@ def test_a_line_that_makes_something_shows_what_is_wrong_with_its_arguments(line
 
 def test_the_order_is_told_for_the_function_that_was_called() -> None:
     found = told(NODE.format(line="self.create_timer(self.send, 0.5)"), "TypeError: no")
-    assert found.cause == "create_timer wants, in this order: the period and the method to call."
+    assert found.cause == "create_timer takes its arguments in this order: the period and the callback."
     found = told(NODE.format(line="self.create_timer(0.5, self.send())"), "TypeError: no")
-    assert found.cause.startswith("create_timer wants the method itself;")
+    assert found.cause.startswith("create_timer needs the method itself.")
 
 
 def test_a_call_over_several_lines_is_shown_where_it_begins() -> None:
@@ -82,104 +82,114 @@ def test_a_call_over_several_lines_is_shown_where_it_begins() -> None:
             "Driver.take() missing 1 required positional argument: 'msg'",
             "callback-parameters",
             "def take",
-            "Nobody fills in 'msg':",
+            "Nothing is passed for 'msg'.",
         ),
         (
             "Node.__init__() missing 1 required positional argument: 'node_name'",
             "node-name-missing",
             "",
-            "A node wants its name",
+            "Pass the node name",
         ),
         (
             "Node.create_publisher() missing 1 required positional argument: 'qos_profile'",
             "argument-missing",
             "",
-            "create_publisher wants the type, the topic and the queue size.",
+            "create_publisher takes the type, the topic and the queue size.",
         ),
         (
             "Thread.__init__() missing 2 required positional arguments: 'a' and 'b'",
             "callback-parameters",
             "def __init__",
-            "Nobody fills in 'a' and 'b':",
+            "Nothing is passed for 'a' and 'b'.",
         ),
         (
             "fill() missing 1 required keyword-only argument: 'node_name'",
             "argument-missing",
             "",
-            "fill wants more than it gets: 'node_name'.",
+            "fill needs more arguments: 'node_name'.",
         ),
         (
             "Twist.__init__() takes 1 positional argument but 3 were given",
             "message-arguments",
             "",
-            "A message is made empty,",
+            "Create the message without arguments,",
         ),
         (
             "Driver.__init__() takes 1 positional argument but 3 were given",
             "callback-parameters",
             "def __init__",
-            "__init__ has no parameter for",
+            "__init__ is called with an argument but has no parameter for",
         ),
         (
             "Twist.send() takes 1 positional argument but 2 were given",
             "callback-parameters",
             "def send",
-            "send has no parameter for",
+            "send is called with an argument but has no parameter for",
         ),
         (
             "Driver.take() takes 2 positional arguments but 3 were given",
             "callback-parameters",
             "def take",
-            "take has no parameter for",
+            "take is called with an argument but has no parameter for",
         ),
         (
             "Driver.turn() takes 1 positional argument but 2 were given",
             "self-parameter",
             "def turn",
-            "turn is a method: its first parameter is self.",
+            "turn is a method, so its first parameter must be self.",
         ),
-        ("outside() takes 0 positional arguments but 1 was given", "callback-parameters", "def outside", "outside has"),
+        (
+            "outside() takes 0 positional arguments but 1 was given",
+            "callback-parameters",
+            "def outside",
+            "outside is called with an argument but has",
+        ),
         (
             "RcutilsLogger.info() takes 2 positional arguments but 4 were given",
             "log-arguments",
             "",
-            "info takes one text,",
+            "info takes one string,",
         ),
         (
             "Node.create_timer() takes from 3 to 6 positional arguments but 7 were given",
             "too-many-arguments",
             "",
-            "create_timer wants the period and the method to call, and nothing else.",
+            "create_timer takes the period and the callback, and nothing else.",
         ),
         ("fill() takes 0 positional arguments but 1 was given", "crash", "", ""),
         (
             "Node.create_timer() got an unexpected keyword argument 'period'",
             "unexpected-keyword",
             "",
-            "create_timer knows no argument period. It wants the period and the method to call.",
+            "create_timer has no parameter period. It takes the period and the callback.",
         ),
         (
             "fill() got an unexpected keyword argument 'colour'",
             "unexpected-keyword",
             "",
-            "fill knows no argument colour.",
+            "fill has no parameter colour.",
         ),
         (
             "Expected <class 'geometry_msgs.msg._twist.Twist'>, got <class 'float'>",
             "publish-other",
             "",
-            "This publisher sends a whole Twist, and was handed a float.",
+            "This publisher sends a Twist, but publish was called with a float.",
         ),
         (
             "Expected <class 'geometry_msgs.msg._twist.Twist'>, got <class 'geometry_msgs.msg._twist.Metaclass_Twist'>",
             "class-for-object",
             "",
-            "Twist is the class.",
+            "Twist is a class.",
         ),
-        ("'int' object is not callable", "not-callable", "", "The parentheses call something of the type int,"),
-        ('can only concatenate str (not "int") to str', "text-and-number", "", "A text and a number"),
+        ("'int' object is not callable", "not-callable", "", "A value of type int is called"),
+        ('can only concatenate str (not "int") to str', "string-and-number", "", "A string and a number"),
         ("Expected QoSProfile or int, but received <class 'str'>", "queue-size", "", "The last argument"),
-        ("'property' object is not iterable", "class-for-object", "", "rclpy.spin was handed It, which is the class."),
+        (
+            "'property' object is not iterable",
+            "class-for-object",
+            "",
+            "rclpy.spin was called with It, which is a class.",
+        ),
         ("what nobody has seen", "crash", "", ""),
     ],
 )
@@ -195,14 +205,16 @@ def test_pythons_words_are_explained(error: str, diagnosis: str, look: str, word
 
 def test_what_was_spun_is_named() -> None:
     found = told("rclpy.spin(Driver)  # crashed\n", "TypeError: 'property' object is not iterable")
-    assert (found.diagnosis, "was handed Driver, which" in found.cause) == ("class-for-object", True)
-    assert "was handed It," in told("rclpy.spin()  # crashed\n", "TypeError: 'property' object is not iterable").cause
+    assert (found.diagnosis, "was called with Driver, which" in found.cause) == ("class-for-object", True)
+    assert (
+        "was called with It," in told("rclpy.spin()  # crashed\n", "TypeError: 'property' object is not iterable").cause
+    )
 
 
 def test_a_value_that_hides_a_method_is_found() -> None:
     found = told(HIDES, "TypeError: 'int' object is not callable")
     assert (found.diagnosis, found.line) == ("name-used-twice", to_look_at(HIDES))
-    assert found.cause == "self.send gets a value in line 4, which hides the method of that name."
+    assert found.cause == "self.send is set in line 4, which hides the method of the same name."
 
 
 @pytest.mark.parametrize(
@@ -225,10 +237,10 @@ def test_nothing_is_called_where_a_callback_was_called(made: str, kind: str, dia
 
 def test_a_second_init_is_told_with_all_its_lines() -> None:
     once, error = "rclpy.init()  # crashed\n", "RuntimeError: Context.init() must only be called once"
-    assert told(once, error).cause == "rclpy.init belongs at one place of a program."
+    assert told(once, error).cause == "Call rclpy.init only once."
     found = told(f"rclpy.init()\nrclpy.spin(node)\n{once}", error)
     assert found.diagnosis == "init-twice"
-    assert found.cause.endswith(" It stands in lines 1 and 3.")
+    assert found.cause.endswith(" It is called in lines 1 and 3.")
 
 
 NOT_CALLABLE = "RuntimeError: callback should be either be callable with one argument or two"

@@ -31,9 +31,9 @@ def ended(source: str, t_s: float = 3.0) -> tuple[str, str, int | None]:
 @pytest.mark.parametrize(
     ("body", "diagnosis", "words"),
     [
-        ("rclpy.spin  # look", "not-called", "The line names rclpy.spin and does not call it"),
-        ("node = Driver()", "no-spin", "rclpy.spin keeps a node running;"),
-        ("rclpy.spin_once(Driver())  # look", "spin-once", "rclpy.spin_once waits for one thing"),
+        ("rclpy.spin  # look", "not-called", "This line names rclpy.spin but does not call it"),
+        ("node = Driver()", "no-spin", "rclpy.spin keeps a node running, but it is never called."),
+        ("rclpy.spin_once(Driver())  # look", "spin-once", "rclpy.spin_once handles one event"),
         ("while True: rclpy.spin_once(Driver())", "ended-early", ""),
         ("for _ in range(3): rclpy.spin_once(Driver())", "ended-early", ""),
         ("rclpy.spin_until_future_complete(Driver(), done)", "ended-early", ""),

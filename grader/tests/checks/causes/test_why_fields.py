@@ -12,22 +12,22 @@ FLOAT = "AssertionError: The 'x' field must be of type 'float'"
 @pytest.mark.parametrize(
     ("line", "diagnosis", "words"),
     [
-        ("msg.linear.x = 2", "int-for-float", "write the number with a decimal point."),
-        ("msg.linear.x = -2", "int-for-float", "write the number with a decimal point."),
-        ("msg.linear = Vector3(y=2.0, x=2)", "int-for-float", "write the number with a decimal point."),
-        ("msg.linear.y = msg.linear.x = 2", "int-for-float", "write the number with a decimal point."),
-        ("msg.linear.x = SPEED", "int-for-float", "write the number with a decimal point."),
-        ("msg.linear.x = round(speed)", "int-for-float", "round(...) gives a whole number."),
-        ('msg.linear.x = "2.0"', "text-for-number", "in quotation marks it is a text."),
-        ("msg.linear.x = input()", "text-for-number", "what is read is a text."),
-        ('msg.linear.x = os.environ.get("SPEED")', "text-for-number", "what is read is a text."),
-        ("msg.linear.x = np.float32(2)", "numpy-for-float", "numpy has others."),
-        ("msg.linear.x = 2 * numpy.sqrt(2)", "numpy-for-float", "numpy has others."),
-        ("msg.linear.x = True", "field-type", "neither true nor false."),
-        ("msg.linear.x = look_up()()", "field-type", "the value is of another type."),
-        ("msg.linear.x = speed", "field-type", "the value is of another type."),
-        ("msg.linear.y = 2", "field-type", "the value is of another type."),
-        ("move(msg)", "field-type", "the value is of another type."),
+        ("msg.linear.x = 2", "int-for-float", "Write the number with a decimal point."),
+        ("msg.linear.x = -2", "int-for-float", "Write the number with a decimal point."),
+        ("msg.linear = Vector3(y=2.0, x=2)", "int-for-float", "Write the number with a decimal point."),
+        ("msg.linear.y = msg.linear.x = 2", "int-for-float", "Write the number with a decimal point."),
+        ("msg.linear.x = SPEED", "int-for-float", "Write the number with a decimal point."),
+        ("msg.linear.x = round(speed)", "int-for-float", "round(...) returns an integer."),
+        ('msg.linear.x = "2.0"', "string-for-number", "In quotation marks, a number is a string."),
+        ("msg.linear.x = input()", "string-for-number", "but the value is a string."),
+        ('msg.linear.x = os.environ.get("SPEED")', "string-for-number", "but the value is a string."),
+        ("msg.linear.x = np.float32(2)", "numpy-for-float", "not a NumPy number."),
+        ("msg.linear.x = 2 * numpy.sqrt(2)", "numpy-for-float", "not a NumPy number."),
+        ("msg.linear.x = True", "field-type", "not True or False."),
+        ("msg.linear.x = look_up()()", "field-type", "the value has another type."),
+        ("msg.linear.x = speed", "field-type", "the value has another type."),
+        ("msg.linear.y = 2", "field-type", "the value has another type."),
+        ("move(msg)", "field-type", "the value has another type."),
     ],
 )
 def test_the_value_tells_why_it_is_no_float(line: str, diagnosis: str, words: str) -> None:
@@ -35,7 +35,9 @@ def test_the_value_tells_why_it_is_no_float(line: str, diagnosis: str, words: st
     assert (found.diagnosis, found.line) == (diagnosis, 2)
     assert found.cause.startswith("The field x ")
     assert (
-        found.cause.removesuffix(" float(...) makes one of it.").removesuffix(" float(...) makes one.").endswith(words)
+        found.cause.removesuffix(" Convert it with float(...).")
+        .removesuffix(" Convert it with float(...).")
+        .endswith(words)
     )
 
 
@@ -46,14 +48,14 @@ def test_a_value_of_which_nothing_is_known_is_of_another_type() -> None:
 @pytest.mark.parametrize(
     ("error", "diagnosis", "words"),
     [
-        ("The 'x' field must be of type 'double'", "int-for-float", "The field x is a float:"),
+        ("The 'x' field must be of type 'double'", "int-for-float", "The field x is a float."),
         (
             "The 'linear' field must be a sub message of type 'Vector3'",
             "field-type",
-            "The field linear is itself a Vector3,",
+            "The field linear is a Vector3 with",
         ),
-        ("Invalid arguments passed to constructor: x", "message-arguments", "A message is made empty,"),
-        ("it did not hold", "crash", "Something that the code"),
+        ("Invalid arguments passed to constructor: x", "message-arguments", "Create the message without arguments,"),
+        ("it did not hold", "crash", "An assertion failed: something that the code"),
     ],
 )
 def test_an_assertion_is_explained_by_its_words(error: str, diagnosis: str, words: str) -> None:

@@ -12,18 +12,34 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
 @pytest.mark.parametrize(
     ("error", "diagnosis", "words"),
     [
-        ("No module named 'rospy'", "ros-1-module", "rospy belongs to ROS 1;"),
-        ("No module named 'tf.transformations'", "ros-1-module", "tf belongs to ROS 1;"),
-        ("No module named 'turtlesim_msgs'", "turtlesim-msgs", "Newer distributions have"),
-        ("No module named 'turtlesim_msgs.msg'", "turtlesim-msgs", "Newer distributions have"),
-        ("No module named 'helper'", "sibling-import", "my_robot_controller/helper.py is there, but"),
-        ("No module named 'geometry_msg.msg'", "module-misspelt", "There is a module geometry_msgs.msg:"),
-        ("No module named 'cv2'", "module-missing", "No package here has a module cv2;"),
-        ("cannot import name 'twist' from 'geometry_msgs.msg' (unknown)", "import-name", "There it is called Twist:"),
-        ("cannot import name 'Twist' from 'turtlesim.msg'", "import-wrong-place", "Twist lives in geometry_msgs.msg."),
-        ("cannot import name 'Twists' from 'geometry_msgs.msg'", "import-name", "geometry_msgs.msg has Twist."),
-        ("cannot import name 'Banana' from 'geometry_msgs.msg'", "import-name", "geometry_msgs.msg has nothing of"),
-        ("DLL load failed", "crash", "That name cannot be imported from there"),
+        ("No module named 'rospy'", "ros-1-module", "rospy belongs to ROS 1."),
+        ("No module named 'tf.transformations'", "ros-1-module", "tf belongs to ROS 1."),
+        ("No module named 'turtlesim_msgs'", "turtlesim-msgs", "Newer ROS 2 distributions have"),
+        ("No module named 'turtlesim_msgs.msg'", "turtlesim-msgs", "Newer ROS 2 distributions have"),
+        ("No module named 'helper'", "sibling-import", "my_robot_controller/helper.py exists, but"),
+        ("No module named 'geometry_msg.msg'", "module-misspelt", "There is a module geometry_msgs.msg."),
+        ("No module named 'cv2'", "module-missing", "No installed package has a module cv2."),
+        (
+            "cannot import name 'twist' from 'geometry_msgs.msg' (unknown)",
+            "import-name",
+            "In this module it is called Twist.",
+        ),
+        (
+            "cannot import name 'Twist' from 'turtlesim.msg'",
+            "import-wrong-place",
+            "Twist is in the module geometry_msgs.msg.",
+        ),
+        (
+            "cannot import name 'Twists' from 'geometry_msgs.msg'",
+            "import-name",
+            "The module geometry_msgs.msg has Twist.",
+        ),
+        (
+            "cannot import name 'Banana' from 'geometry_msgs.msg'",
+            "import-name",
+            "The module geometry_msgs.msg has nothing with",
+        ),
+        ("DLL load failed", "crash", "That name cannot be imported from this module."),
     ],
 )
 def test_a_failed_import_is_explained_by_what_there_is(error: str, diagnosis: str, words: str) -> None:

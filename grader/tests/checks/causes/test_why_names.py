@@ -31,16 +31,16 @@ def name_error(name: str) -> str:
     [
         ("print(count)", "count", "missing-self", "count belongs to the object"),
         ("send()", "send", "missing-self", "send belongs to the object"),
-        ("twist = Twist()", "Twist", "missing-import", "imports Twist; it lives in geometry_msgs.msg."),
-        ("time.sleep(1)", "time", "missing-import", "imports the module time."),
-        ("print(steps)", "steps", "name-misspelt", "There is a name step:"),
-        ("total = totl + 1", "totl", "name-misspelt", "There is a name total:"),
-        ("outsde()", "outsde", "name-misspelt", "There is a name outside:"),
-        ("print(Drivr)", "Drivr", "name-misspelt", "There is a name Driver:"),
-        ("pritn(1)", "pritn", "name-misspelt", "There is a name print:"),
-        ("Nodes()", "Nodes", "name-misspelt", "There is a name Node:"),
-        ("print(ValueErro)", "ValueErro", "name-undefined", "The name gets no value anywhere"),
-        ("print(forward)", "forward", "name-undefined", "The name gets no value anywhere"),
+        ("twist = Twist()", "Twist", "missing-import", "import Twist. It is in the module geometry_msgs.msg."),
+        ("time.sleep(1)", "time", "missing-import", "import the module time."),
+        ("print(steps)", "steps", "name-misspelt", "There is a name step."),
+        ("total = totl + 1", "totl", "name-misspelt", "There is a name total."),
+        ("outsde()", "outsde", "name-misspelt", "There is a name outside."),
+        ("print(Drivr)", "Drivr", "name-misspelt", "There is a name Driver."),
+        ("pritn(1)", "pritn", "name-misspelt", "There is a name print."),
+        ("Nodes()", "Nodes", "name-misspelt", "There is a name Node."),
+        ("print(ValueErro)", "ValueErro", "name-undefined", "Nothing defines this name"),
+        ("print(forward)", "forward", "name-undefined", "Nothing defines this name"),
     ],
 )
 def test_an_unknown_name_is_explained_by_what_there_is(line: str, name: str, diagnosis: str, words: str) -> None:
@@ -60,7 +60,7 @@ def test_an_unknown_name_is_explained_by_what_there_is(line: str, name: str, dia
 )
 def test_what_is_imported_is_a_name(imported: str, name: str, guess: str) -> None:
     found = told(f"{imported}\nprint({name})  # crashed", name_error(name))
-    assert (found.diagnosis, f"There is a name {guess}:" in found.cause) == ("name-misspelt", True)
+    assert (found.diagnosis, f"There is a name {guess}." in found.cause) == ("name-misspelt", True)
 
 
 def test_a_method_without_self_does_not_know_it() -> None:
@@ -101,26 +101,34 @@ def test_an_unbound_name_in_other_words_is_local_all_the_same() -> None:
 @pytest.mark.parametrize(
     ("error", "diagnosis", "words"),
     [
-        ("module 'rclpy' has no attribute 'Node'", "import-wrong-place", "Node lives in rclpy.node."),
-        ("module 'math' has no attribute 'Node'", "attribute-missing", "The module math has nothing of that name."),
-        ("module 'rclpy' has no attribute 'spni'", "attribute-misspelt", "There is spin:"),
-        ("module 'rclpy' has no attribute 'Spin'", "attribute-misspelt", "There is spin:"),
-        ("module 'rclpy' has no attribute 'turtle'", "attribute-missing", "The module rclpy has nothing of that name."),
-        ("module 'math' has no attribute 'PI'", "attribute-misspelt", "There is pi:"),
-        ("module 'time' has no attribute 'sleeep'", "attribute-misspelt", "There is sleep:"),
-        ("module 'cv2' has no attribute 'imred'", "attribute-missing", "The module cv2 has nothing of that name."),
-        ("type object 'Twist' has no attribute 'linear'", "class-for-object", "Twist is the class."),
-        ("'Metaclass_Twist' object has no attribute 'linear'", "class-for-object", "Twist is the class."),
+        ("module 'rclpy' has no attribute 'Node'", "import-wrong-place", "Node is in the module rclpy.node."),
+        ("module 'math' has no attribute 'Node'", "attribute-missing", "The module math has nothing with that name."),
+        ("module 'rclpy' has no attribute 'spni'", "attribute-misspelt", "There is spin."),
+        ("module 'rclpy' has no attribute 'Spin'", "attribute-misspelt", "There is spin."),
+        (
+            "module 'rclpy' has no attribute 'turtle'",
+            "attribute-missing",
+            "The module rclpy has nothing with that name.",
+        ),
+        ("module 'math' has no attribute 'PI'", "attribute-misspelt", "There is pi."),
+        ("module 'time' has no attribute 'sleeep'", "attribute-misspelt", "There is sleep."),
+        ("module 'cv2' has no attribute 'imred'", "attribute-missing", "The module cv2 has nothing with that name."),
+        ("type object 'Twist' has no attribute 'linear'", "class-for-object", "Twist is a class."),
+        ("'Metaclass_Twist' object has no attribute 'linear'", "class-for-object", "Twist is a class."),
         ("'function' object has no attribute 'now'", "not-called", "the parentheses are missing"),
         (
             "'Twist' object has no attribute 'liner'",
             "message-field",
-            "A Twist has linear and angular. Is linear meant?",
+            "A Twist has linear and angular. Did you mean linear?",
         ),
         ("'Twist' object has no attribute 'speed'", "message-field", "A Twist has linear and angular."),
-        ("'Publisher' object has no attribute 'publsh'", "attribute-misspelt", "There is publish:"),
-        ("'Publisher' object has no attribute 'send'", "attribute-missing", "A Publisher has nothing of that name."),
-        ("'RcutilsLogger' object has no attribute 'Info'", "attribute-misspelt", "There is info:"),
+        ("'Publisher' object has no attribute 'publsh'", "attribute-misspelt", "There is publish."),
+        (
+            "'Publisher' object has no attribute 'send'",
+            "attribute-missing",
+            "A Publisher has no attribute or method with that name.",
+        ),
+        ("'RcutilsLogger' object has no attribute 'Info'", "attribute-misspelt", "There is info."),
         ("'str' object has no attribute 'speed'", "crash", ""),
         ("no attribute at all", "crash", ""),
     ],
@@ -138,13 +146,13 @@ def test_a_message_made_without_parentheses_is_told_where_it_was_made() -> None:
     source = "count = 3\nmsg = geometry_msgs.msg.Twist  # look\nmsg.linear.x = 2.0  # crashed\n"
     found = told(source, "AttributeError: 'property' object has no attribute 'x'")
     assert (found.diagnosis, found.line) == ("class-for-object", 2)
-    assert "geometry_msgs.msg.Twist is the class." in found.cause
+    assert "geometry_msgs.msg.Twist is a class." in found.cause
 
 
 def test_a_class_that_was_made_nowhere_is_told_where_it_crashed() -> None:
     found = told("count = 3\nmsg.linear.x = 2.0  # crashed\n", "AttributeError: 'property' object has no attribute 'x'")
     assert (found.diagnosis, found.line) == ("class-for-object", 2)
-    assert "It is the class." in found.cause
+    assert "It is a class." in found.cause
 
 
 def none_error(name: str) -> str:
@@ -229,17 +237,17 @@ NO_INIT = "class Driver(Node):\n    def send(self):\n        print(self._x)  # c
 @pytest.mark.parametrize(
     ("source", "name", "diagnosis", "words"),
     [
-        (TOO_EARLY, "count", "attribute-too-early", "self.count gets its value in line 5,"),
-        (OUTSIDE, "send", "method-outside-class", "send stands outside of the class"),
+        (TOO_EARLY, "count", "attribute-too-early", "self.count is set in line 5,"),
+        (OUTSIDE, "send", "method-outside-class", "send is outside the class."),
         (INSIDE, "send", "method-in-method", "send is indented too far"),
         (ELSEWHERE, "send", "attribute-missing", "Nothing sets self.send,"),
-        (NO_SUPER, "_timers", "super-init-missing", "never calls the parent's"),
+        (NO_SUPER, "_timers", "super-init-missing", "never calls super().__init__"),
         (LATE_SUPER, "_timers", "super-init-late", "before that line"),
         (NO_INIT, "_x", "attribute-missing", "Nothing sets self._x,"),
         (ELSEWHERE, "publish", "node-publishes", "A node has no method publish"),
-        (ELSEWHERE, "create_timmer", "attribute-misspelt", "There is create_timer:"),
-        (TOO_EARLY, "agian", "attribute-misspelt", "There is again:"),
-        (TOO_EARLY, "conut", "attribute-misspelt", "There is count:"),
+        (ELSEWHERE, "create_timmer", "attribute-misspelt", "There is create_timer."),
+        (TOO_EARLY, "agian", "attribute-misspelt", "There is again."),
+        (TOO_EARLY, "conut", "attribute-misspelt", "There is count."),
         (TOO_EARLY, "velocity", "attribute-missing", "Nothing sets self.velocity,"),
     ],
 )

@@ -50,18 +50,18 @@ def silence(source: str) -> tuple[str, str, int | None] | None:
     [
         ("self.create_timer(500, self.send)  # look", "pass", "timer-milliseconds", "The timer waits 500 s"),
         ("self.create_timer(10, self.send)  # look", "pass", "timer-milliseconds", "The timer waits 10 s"),
-        ("self.create_timer(0.5, self.send())  # look", "pass", "callback-called", "create_timer wants the method"),
-        ("while True: self.send()  # look", "pass", "blocks-in-init", "__init__ loops for ever"),
-        ("while 1: self.send()  # look", "pass", "blocks-in-init", "__init__ loops for ever"),
-        ("while rclpy.ok(): self.send()  # look", "pass", "blocks-in-init", "__init__ loops for ever"),
+        ("self.create_timer(0.5, self.send())  # look", "pass", "callback-called", "create_timer needs the method"),
+        ("while True: self.send()  # look", "pass", "blocks-in-init", "__init__ loops forever"),
+        ("while 1: self.send()  # look", "pass", "blocks-in-init", "__init__ loops forever"),
+        ("while rclpy.ok(): self.send()  # look", "pass", "blocks-in-init", "__init__ loops forever"),
         (
             TIMER,
             "rclpy.spin_until_future_complete(self, done)  # look",
             "waits-in-callback",
-            "A callback that waits for an answer",
+            "This callback waits for a response,",
         ),
-        (TIMER, "self.client.call(request)  # look", "waits-in-callback", "A callback that waits for an answer"),
-        ("pass", "pass", "method-never-called", "Nothing calls send:"),
+        (TIMER, "self.client.call(request)  # look", "waits-in-callback", "This callback waits for a response,"),
+        ("pass", "pass", "method-never-called", "Nothing calls send."),
     ],
 )
 def test_silence_is_explained_at_its_line(made: str, sent: str, diagnosis: str, words: str) -> None:
@@ -124,9 +124,9 @@ SERVICE = NODE.format(
 @pytest.mark.parametrize(
     ("name", "waits", "words"),
     [
-        ('"/spwan"', "self.client.wait_for_service()", "It waits for the service /spwan, which nobody offers."),
-        ('"spwan"', "self.client.wait_for_service()", "It waits for the service spwan, which nobody offers."),
-        ('"/quaff"', "self.client.wait_for_service()", "It waits for the service /quaff, which nobody offers."),
+        ('"/spwan"', "self.client.wait_for_service()", "The node waits for the service /spwan, which does not exist."),
+        ('"spwan"', "self.client.wait_for_service()", "The node waits for the service spwan, which does not exist."),
+        ('"/quaff"', "self.client.wait_for_service()", "The node waits for the service /quaff, which does not exist."),
         ('"/spawn"', "self.client.wait_for_service()", None),
         ('"spawn"', "self.client.wait_for_service()", None),
         ('"/spwan"', "self.client.service_is_ready()", None),

@@ -57,7 +57,7 @@ def test_the_file_is_looked_at_before_its_answers(answers: str | None, diagnosis
     finding = found(ANSWERS, given(answers, exercise=exercise))
     assert (finding.status, finding.diagnosis) == (Status.FAILED, diagnosis)
     if diagnosis == "unknown-answer":
-        assert finding.seen == "answers.toml answers nade, which nobody asked."
+        assert finding.seen == "answers.toml answers nade, but no question has that name."
     line = {"unknown-answer": "answers.toml:3", "no-answers": "None"}.get(str(diagnosis), "answers.toml")
     assert str(finding.where) == line
 

@@ -85,7 +85,7 @@ def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
     found = of("installed", build=replace(BUILD, installed=no_marker))
     assert (found.diagnosis, found.seen) == (
         "resource-marker",
-        "Not installed: the marker resource/my_robot_controller.",
+        "Not installed: the marker file resource/my_robot_controller.",
     )
     assert str(found.where) == "setup.py:5"
     no_xml = tuple(path for path in BUILD.installed if "package.xml" not in path)
@@ -93,7 +93,7 @@ def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
     assert (found.diagnosis, str(found.where)) == ("package-xml-not-installed", "setup.py:5")
     nothing = of("installed", {"setup.py": None}, replace(BUILD, installed=()))
     assert (nothing.diagnosis, str(nothing.where)) == ("resource-marker", "setup.py")
-    assert nothing.seen == "Not installed: the marker resource/my_robot_controller and package.xml."
+    assert nothing.seen == "Not installed: the marker file resource/my_robot_controller and package.xml."
 
 
 @pytest.mark.parametrize(
@@ -109,12 +109,12 @@ def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
 )
 def test_the_package_is_looked_for_by_the_name_that_colcon_knows(files: Files, package: str | None, name: str) -> None:
     found = of("installed", files, replace(BUILD, package=package, installed=()))
-    assert found.seen == f"Not installed: the marker resource/{name} and package.xml."
+    assert found.seen == f"Not installed: the marker file resource/{name} and package.xml."
     both = (f"share/ament_index/resource_index/packages/{name}", f"share/{name}/package.xml")
     assert of("installed", files, replace(BUILD, package=package, installed=both)).status is Status.PASSED
 
 
-OTHER_TYPE = "colcon goes by package.xml, which is not that of an ament_python package."
+OTHER_TYPE = "colcon reads the build type from package.xml, and it is not ament_python."
 
 
 @pytest.mark.parametrize(
@@ -134,7 +134,7 @@ def test_colcon_may_take_the_package_for_one_of_another_kind(files: Files, cause
         "`colcon build` failed (exit code 1).",
     )
     nothing = of("build", files, replace(NOTHING, installed=()))
-    assert nothing.cause == (cause or "The argument packages of setup() says which folders to install.")
+    assert nothing.cause == (cause or "The packages argument of setup() lists the folders to install.")
 
 
 def test_a_build_without_a_setup_py_is_shown_at_package_xml_if_there_is_one() -> None:
@@ -144,11 +144,16 @@ def test_a_build_without_a_setup_py_is_shown_at_package_xml_if_there_is_one() ->
 @pytest.mark.parametrize(
     ("files", "build", "diagnosis", "cause"),
     [
-        ({INIT: None}, BARE, "missing-init", "find_packages in setup.py finds only such folders."),
+        ({INIT: None}, BARE, "missing-init", "find_packages in setup.py finds only folders with an __init__.py."),
         ({INIT: None, **setup_py("find_packages(", "list_of(")}, BARE, "missing-init", ""),
         ({INIT: None, **setup_py("find_packages(", "list_of(")}, LINKED, None, ""),
-        ({INIT: None, "other/__init__.py": "", "other/x.py": ""}, BARE, "nothing-installed", "The argument packages"),
-        ({INIT: None, "test/x.py": ""}, BARE, "missing-init", "find_packages in setup.py finds only such folders."),
+        ({INIT: None, "other/__init__.py": "", "other/x.py": ""}, BARE, "nothing-installed", "The packages argument"),
+        (
+            {INIT: None, "test/x.py": ""},
+            BARE,
+            "missing-init",
+            "find_packages in setup.py finds only folders with an __init__.py.",
+        ),
         ({}, LINKED, None, ""),
         ({"deep/down/x.py": ""}, BUILD, None, ""),
     ],

@@ -24,7 +24,7 @@ def eight(*parts: tuple[int, float, float], start: Pose | None = None, **values:
 
 def test_an_eight_is_one_wherever_it_begins_and_however_it_is_turned() -> None:
     for start in (None, Pose(4.0, 6.5, 2.2)):
-        assert eight(lobe(1), lobe(-1), start=start).seen == "The turtle drove an eight of radius 1.0 m."
+        assert eight(lobe(1), lobe(-1), start=start).seen == "The turtle drove a figure eight with radius 1.0 m."
 
 
 @pytest.mark.parametrize(
@@ -65,31 +65,31 @@ def test_a_rest_between_the_lobes_is_allowed_and_going_on_after_them_too() -> No
         (
             (lobe(1, degrees=315.0), lobe(-1)),
             "lobe-angle",
-            "The first lobe, to the left, is not closed: it ends 45 degrees early.",
+            "The first lobe, to the left, is not closed: it ends 45 degrees too early.",
         ),
         (
             (lobe(1, degrees=396.0), lobe(-1)),
             "lobe-angle",
-            "The first lobe, to the left, goes on for 36 degrees after it is closed.",
+            "The first lobe, to the left, continues for 36 degrees after it was closed.",
         ),
         (
             (lobe(1), lobe(-1, degrees=180.0)),
             "lobe-angle",
-            "The second lobe, to the right, is not closed: it ends 180 degrees early.",
+            "The second lobe, to the right, is not closed: it ends 180 degrees too early.",
         ),
-        ((lobe(1),), "one-lobe", "The way has one lobe, to the left."),
-        ((lobe(1), lobe(1)), "one-lobe", "The way has one lobe, to the left."),
-        (((20, 1.0, 0.0),), "one-lobe", "The way has no lobe at all."),
+        ((lobe(1),), "one-lobe", "The trajectory has only one lobe, to the left."),
+        ((lobe(1), lobe(1)), "one-lobe", "The trajectory has only one lobe, to the left."),
+        (((20, 1.0, 0.0),), "one-lobe", "The trajectory has no lobe."),
         ((lobe(-1), lobe(1)), "wrong-side-first", "The first lobe goes to the right."),
         (
             ((20, TURN, TURN), (20, 1.5 * TURN, TURN), lobe(-1)),
             "lobe-not-round",
-            "The first lobe, to the left, is not round: it strays 0.20 m from the nearest circle.",
+            "The first lobe, to the left, is not round: it deviates by 0.20 m from the best-fitting circle.",
         ),
         (
             ((5, 1.0, 0.0), lobe(1), lobe(-1)),
             "lobe-gap",
-            "The first lobe, to the left, ends 0.48 m beside the turtle's start.",
+            "The first lobe, to the left, ends 0.48 m away from the start position.",
         ),
         (((5, 0.0, 0.0),), "not-moving", "The turtle did not drive."),
         ((lobe(1, radius_m=3.0), lobe(-1)), "wall", "The turtle ran into a wall."),

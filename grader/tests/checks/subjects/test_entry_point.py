@@ -33,7 +33,7 @@ def test_a_text_that_is_no_entry_point_is_explained_by_its_signs(text: str, diag
 def test_a_node_under_another_file_name_that_no_entry_point_leads_to_is_shown() -> None:
     files = {NODE_FILE: None, "my_robot_controller/circle.py": NODE, **setup_py(f'            "{POINT}",\n', "")}
     found = of("entry-point", files, NOTHING)
-    assert found.cause.startswith("my_robot_controller/circle.py is there, but setup.py does not name it")
+    assert found.cause.startswith("my_robot_controller/circle.py is there, but setup.py has no entry point for it")
 
 
 def leads_to(target: str) -> Build:
@@ -108,7 +108,7 @@ def test_anything_that_may_be_called_will_do(text: str) -> None:
 
 def test_a_function_inside_of_the_class_is_not_found() -> None:
     found = of("entry-point", {NODE_FILE: "class A:\n    def main(self):\n        pass\n"})
-    assert found.cause == "main is indented, and so belongs to the class above it: move it to the left edge."
+    assert found.cause == "main is indented, so it belongs to the class above it. Remove the indentation."
 
 
 @pytest.mark.parametrize("text", [b"x = " + b"(" * 5000, b"x = " + b"-" * 90_000 + b"1", b"a" * 500_000])

@@ -39,7 +39,7 @@ def test_whoever_stops_near_enough_has_arrived(way_m: float) -> None:
         (
             (ahead(6.0, 30),),
             "goes-on",
-            "The turtle ends at x=9.00 y=5.00, 2.00 m from the goal. It came as near as 0.00 m on the way.",
+            "The turtle ends at x=9.00 y=5.00, 2.00 m from the goal. On the way it came within 0.00 m of the goal.",
         ),
         ((ahead(-2.0),), "away-from-goal", "The turtle ends at x=1.00 y=5.00, 6.00 m from the goal."),
         (
@@ -51,7 +51,7 @@ def test_whoever_stops_near_enough_has_arrived(way_m: float) -> None:
         (
             (ahead(3.92, 90), (20, 0.05, 0.0)),
             "still-moving",
-            "The turtle still drives at the end: 0.03 m in the last 0.5 s.",
+            "The turtle is still moving at the end: 0.03 m in the last 0.5 s.",
         ),
     ],
 )

@@ -13,7 +13,7 @@ from grader.trial.recording import LogLine, Output
 HELLO = "Hello {counter}"
 POINTS = "x={x:.2f}"
 RATE = {"rate_hz": 1.0, "tolerance_percent": 5.0, "min_interval_s": 0.85, "max_interval_s": 1.2}
-OTHER_FORM = "The words are right; the numbers have another form, or are missing."
+OTHER_FORM = "The words are right, but the numbers are missing or have the wrong format."
 LOGS = NODE.replace("self.publisher.publish(msg)", 'self.get_logger().info("...")')
 
 
@@ -31,41 +31,41 @@ def in_format(log: tuple[LogLine, ...], format_: str = HELLO, node: str = LOGS, 
 
 
 def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
-    assert in_format(lines("I begin", "Hello 0", "Hello 1")).seen == 'The log has lines such as "Hello 0".'
+    assert in_format(lines("I begin", "Hello 0", "Hello 1")).seen == 'The log contains lines such as "Hello 0".'
 
 
 @pytest.mark.parametrize(
     ("log", "format_", "seen", "cause"),
     [
-        ("hello 0", HELLO, 'The log says "hello 0".', "Capital and small letters differ."),
+        ("hello 0", HELLO, 'The last log line is "hello 0".', "Upper and lower case matter."),
         (
             "Hello 0!",
             HELLO,
-            'The log says "Hello 0!".',
-            "There is more on the line than what is asked for.",
+            'The last log line is "Hello 0!".',
+            "The line contains more than it should.",
         ),
         (
             "Hello: 0",
             HELLO,
-            'The log says "Hello: 0".',
-            "Compare it letter by letter: capitals, blanks and points count.",
+            'The last log line is "Hello: 0".',
+            "Compare it letter by letter: capital letters, spaces and dots count.",
         ),
         (
             "Hello",
             HELLO,
-            'The log says "Hello".',
+            'The last log line is "Hello".',
             OTHER_FORM,
         ),
         (
             "x=1.234",
             POINTS,
-            'The log says "x=1.234".',
-            f"{OTHER_FORM} In an f-string {{value:.2f}} writes two digits behind the point.",
+            'The last log line is "x=1.234".',
+            f"{OTHER_FORM} In an f-string, {{value:.2f}} writes two decimal places.",
         ),
         (
             "Hello \u0663",  # a digit, but none of ASCII
             HELLO,
-            'The log says "Hello \u0663".',
+            'The last log line is "Hello \u0663".',
             OTHER_FORM,
         ),
     ],
@@ -90,7 +90,7 @@ def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: 
 def test_a_silent_log_is_explained_by_the_source(node: str, stdout: str, diagnosis: str) -> None:
     finding = in_format((), node=node, stdout=stdout)
     assert (finding.diagnosis, finding.where is not None) == (diagnosis, True)
-    assert finding.seen == ("The lines are printed, and not logged." if stdout else "The node logged nothing.")
+    assert finding.seen == ("The lines are printed, not logged." if stdout else "The node logged nothing.")
 
 
 def test_a_crash_explains_a_silent_log() -> None:
@@ -109,13 +109,13 @@ def test_only_what_the_node_logged_before_ctrl_c_counts(forged: str) -> None:
 @pytest.mark.parametrize(
     ("numbers", "diagnosis", "seen"),
     [
-        ((0, 1, 2, 3), None, "The counter rises from 0, by one a line."),
+        ((0, 1, 2, 3), None, "The counter starts at 0 and increases by one per line."),
         ((1, 2, 3), "counter-start", "The first number is 1."),
         ((5, 6, 7), "counter-start", "The first number is 5."),
-        ((0, 0, 0), "counter-stuck", "The number stays 0."),
-        ((0, 2, 4), "counter-step", "After 0 comes 2."),
-        ((0, 1, 1, 2), "counter-step", "After 1 comes 1."),
-        ((3, 2, 1), "counter-step", "After 3 comes 2."),
+        ((0, 0, 0), "counter-stuck", "The number is always 0."),
+        ((0, 2, 4), "counter-step", "The number after 0 is 2."),
+        ((0, 1, 1, 2), "counter-step", "The number after 1 is 1."),
+        ((3, 2, 1), "counter-step", "The number after 3 is 2."),
     ],
 )
 def test_the_counter(numbers: tuple[int, ...], diagnosis: str | None, seen: str) -> None:
@@ -123,7 +123,7 @@ def test_the_counter(numbers: tuple[int, ...], diagnosis: str | None, seen: str)
     finding = found(LOG_COUNTER, evidence(trial), format=HELLO, counts="counter")
     assert (finding.diagnosis, finding.seen) == (diagnosis, seen)
     assert str(finding.where) == ("None" if diagnosis is None else NODE_FILE)
-    assert ("Log first, then count." in finding.cause) == (numbers[0] == 1)
+    assert ("Log the number first, then increase it." in finding.cause) == (numbers[0] == 1)
 
 
 def test_one_line_counts_nothing_and_two_do() -> None:

@@ -39,7 +39,7 @@ def test_a_node_without_a_timer_is_shown_what_takes_its_place() -> None:
     loops = NODE.replace("self.create_timer(0.5, self.send)", "None")
     finding = found(USES_TIMER, evidence(package=submission({NODE_FILE: loops})))
     assert (finding.diagnosis, str(finding.where)) == ("no-timer", f"{NODE_FILE}:16")
-    assert "a node hears nothing" in finding.cause
+    assert "receives no messages" in finding.cause
 
 
 def test_whoever_has_a_rate_is_not_told_that_the_node_hears_nothing() -> None:
@@ -49,7 +49,9 @@ def test_whoever_has_a_rate_is_not_told_that_the_node_hears_nothing() -> None:
     assert "create_rate" in finding.cause
 
 
-@pytest.mark.parametrize(("text", "words"), [(None, "which file is the node's"), ("def (:\n", "cannot be read")])
+@pytest.mark.parametrize(
+    ("text", "words"), [(None, "the file of the node is not known yet"), ("def (:\n", "cannot be read")]
+)
 def test_no_advice_is_given_on_a_file_that_is_not_there_or_cannot_be_read(text: str | None, words: str) -> None:
     package = submission({NODE_FILE: text, "setup.py": "setup()\n"})
     finding = found(USES_TIMER, evidence(package=package, build=None))

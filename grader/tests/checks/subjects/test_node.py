@@ -68,7 +68,7 @@ def test_each_fault_has_its_diagnosis_and_place(check: str, shape: str, diagnosi
 
 def test_a_crash_is_told_with_its_meaning() -> None:
     found = finding("start", of("crash at the start"))
-    assert found.seen == "draw_circle crashed at its start: ZeroDivisionError: division by zero."
+    assert found.seen == "draw_circle crashed at startup: ZeroDivisionError: division by zero."
     assert found.cause == "A number was divided by zero."
 
 
@@ -76,7 +76,7 @@ def test_a_program_that_crashed_while_its_node_was_waited_for_is_told_to_have_ma
     late = replace(SHAPES["crash at the start"](), end=crashed(5.0), graphs=(graph((), topic=None),))
     found = finding("start", evidence(late))
     assert found.diagnosis == "crash"
-    assert found.seen == "draw_circle crashed before it had made a node: ZeroDivisionError: division by zero."
+    assert found.seen == "draw_circle crashed before it created a node: ZeroDivisionError: division by zero."
 
 
 def test_a_node_that_crashed_while_it_ran_did_start() -> None:
@@ -99,12 +99,12 @@ def test_by_the_walls_clock_an_end_in_the_first_moment_is_one_at_the_start(
     end = ProcessEnd(by="itself", exit_code=0, t_s=t_s, stop_s=None)
     seen = evidence(recording([], clock=clock, end=end))
     assert finding("start", seen).diagnosis == diagnosis
-    assert end_seen(seen).endswith("at its start." if diagnosis else f"after {t_s:.1f} s.")
+    assert end_seen(seen).endswith("at startup." if diagnosis else f"after {t_s:.1f} s.")
 
 
 def test_a_missing_spin_is_told_where_the_node_ends_at_once() -> None:
     found = finding("start", of("ends at once", ("rclpy.spin(DrawCircleNode())", "DrawCircleNode()")))
-    assert found.cause == "rclpy.spin keeps a node running; it is called nowhere."
+    assert found.cause == "rclpy.spin keeps a node running, but it is never called."
 
 
 @pytest.mark.parametrize(
@@ -215,7 +215,7 @@ def test_what_it_took_to_stop_a_node_is_told() -> None:
 
 def test_a_missing_spin_is_told_where_the_node_ends_early() -> None:
     without = finding("stop", of("ends early", ("rclpy.spin(DrawCircleNode())", "DrawCircleNode()")))
-    assert without.cause == "rclpy.spin keeps a node running; it is called nowhere."
+    assert without.cause == "rclpy.spin keeps a node running, but it is never called."
     assert finding("stop", of("ends early")).cause == ""
 
 

@@ -40,13 +40,13 @@ def test_the_own_numbers_pass_whoever_may_write_the_name_otherwise(by: str | Non
             ALICE,
             "bob",
             "numbers-of-another",
-            f'The numbers in {FILE} were drawn for "alice"; this was handed in by "bob".',
+            f'The numbers in {FILE} were drawn for "alice", but "bob" submitted them.',
         ),
         (
             replace(ALICE, radius_m=ALICE.radius_m + 0.2),
             "alice",
             "numbers-changed",
-            f"The numbers in {FILE} are not those that were drawn for its student.",
+            f"The numbers in {FILE} are not the ones that were drawn for this student.",
         ),
         (None, "alice", "no-numbers", f"There is no {FILE}."),
         ("student = 3", "alice", "numbers-unreadable", f"{FILE}: student or sense is missing, or no text."),
@@ -65,7 +65,7 @@ def test_the_way_is_judged_by_the_numbers_drawn_whatever_the_file_says() -> None
     assert [found(kind, changed).status for kind in (CIRCLE, RATE)] == [Status.PASSED] * 2
 
 
-@pytest.mark.parametrize(("student", "way"), [("bob", "wrong-sense"), ("carol", "wrong-radius")])
+@pytest.mark.parametrize(("student", "way"), [("bob", "wrong-direction"), ("carol", "wrong-radius")])
 def test_a_way_by_somebody_elses_numbers_is_wrong(student: str, way: str) -> None:
     other = given(draw_numbers(student), by=None)
     assert [found(kind, other).diagnosis for kind in (CIRCLE, RATE)] == [way, "wrong-rate"]

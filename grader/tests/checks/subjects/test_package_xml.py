@@ -61,7 +61,7 @@ def test_format_2_is_valid_and_a_byte_order_mark_does_no_harm() -> None:
 def test_a_misspelt_dependency_is_shown() -> None:
     found = of("dependencies", xml("geometry_msgs", "geometry_msg"))
     assert found.seen == "package.xml does not declare geometry_msgs."
-    assert found.cause == 'It has "geometry_msg": is that a typing error?'
+    assert found.cause == 'It declares "geometry_msg". Is that a typing error?'
 
 
 @pytest.mark.parametrize(
@@ -85,25 +85,25 @@ def test_what_was_left_out_of_the_submission_is_told(more: tuple[str, ...], seen
             {"package.xml": f"{PACKAGE_XML}<more/>"},
             "xml-malformed",
             "package.xml:15",
-            "After the last tag, </package>, nothing may follow.",
+            "Nothing may follow the last tag, </package>.",
         ),
         (
             xml("</depend>\n  <depend>turtle", "</depends>\n  <depend>turtle"),
             "xml-malformed",
             "package.xml:9",
-            "<depend> in line 9 is not closed by a tag of the same name with a slash.",
+            "<depend> in line 9 has no closing tag </depend>.",
         ),
         (
             xml("MIT", "M & T"),
             "xml-malformed",
             "package.xml:7",
-            "Each <tag> ends with a </tag> of the same name, the inner one before the outer one.",
+            "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag.",
         ),
         (
             xml("<depend>rclpy</depend>", "<run_depend>rclpy</run_depend>"),
             "package-xml-old-tag",
             "package.xml:8",
-            "<run_depend> is of format 1, that of ROS 1; format 3 has <exec_depend>, and <depend> for all.",
+            "<run_depend> belongs to ROS 1. In format 3, use <depend> or <exec_depend>.",
         ),
     ],
 )
@@ -121,9 +121,9 @@ def test_without_a_package_xml_nothing_is_declared(files: Files) -> None:
 @pytest.mark.parametrize(
     ("files", "cause"),
     [
-        (xml("my_robot_controller", "my-robot"), "A ROS 2 package's name has underscores, not dashes."),
+        (xml("my_robot_controller", "my-robot"), "ROS 2 package names use underscores, not dashes."),
         (xml("my_robot_controller", "my_robot"), ""),
-        (setup_py('"my_robot_controller"', '"my-robot"'), "A ROS 2 package's name has underscores, not dashes."),
+        (setup_py('"my_robot_controller"', '"my-robot"'), "ROS 2 package names use underscores, not dashes."),
         (
             {INIT: None, NODE_FILE: None, "my_robot_control/x.py": "", "my_robot_controllers/a/b.py": "", "x.py": ""},
             "There is a folder my_robot_control.",

@@ -29,29 +29,40 @@ def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
 @pytest.mark.parametrize(
     ("shape", "diagnosis", "seen"),
     [
-        ("clockwise", "wrong-sense", "The turtle drove its circle clockwise."),
-        ("radius 2.2", "wrong-radius", "The circle's radius is 2.2 m."),
-        ("swapped", "wrong-radius", "The circle's radius is 0.5 m."),
-        ("three quarters", "stopped-early", "The turtle drove 0.72 of a turn; the last command came at 4.0 s."),
+        ("clockwise", "wrong-direction", "The turtle drove the circle clockwise."),
+        ("radius 2.2", "wrong-radius", "The radius of the circle is 2.2 m."),
+        ("swapped", "wrong-radius", "The radius of the circle is 0.5 m."),
+        ("three quarters", "stopped-early", "The turtle drove 0.72 of a turn; the last command arrived at 4.0 s."),
         ("half speed", "too-short", "The turtle drove 0.76 of a turn."),
         ("stops and goes", "stops-and-goes", "The turtle drove 0.64 of a turn, with 3 stops on the way."),
         ("crash", "ended-early", "The turtle drove 0.72 of a turn."),
         (
             "square",
             "polygon",
-            "The way is 5 straight sides with corners; it strays 0.13 m (RMS) from the nearest circle.",
+            (
+                "The trajectory has 5 straight sides with corners; "
+                "it deviates by 0.13 m (RMS) from the best-fitting circle."
+            ),
         ),
-        ("straight on", "straight-line", "The turtle drove straight on."),
+        ("straight on", "straight-line", "The turtle drove in a straight line."),
         ("turns on the spot", "turns-on-the-spot", "The turtle turned on the spot."),
         ("all zero", "not-moving", "The turtle did not move."),
         ("no messages", "not-moving", "The turtle did not move."),
         ("wall", "wall", "The turtle ran into a wall after 1.7 s."),
         ("straight into the wall", "wall", "The turtle ran into a wall after 3.3 s."),
-        ("spiral", "not-round", "The way is not round: it strays 0.28 m (RMS) from the nearest circle."),
-        ("beside its place", "wrong-centre", "The circle is right in size, but lies 0.78 m beside its place."),
+        (
+            "spiral",
+            "not-round",
+            "The trajectory is not round: it deviates by 0.28 m (RMS) from the best-fitting circle.",
+        ),
+        (
+            "beside its place",
+            "wrong-centre",
+            "The circle has the right size, but it is 0.78 m away from where it should be.",
+        ),
         ("nan", "not-a-number", "The turtle's position became NaN (not a number)."),
         ("infinity", "not-a-number", "The turtle's position became NaN (not a number)."),
-        ("teleported", "intervention", "Something moved the turtle by other means: teleport_absolute."),
+        ("teleported", "intervention", "Something other than a velocity command moved the turtle: teleport_absolute."),
     ],
 )
 def test_each_other_way_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:
@@ -76,7 +87,7 @@ def test_a_way_with_straight_parts_is_told_by_their_number(way: list[Timed], dia
 
 
 def test_a_way_that_is_not_round_is_explained_by_the_commands_or_by_the_end() -> None:
-    assert circle("spiral").cause == "The commands change on the way; a circle needs the same command all the time."
+    assert circle("spiral").cause == "The commands change. A circle needs the same command all the time."
     two = [(t_s, 1.0 + (t_s > 5.0), 1.0) for t_s, _, _ in every(0.5, 0.0, 0.0)]
     assert finding("circle", evidence(recording(two))).cause == circle("spiral").cause
     frames = SHAPES["spiral"]().frames
@@ -136,11 +147,11 @@ def test_the_reason_for_the_size_is_what_was_commanded() -> None:
     tight = finding("circle", evidence(recording(every(0.5, 1.0, 0.8))))
     assert tight.cause == "The radius is linear.x divided by angular.z: 1.0 / 0.8 = 1.25 m."
     assert circle("wall").cause == "The radius is linear.x divided by angular.z: 6.0 / 1.0 = 6.0 m."
-    assert circle("straight into the wall").cause == "angular.z is 0, so the turtle drives straight on."
+    assert circle("straight into the wall").cause == "angular.z is 0, so the turtle drives in a straight line."
 
 
 def test_the_reason_for_the_length_is_what_was_commanded_or_when_it_ended() -> None:
-    assert circle("half speed").cause == "At angular.z 0.5 rad/s a turn takes 12.6 s."
+    assert circle("half speed").cause == "With angular.z 0.5 rad/s, one turn takes 12.6 s."
     slow = recording(every(0.5, 1.0, 0.5, until_s=8.7))
     assert finding("circle", evidence(slow)).diagnosis == "stopped-early"
 
@@ -152,7 +163,7 @@ def test_a_turtle_that_crawls_does_move() -> None:
 def test_a_turtle_that_hardly_turns_stands_still_though_not_every_command_is_zero() -> None:
     found = finding("circle", evidence(recording(every(0.5, 0.0, 0.001))))
     assert (found.diagnosis, found.cause) == ("not-moving", "")
-    assert circle("all zero").cause == "In every command linear.x and angular.z are 0."
+    assert circle("all zero").cause == "linear.x and angular.z are 0 in every command."
 
 
 def test_points_at_the_line_that_turns() -> None:
@@ -193,7 +204,7 @@ def test_the_centre_lies_to_the_left_of_the_start_and_clockwise_to_the_right() -
 
 def test_driving_backwards_round_the_same_centre_is_clockwise() -> None:
     found = finding("circle", evidence(recording(every(0.5, -2.0, -1.0))))
-    assert found.diagnosis == "wrong-sense"
+    assert found.diagnosis == "wrong-direction"
 
 
 def test_what_the_turtle_does_after_ctrl_c_does_not_count() -> None:

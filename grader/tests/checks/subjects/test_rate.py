@@ -29,13 +29,13 @@ def rate(shape: str, *changes: tuple[str, str]) -> Finding:
         ("ten kilohertz", "wrong-rate", "98999 commands arrived, one every 0.10 ms."),
         ("once", "published-once", "1 command arrived in 10 s."),
         ("twice", "too-few-commands", "2 commands arrived in 10 s."),
-        ("late", "late-start", "The first command came 3.7 s after the start."),
-        ("three quarters", "stopped-early", "The last command came at 4.0 s, 6.0 s before the end."),
+        ("late", "late-start", "The first command arrived 3.7 s after the start."),
+        ("three quarters", "stopped-early", "The last command arrived at 4.0 s, 6.0 s before the end."),
         (
             "crash",
             "crash",
             (
-                "The last command came at 4.0 s, 6.0 s before the end. "
+                "The last command arrived at 4.0 s, 6.0 s before the end. "
                 "The node crashed after 4.5 s: ZeroDivisionError: division by zero."
             ),
         ),
@@ -57,14 +57,14 @@ def test_the_right_rate_is_told_as_the_nominal_one() -> None:
 def test_an_uneven_rhythm_names_the_worst_interval() -> None:
     found = rate("uneven")
     assert found.diagnosis == "uneven-rate"
-    assert found.seen.startswith("Commands came unevenly: 0.71 s passed between two of them")
+    assert found.seen.startswith("Commands arrived at uneven intervals: 0.71 s passed between two of them")
 
 
 def test_three_commands_are_a_rate() -> None:
     three = finding("rate", evidence(recording(every(0.5, 2.0, 1.0, until_s=1.7))))
     assert (three.diagnosis, three.seen) == (
         "stopped-early",
-        "The last command came at 1.5 s, 8.5 s before the end.",
+        "The last command arrived at 1.5 s, 8.5 s before the end.",
     )
 
 
@@ -83,9 +83,9 @@ def test_each_interval_has_limits_of_its_own(moved_s: float, diagnosis: str | No
     found = found_by(RATE, evidence(made), **limits)
     assert found.diagnosis == diagnosis
     if diagnosis:
-        assert (
-            found.seen
-            == f"Commands came unevenly: {0.5 + moved_s:.2f} s passed between two of them, 4.5 s after the start."
+        assert found.seen == (
+            f"Commands arrived at uneven intervals: {0.5 + moved_s:.2f} s passed between two of them, "
+            "4.5 s after the start."
         )
 
 
@@ -121,7 +121,7 @@ def test_the_interval_that_is_worst_either_way_is_shown() -> None:
             (("        msg = Twist()", f"        {TIMER}; msg = Twist()"),),
             "timer-in-callback",
             13,
-            "send makes one more timer",
+            "send creates a new timer",
         ),
     ],
 )
@@ -138,8 +138,12 @@ def test_an_uneven_rhythm_is_explained_by_the_source(
     ("first", "line", "cause"),
     [
         ("self.count = 0", 17, ""),
-        ("time.sleep(3)", 9, "The node sleeps before it begins."),
-        ("self.client.wait_for_service()", 17, "Something before it waits, such as wait_for_service."),
+        ("time.sleep(3)", 9, "The node sleeps first."),
+        (
+            "self.client.wait_for_service()",
+            17,
+            "The node waits for something first, such as a service (wait_for_service).",
+        ),
     ],
 )
 def test_a_late_start_is_explained_by_the_source(first: str, line: int, cause: str) -> None:
@@ -208,11 +212,11 @@ def test_a_loop_without_a_pause_is_told_with_its_line() -> None:
 @pytest.mark.parametrize(
     ("shape", "diagnosis", "seen"),
     [
-        ("ends at once", "ends-at-once", "0 commands arrived in 10 s. The node ended by itself at its start."),
+        ("ends at once", "ends-at-once", "0 commands arrived in 10 s. The node ended by itself at startup."),
         (
             "crash at the start",
             "crash",
-            "0 commands arrived in 10 s. The node crashed at its start: ZeroDivisionError: division by zero.",
+            "0 commands arrived in 10 s. The node crashed at startup: ZeroDivisionError: division by zero.",
         ),
     ],
 )
@@ -261,7 +265,7 @@ def test_a_sleep_in_the_timers_method_is_told() -> None:
 
 def test_a_sleep_without_a_timer_is_told() -> None:
     found = rate("one hertz", (f"self.timer = {TIMER}", "time.sleep(1.0)"))
-    assert (found.diagnosis, found.cause) == ("sleep-period", "Between two commands the node sleeps 1 s.")
+    assert (found.diagnosis, found.cause) == ("sleep-period", "The node sleeps for 1 s between two commands.")
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,7 @@ def square(parts: list[Leg], start: Pose | None = None, **values: str) -> Findin
 )
 @pytest.mark.parametrize("start", [None, Pose(6.0, 5.0, 1.2)])
 def test_a_square_is_one(parts: list[Leg], start: Pose | None) -> None:
-    assert square(parts, start).seen == "The turtle drove a square of 2.0 m."
+    assert square(parts, start).seen == "The turtle drove a square with sides of 2.0 m."
 
 
 @pytest.mark.parametrize(
@@ -58,20 +58,20 @@ def test_a_square_is_one(parts: list[Leg], start: Pose | None) -> None:
         (round_(corners=(90.0, 90.0, 98.0, 90.0)), "corner-angle", "The third corner turns by 98 degrees."),
         (round_(corners=(105.0,) * 4), "corner-angle", "The first corner turns by 105 degrees."),
         (round_(corners=(90.0, -90.0, 90.0, 90.0)), "corner-angle", "The second corner turns by -90 degrees."),
-        (round_(corners=(-90.0,) * 4), "wrong-sense", "The turtle turns to the wrong side at its corners."),
-        (round_()[:5], "too-few-sides", "The way has 3 sides."),
-        ([side()], "too-few-sides", "The way has 1 side."),
+        (round_(corners=(-90.0,) * 4), "wrong-direction", "The turtle turns in the wrong direction at the corners."),
+        (round_()[:5], "too-few-sides", "The trajectory has 3 sides."),
+        ([side()], "too-few-sides", "The trajectory has 1 side."),
         (
             [leg for _ in range(4) for leg in (side(), (TICKS, 0.5, math.pi / 2 / (TICKS * TICK_S)))],
             "curves",
-            "19 % of the way are curves.",
+            "19 % of the trajectory is curved.",
         ),
         ([(5, 0.0, 0.0)], "not-moving", "The turtle did not drive."),
         (round_((7.5, 2.0, 2.0, 2.0)), "wall", "The turtle ran into a wall."),
         (
             GAP,
             "square-gap",
-            "The fourth side ends 0.62 m beside the start.",
+            "The fourth side ends 0.62 m away from the start position.",
         ),
     ],
 )
@@ -93,7 +93,7 @@ def test_clockwise_is_right_where_the_exercise_allows_it() -> None:
     left, right = round_(), round_(corners=(-90.0,) * 4)
     assert square(right, sense="either").status is Status.PASSED
     assert square(right, sense="clockwise").status is Status.PASSED
-    assert square(left, sense="clockwise").diagnosis == "wrong-sense"
+    assert square(left, sense="clockwise").diagnosis == "wrong-direction"
 
 
 def test_a_way_that_was_driven_by_other_means_is_none() -> None:

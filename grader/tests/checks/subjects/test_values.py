@@ -16,7 +16,7 @@ def values(shape: str) -> Finding:
 
 
 def test_the_right_values_pass_and_what_comes_after_ctrl_c_does_not_count() -> None:
-    assert values("good").seen == "Every command says linear.x 2.0 m/s and angular.z 1.0 rad/s, all other fields 0."
+    assert values("good").seen == "Every command has linear.x 2.0 m/s and angular.z 1.0 rad/s, all other fields 0."
     assert values("more after Ctrl-C").status is Status.PASSED
 
 
@@ -84,14 +84,14 @@ def test_where_turning_is_as_fast_as_driving_nothing_can_be_swapped() -> None:
 
 def test_a_turtle_that_should_stand_still_and_drives_is_wrong() -> None:
     still = found_by(VALUES, evidence(recording(every(0.5, 0.0, 0.0))))
-    assert (still.status, still.seen) == (Status.PASSED, "Every command says All fields 0.")
+    assert (still.status, still.seen) == (Status.PASSED, "Every command has all fields 0.")
     moving = found_by(VALUES, evidence(recording(every(0.5, 1.0, 0.0))))
     assert (moving.diagnosis, moving.expected) == ("wrong-value", "All fields 0.")
 
 
 def test_a_field_in_the_wrong_place_is_told_with_what_it_does() -> None:
     assert values("linear.y").cause.endswith("the turtle drives along linear.x only.")
-    assert values("angular.x").cause.endswith("on a plane a robot turns about the axis that points up.")
+    assert values("angular.x").cause.endswith("the turtle turns about the axis that points up, z.")
 
 
 def test_some_wrong_commands_of_a_known_kind_keep_their_name() -> None:
