@@ -51,9 +51,7 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     if wanted in names:
         return passed(f"The node is named {evidence.trial.node}.")
     if not names:
-        return failed(
-            "no-node", "No node appeared in the ROS graph.", f"A node named {evidence.trial.node} appears."
-        )
+        return failed("no-node", "No node appeared in the ROS graph.", f"A node named {evidence.trial.node} appears.")
     guess = nearest(wanted, names) or names[0]
     seen = f"The node is named {shorten(guess)}."
     if len(names) > 1:
