@@ -37,7 +37,7 @@ PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "node": {
         "entry-point": {
             "kind": "entry_point",
-            "title": "The entry point {executable} leads to a function",
+            "title": "The entry point {executable} names a function",
             "needs": ["build"],
         },
         "start": {"kind": "node_starts", "title": "The node starts", "needs": ["{trial}entry-point"]},

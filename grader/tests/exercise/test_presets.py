@@ -63,7 +63,7 @@ LONG = """
 [[check]]
 id = "entry-point"
 kind = "entry_point"
-title = "The entry point my_driver leads to a function"
+title = "The entry point my_driver names a function"
 points = 0
 needs = ["build"]
 
@@ -84,7 +84,7 @@ needs = ["start"]
 [[check]]
 id = "eight-entry-point"
 kind = "entry_point"
-title = "b) Eight: the entry point my_eight leads to a function"
+title = "b) Eight: the entry point my_eight names a function"
 points = 0
 needs = ["build"]
 trial = "eight"
