@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 from grader.errors import UsageError
+from grader.evidence.evidence import Run
 from grader.report.picture import BOTTOM, HEADING, LEFT, RIGHT, SIDE_PX, SMALL_PX, TOP, draw_picture, save_picture
 from grader.report.shapes import LOOKS, SEA, SIDE_M
 from grader.tests.checks.made import every, evidence, good, recording
@@ -108,7 +109,11 @@ def test_an_exercise_without_a_circle_has_a_picture() -> None:
 
 
 def test_every_trial_has_a_canvas_of_its_own() -> None:
-    given = evidence(good(), others={"again": evidence(SHAPES["radius 2.2"]()), "late": evidence(None)})
+    given = evidence(good())
+    first = given.exercise.trials[0]
+    trials = (first, replace(first, id="again"), replace(first, id="late"))
+    runs = {**given.runs, "again": Run(SHAPES["radius 2.2"]()), "late": Run()}
+    given = replace(given, exercise=replace(given.exercise, trials=trials), runs=runs)
     page = np.asarray(draw_picture(given, report_of(given)), dtype=np.int16)
     wide, high = LEFT + SMALL_PX + RIGHT, HEADING + SMALL_PX + BOTTOM
     places = [(TOP + HEADING + row * high, LEFT + column * wide) for row in (0, 1) for column in (0, 1)]
