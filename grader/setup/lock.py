@@ -94,25 +94,26 @@ def select(
     return "".join(entry.text for entry in chosen)
 
 
-def split(entries: Iterable[Entry], needs: Mapping[str, Collection[tuple[str, str]]]) -> str:
-    """The lock file's text: each entry below the names of the parts that need it; `needs` are names and versions.
+def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str:
+    """The lock file's text: each entry below the names of the parts that need its package; `needs` are packages' names.
+
+    A package that has other versions for other Pythons is in a part with all of them.
 
     Raises:
-        MachineError: the parts do not need just these entries.
+        MachineError: the parts do not need just these packages.
     """
     sections: dict[tuple[str, ...], list[str]] = {(part,): [] for part in PARTS}
     rest = set().union(*needs.values())
     for entry in entries:
-        package = (entry.name, entry.version)
-        parts = tuple(part for part in PARTS if package in needs.get(part, ()))
+        parts = tuple(part for part in PARTS if entry.name in needs.get(part, ()))
         always = [part for part in ALWAYS if part in parts]
         if not parts:
-            message = f"No part of the lock file needs {entry.name} {entry.version}, but the whole does."
+            message = f"No part of the lock file needs {entry.name}, but the whole does."
             raise MachineError(message)
         sections.setdefault((always[0],) if always else parts, []).append(entry.text)
-        rest.discard(package)
+        rest.discard(entry.name)
     if rest:
-        message = f"By itself a part of the lock file needs other versions than the whole: {sorted(rest)}."
+        message = f"By itself a part of the lock file needs what the whole does not: {sorted(rest)}."
         raise MachineError(message)
     text = "# Made by `make lock` from pyproject.toml, not to be edited: every version, with hashes, for all Pythons.\n"
     order = list(PARTS)
@@ -142,10 +143,10 @@ def make(uv: str, *, upgrade: bool = False) -> str:
             ("docs", None, ["--extra", "docs"]),
             ("tests", None, ["--extra", "dev"]),
         ]:
-            # Compiling a part keeps to the versions that stand in its output file: the whole's.
-            path = shutil.copyfile(whole, Path(folder, f"{part}.txt"))
-            _compile(uv, path, arguments, requirements)
-            needs[part] = set(_NAME.findall(path.read_text(encoding="utf-8")))
+            path = Path(folder, f"{part}.txt")
+            # Of the versions that the whole has for each Python.
+            _compile(uv, path, [*arguments, "--constraint", str(whole)], requirements)
+            needs[part] = {name for name, _ in _NAME.findall(path.read_text(encoding="utf-8"))}
     return split(entries, needs)
 
 
