@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from grader.checks.judge import Early
     from grader.checks.outcome import Outcome
     from grader.evidence.stage import Stage
-    from grader.exercise.model import Exercise
+    from grader.exercise.model import CheckSpec, Exercise
     from grader.ros.installation import Ros
     from grader.submission.package import Submission
     from grader.trial.ahead import Runs
@@ -300,6 +300,7 @@ class _Grading:
             alone=not exercise.package,
             inputs=draw_inputs(scenario, start, UNASKED_SEED if seed is None else seed),
             stop_at_doubt=self.options.clock == "auto",
+            judged=_topics(checks),
         )
         return self.trials(plan, here, extra, in_cell=self.options.in_cell)
 
@@ -310,6 +311,12 @@ class _Grading:
             yield
         finally:
             self.seconds[stage] = self.seconds.get(stage, 0.0) + time.monotonic() - begun
+
+
+def _topics(checks: Sequence[CheckSpec]) -> tuple[str, ...]:
+    """The topics that these checks ask for: every name that begins with a slash, since some of them are topics."""
+    names = {value for check in checks for value in check.params.values() if isinstance(value, str)}
+    return tuple(sorted(name for name in names if name.startswith("/")))
 
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:

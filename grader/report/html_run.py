@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
+from grader.common.words import a_list, count
 from grader.evidence import observed
 from grader.report import charts
 from grader.report.graph_drawing import GraphDrawing, draw_graph
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from grader.evidence.evidence import Evidence
+    from grader.trial.recording import Recording
 
 MOST_FRAMES = 1500
 """Of the turtle's way in the players of a page together."""
@@ -85,7 +87,7 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
         duration_s=recording.duration_s,
         canvas=Markup(scene_svg(scene, turtle=True, name=f"{key}-canvas")),
         legend=tuple((Markup(sign(role)), text) for role, text in scene.legend),
-        facts=scene.facts,
+        facts=(*scene.facts, *_left_out(recording)),
         end=_end(evidence),
         charts=tuple(Picture(Markup(each.svg), each.caption) for each in found if each is not None),
         rows=tuple(_rows(evidence)),
@@ -95,6 +97,17 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
         graph_svg=Markup(graph.svg if graph else ""),
         data=_data(evidence, among),
     )
+
+
+def _left_out(recording: Recording) -> list[str]:
+    """What was more than a recording keeps."""
+    amounts = (
+        (recording.dropped, "message", ""),
+        (recording.interventions_dropped, "call", " of the simulator's services"),
+        (recording.graph_dropped, "part", " of the graph"),
+    )
+    left_out = [count(amount, thing) + of for amount, thing, of in amounts if amount]
+    return [f"More than a recording keeps, and left out: {a_list(left_out)}."] if left_out else []
 
 
 def _end(evidence: Evidence) -> str:

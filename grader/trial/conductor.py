@@ -80,9 +80,9 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
 
         stage: SimulatedTrial | WallTrial
         if order["clock"] == "simulated":
-            stage = SimulatedTrial(node, start, prefixes, inputs, stop_at_doubt=order["stop_at_doubt"])
+            stage = SimulatedTrial(node, start, prefixes, inputs, order["judged"], stop_at_doubt=order["stop_at_doubt"])
         else:
-            stage = WallTrial(node, start, prefixes, inputs)
+            stage = WallTrial(node, start, prefixes, inputs, order["judged"])
         node.await_ready()
         _say(answers, {"ready": True})
         line = sys.stdin.buffer.readline()
@@ -112,6 +112,8 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             stderr=stderr,
             end=node.end(sigint_s),
             interventions=tuple(stage.interventions),
+            interventions_dropped=stage.interventions_dropped,
+            graph_dropped=recorder.graph_dropped,
             doubts=doubts,
             stalls=tuple(stall for stall in stage.stalls if not _own_doing(stall, node, stage)),
             crowded=stage.crowded(),

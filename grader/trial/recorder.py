@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import re
 import time
+from collections import Counter
 from typing import TYPE_CHECKING, Any, Literal
 
 from rcl_interfaces.msg import Log
@@ -15,7 +16,7 @@ from rclpy.serialization import deserialize_message
 from grader.trial.recording import Command, Endpoint, Graph, LogLine, Message
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection
     from pathlib import Path
 
     from rclpy.qos import TopicEndpointInfo
@@ -29,6 +30,8 @@ _LEVELS = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
 
 # A node that makes topics or messages without end must not fill the grader's memory.
 MOST_TOPICS = 100
+MOST_TYPES = 200
+"""Types on one topic."""
 MOST_NODES = 100
 MOST_SEEN = 50_000
 """Nodes and endpoints in all snapshots together."""
@@ -39,10 +42,13 @@ MOST_BYTES = 32 * 1024 * 1024
 class Recorder(Node):
     """A hidden node that subscribes to what appears in the graph."""
 
-    def __init__(self, now: Callable[[], float], prefixes: list[Path], simulated: dict[str, str]) -> None:
+    def __init__(
+        self, now: Callable[[], float], prefixes: list[Path], simulated: dict[str, str], judged: Collection[str] = ()
+    ) -> None:
         """`now` is the trial's clock (s); `prefixes` hold the installed message types.
 
-        `simulated` topics (name -> type) are those that the simulator tells of itself.
+        `simulated` topics (name -> type) are those that the simulator tells of itself. What is on `judged` topics is
+        recorded however many others there are.
         """
         super().__init__("recorder", namespace=OWN_NAMESPACE, start_parameter_services=False, enable_rosout=False)
         self.now = now
@@ -52,6 +58,11 @@ class Recorder(Node):
         self.graphs: list[Graph] = []
         self.topics: dict[str, set[str]] = {}
         self.dropped = 0
+        self.graph_dropped = 0
+        self._judged = frozenset(judged)
+        self._subscribed: Counter[str] = Counter()
+        """Types by judged topic; of all other topics together, by the empty string."""
+        self._told: set[tuple[str, str, str]] = set()
         self._prefixes = prefixes
         self._simulated = simulated
         self._known: set[tuple[str, str]] = set()
@@ -86,29 +97,52 @@ class Recorder(Node):
         """Subscribe to topics that are new; true when there were any."""
         fresh = False
         for topic, types in self.get_topic_names_and_types():
-            if topic not in self.topics and len(self.topics) >= 10 * MOST_TOPICS:
+            if topic not in self.topics and len(self.topics) >= 10 * MOST_TOPICS and topic not in self._judged:
                 continue
-            self.topics.setdefault(topic, set()).update(types[:MOST_TOPICS])
+            self.topics.setdefault(topic, set()).update(types[:MOST_TYPES])
             for type_name in types:
                 if (topic, type_name) not in self._known and self._wanted(topic, type_name):
                     self._known.add((topic, type_name))
+                    self._subscribed[topic if topic in self._judged else ""] += 1
                     fresh |= self._subscribe(topic, type_name)
         return fresh
 
     def snapshot(self) -> None:
         """Add the graph as it is now."""
-        endpoints = set()
-        # The turtle's topics first: nobody shall push them out with a hundred others.
-        topics = sorted((not topic.startswith("/turtle1/"), topic) for topic, _ in self.get_topic_names_and_types())
-        for _, topic in topics[:MOST_TOPICS]:
-            endpoints |= self._endpoints("publisher", topic, self.get_publishers_info_by_topic(topic))
-            endpoints |= self._endpoints("subscription", topic, self.get_subscriptions_info_by_topic(topic))
-        graph = Graph(self.now(), tuple(sorted(self.nodes()))[:MOST_NODES], tuple(sorted(endpoints, key=str)))
+        # What is judged first: nobody shall push it out with a hundred others.
+        topics = sorted((topic not in self._judged, topic) for topic, _ in self.get_topic_names_and_types())
+        shown = [topic for beside, topic in topics if not beside]
+        shown += [topic for beside, topic in topics if beside][:MOST_TOPICS]
+        endpoints: set[Endpoint] = set()
+        left_out = len(topics) - len(shown)
+        for topic in shown:
+            for kind, found in (
+                ("publisher", self.get_publishers_info_by_topic(topic)),
+                ("subscription", self.get_subscriptions_info_by_topic(topic)),
+            ):
+                every = self._endpoints(kind, topic, found)  # type: ignore[arg-type]
+                kept = _each_type_first(every)[:MOST_NODES]
+                left_out += len(every) - len(kept)
+                endpoints.update(kept)
+        nodes = sorted(self.nodes(), key=lambda name: (name not in OWN_NODES, name))
+        left_out += max(0, len(nodes) - MOST_NODES)
+        self.graph_dropped = max(self.graph_dropped, left_out)
+        self._add(Graph(self.now(), tuple(sorted(nodes[:MOST_NODES])), tuple(sorted(endpoints, key=str))))
+
+    def _add(self, graph: Graph) -> None:
         last = self.graphs[-1] if self.graphs else None
-        if last is None or (graph.nodes, graph.endpoints) != (last.nodes, last.endpoints):
-            self._seen += len(graph.nodes) + len(graph.endpoints)
-            if self._seen <= MOST_SEEN:
-                self.graphs.append(graph)
+        if last is not None and (graph.nodes, graph.endpoints) == (last.nodes, last.endpoints):
+            return
+        judged = [end for end in graph.endpoints if end.topic in self._judged]
+        self._seen += len(graph.nodes) + len(graph.endpoints)
+        if self._seen > MOST_SEEN:
+            # Full. What has not been on a judged topic yet is kept for ever; there is little of that.
+            self.graph_dropped += 1
+            fresh = tuple(end for end in judged if (end.kind, end.topic, end.type) not in self._told)
+            graph = Graph(graph.t_s, (), fresh)
+        if graph.nodes or graph.endpoints:
+            self.graphs.append(graph)
+        self._told |= {(end.kind, end.topic, end.type) for end in judged}
 
     def _endpoints(
         self, kind: Literal["publisher", "subscription"], topic: str, found: list[TopicEndpointInfo]
@@ -116,7 +150,7 @@ class Recorder(Node):
         """The endpoints without this node's. Whose they are is told by the participant, since names can be taken."""
         own_name = self.get_fully_qualified_name()
         result = set()
-        for info in found[:MOST_NODES]:
+        for info in found:
             node = f"{info.node_namespace.rstrip('/')}/{info.node_name}"
             ours = _participant(info) == self._participant
             if ours and node == own_name:
@@ -135,7 +169,8 @@ class Recorder(Node):
         return _participant(found[0])
 
     def _wanted(self, topic: str, type_name: str) -> bool:
-        if len(self._known) >= MOST_TOPICS:
+        group, most = (topic, MOST_TYPES) if topic in self._judged else ("", MOST_TOPICS)
+        if self._subscribed[group] >= most:
             return False
         if topic == "/turtle1/cmd_vel" and type_name == "geometry_msgs/msg/Twist":
             return False  # the simulator's own subscription tells it: what is judged is what moved the turtle
@@ -168,6 +203,13 @@ class Recorder(Node):
         if not any((prefix / "share" / package / "msg" / f"{name}.msg").is_file() for prefix in self._prefixes):
             return None
         return getattr(importlib.import_module(f"{package}.msg"), name)
+
+
+def _each_type_first(endpoints: set[Endpoint]) -> list[Endpoint]:
+    """One endpoint of each type, then the others: nobody shall push a type out with a hundred of another."""
+    ordered = sorted(endpoints, key=str)
+    first = list({end.type: end for end in reversed(ordered)}.values())
+    return first + [end for end in ordered if end not in first]
 
 
 def _participant(info: TopicEndpointInfo) -> bytes:

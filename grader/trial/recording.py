@@ -154,7 +154,14 @@ class Recording:
     own_nodes: tuple[str, ...] = ("/turtlesim",)
     """The grader's nodes; every other node of the graph belongs to the submission."""
     interventions: tuple[str, ...] = ()
-    """Services and actions of the simulator that somebody called, in order: "reset", "spawn", "teleport_absolute"."""
+    """Services and actions of the simulator that somebody called, in order: "reset", "spawn", "teleport_absolute".
+
+    Of very many the first are kept, and of the rest each name once.
+    """
+    interventions_dropped: int = 0
+    """Calls beyond those."""
+    graph_dropped: int = 0
+    """Topics, nodes and endpoints beyond what a snapshot of the graph keeps, and snapshots beyond those kept."""
     doubts: tuple[str, ...] = ()
     """Why simulated time may have judged wrongly here; empty when it may be trusted."""
     seconds: dict[str, float] = field(default_factory=dict)

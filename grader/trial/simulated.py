@@ -22,6 +22,7 @@ from grader.trial.stage import Stage
 from grader.turtlesim.turtle import FRAME_S
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from grader.trial.inputs import Inputs
@@ -50,11 +51,18 @@ class SimulatedTrial(Stage):
     """A stage whose clock the node follows."""
 
     def __init__(
-        self, node: NodeProcess, start: Pose, prefixes: list[Path], inputs: Inputs, *, stop_at_doubt: bool
+        self,
+        node: NodeProcess,
+        start: Pose,
+        prefixes: list[Path],
+        inputs: Inputs,
+        judged: Collection[str] = (),
+        *,
+        stop_at_doubt: bool,
     ) -> None:
         self._now_s = 0.0
         self._stop_at_doubt = stop_at_doubt
-        super().__init__(node, start, prefixes, inputs)
+        super().__init__(node, start, prefixes, inputs, judged)
         qos = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._clock = self.recorder.create_publisher(Clock, "/clock", qos)
 

@@ -15,6 +15,7 @@ from grader.turtlesim.node import TurtlesimNode
 from grader.turtlesim.turtle import FRAME_S, Start
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from rclpy.node import Node
@@ -24,11 +25,13 @@ if TYPE_CHECKING:
     from grader.trial.node_process import NodeProcess
     from grader.trial.recording import Pose
 
+COMMANDS = "/turtle1/cmd_vel"
 PUBLISHED = {"/turtle1/pose": "turtlesim/msg/Pose", "/turtle1/color_sensor": "turtlesim/msg/Color"}
 _MOST_AT_ONCE = 2000
 """Callbacks handled before the trial looks at its clock again: a flood must not stop time."""
 _MOST_AT_ONCE_S = 0.5
 _MOST_INTERVENTIONS = 1000
+"""Interventions in order; of those after that each name is kept once, and the others are counted."""
 
 
 class Stage:
@@ -38,14 +41,19 @@ class Stage:
     without, for moments in which only messages can have come: as long as nobody is there who `may_ask`.
     """
 
-    def __init__(self, node: NodeProcess, start: Pose, prefixes: list[Path], inputs: Inputs) -> None:
+    def __init__(
+        self, node: NodeProcess, start: Pose, prefixes: list[Path], inputs: Inputs, judged: Collection[str] = ()
+    ) -> None:
+        """`judged` are the topics that a check asks for."""
         # Our own log lines go to /rosout, where the recorder hears them, not to disk: whoever makes the simulator talk
         # must not fill it.
         rclpy.init(args=["--ros-args", "--disable-external-lib-logs", "--disable-stdout-logs"])
         self.node = node
         self.inputs = inputs
         self.interventions: list[str] = []
-        self.recorder = Recorder(self.now, prefixes, {**PUBLISHED, "/clock": "rosgraph_msgs/msg/Clock"})
+        self.interventions_dropped = 0
+        simulated = {**PUBLISHED, "/clock": "rosgraph_msgs/msg/Clock"}
+        self.recorder = Recorder(self.now, prefixes, simulated, (COMMANDS, *PUBLISHED, *judged))
         self.turtlesim = TurtlesimNode(
             start=Start(start.x, start.y, start.theta),
             pose_every=inputs.pose_every,
@@ -156,8 +164,11 @@ class Stage:
         return others
 
     def _intervened(self, name: str) -> None:
-        if len(self.interventions) < _MOST_INTERVENTIONS:
+        # Whoever calls a harmless service a thousand times must not have the next teleport forgotten.
+        if len(self.interventions) < _MOST_INTERVENTIONS or name not in self.interventions:
             self.interventions.append(name)
+        else:
+            self.interventions_dropped += 1
 
     def wind_down(self) -> None:
         """Press Ctrl-C on the node and go on, at the pace of the wall, until it is gone."""

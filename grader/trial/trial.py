@@ -46,6 +46,8 @@ class Plan:
     inputs: Inputs = field(default_factory=Inputs)
     alone: bool = False
     """The simulator by itself, without a node."""
+    judged: tuple[str, ...] = ()
+    """Topics that a check asks for: they are recorded, however many others there are."""
 
 
 def last_words(stderr: bytes) -> str:

@@ -214,6 +214,13 @@ def test_what_differs_from_run_to_run_is_not_on_the_page() -> None:
     assert first == second
 
 
+def test_what_a_recording_could_not_keep_is_told() -> None:
+    assert "More than a recording keeps" not in page_of(evidence(good()))
+    full = replace(good(), dropped=1, interventions_dropped=300, graph_dropped=20)
+    told = "left out: 1 message, 300 calls of the simulator&#39;s services and 20 parts of the graph."
+    assert told in page_of(evidence(full))
+
+
 def test_each_trial_of_an_exercise_is_shown() -> None:
     whole = find_exercise("07-challenges")
     first, *others = whole.trials
