@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import sys
+import unicodedata
 from dataclasses import dataclass
 
 if sys.version_info >= (3, 11):
@@ -31,9 +32,19 @@ class OwnNumbers:
     rate_hz: float
 
 
+def normal_id(student: str) -> str:
+    """The one form of an id that is compared and drawn from: case, width and spaces make no difference.
+
+    If ids were compared in another form than they are drawn from, a student could try spellings of the own id until
+    one of them draws a friend's numbers.
+    """
+    folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", student).casefold())
+    return " ".join(folded.split())
+
+
 def draw_numbers(student: str) -> OwnNumbers:
-    """The numbers of a student; the same on every machine."""
-    drawn = hashlib.sha256(f"07-challenges {student}".encode()).digest()
+    """The numbers of a student; the same on every machine, however the id is spelled (see `normal_id`)."""
+    drawn = hashlib.sha256(f"07-challenges {normal_id(student)}".encode("utf-8", "surrogatepass")).digest()
     return OwnNumbers(
         student,
         RADII_M[drawn[0] % len(RADII_M)],

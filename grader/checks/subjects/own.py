@@ -10,7 +10,7 @@ from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.path import CircleParams, circle
 from grader.checks.subjects.rate import Rate, rate
 from grader.common.words import shorten
-from grader.exercise.own_numbers import FILE, OwnNumbers, draw_numbers, from_toml
+from grader.exercise.own_numbers import FILE, OwnNumbers, draw_numbers, from_toml, normal_id
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
     if isinstance(found, Finding):
         return found
     by = evidence.submission.student
-    if by is not None and found.student.strip().casefold() != by.strip().casefold():
+    if by is not None and normal_id(found.student) != normal_id(by):
         seen = f'The numbers in {FILE} were drawn for "{shorten(found.student)}", but "{shorten(by)}" submitted them.'
         expected = "Every student drives their own circle."
         cause = f"`grader start 07 --student {shorten(by)} --fresh` draws yours and keeps a copy of your work."
