@@ -35,11 +35,11 @@ def test_the_own_numbers_pass_whoever_may_write_the_name_otherwise(by: str | Non
 
 def test_no_spelling_of_the_own_id_makes_a_friends_circle_pass() -> None:
     """Bob hands in alice's program, and tries spellings of his own id until the drawn numbers are hers."""
-    for number in range(64):
-        spelling = "".join(char.upper() if number >> at & 1 else char for at, char in enumerate("bobbob"))
+    for number in range(512):
+        spelling = "".join(char.upper() if number >> at & 1 else char for at, char in enumerate("bobbobbob"))
         numbers = draw_numbers(spelling)
-        assert found(NUMBERS, given(numbers, "bobbob")).status is Status.PASSED
-        assert Status.FAILED in {found(kind, given(numbers, "bobbob")).status for kind in (CIRCLE, RATE)}
+        assert found(NUMBERS, given(numbers, "bobbobbob")).status is Status.PASSED
+        assert Status.FAILED in {found(kind, given(numbers, "bobbobbob")).status for kind in (CIRCLE, RATE)}
 
 
 @pytest.mark.parametrize(
