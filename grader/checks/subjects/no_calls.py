@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from grader.checks.kind import Kind, string, strings
 from grader.checks.outcome import Finding, failed, passed
-from grader.common.words import a_list
+from grader.common.words import a_list, shorten
+from grader.submission.uses import uses_of
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -24,13 +25,14 @@ class NoCalls:
 
 
 def no_calls(evidence: Evidence, params: NoCalls) -> Finding:
-    """The node's file calls none of the functions."""
-    file = evidence.node_file
-    calls = [call for name in params.names for call in evidence.code.calls(name) if call.module.file == file]
-    if calls:
-        name = (calls[0].node.func.attr if hasattr(calls[0].node.func, "attr") else None) or params.names[0]
+    """The node's file uses none of the functions, under whatever name."""
+    uses = uses_of(evidence.code.modules, evidence.node_file, params.names)
+    if uses:
+        first = uses[0]
+        alias = f", which is {first.name}" if first.written != first.name else ""
+        seen = f"The node calls {shorten(first.written)}{alias}."
         expected = f"The node does not call {a_list(params.names, 'or')}."
-        return failed("forbidden-call", f"The node calls {name}.", expected, params.cause, where=calls[0].where)
+        return failed("forbidden-call", seen, expected, params.cause, where=first.where)
     return passed(f"The node does not call {a_list(params.names, 'or')}.")
 
 
@@ -40,5 +42,5 @@ NO_CALLS = Kind(
     "The node does not call certain functions",
     NoCalls,
     no_calls,
-    about="The node's file calls none of the given functions.",
+    about="The node's file calls none of the given functions, whatever name it gives them.",
 )

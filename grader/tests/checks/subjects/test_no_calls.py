@@ -16,7 +16,7 @@ NAMES = ("teleport", "create_client")
     ("last", "seen"),
     [
         ("node.create_client(x)", "The node calls create_client."),
-        ("create_client(x)", "The node calls teleport."),
+        ("create_client(x)", "The node calls create_client."),
         ("turtles.teleport(1)\nnode.create_client(x)", "The node calls teleport."),
     ],
 )
@@ -24,6 +24,94 @@ def test_a_forbidden_call_is_shown_where_it_stands(last: str, seen: str) -> None
     given = evidence(package=submission({NODE_FILE: f"{NODE}\n{last}\n"}))
     finding = found(NO_CALLS, given, names=NAMES, cause="Drive there.")
     assert (finding.diagnosis, finding.seen, str(finding.where)) == ("forbidden-call", seen, f"{NODE_FILE}:23")
+
+
+SLEEP = ("sleep", "sleep_for", "create_rate")
+
+
+def used(text: str, **files: str) -> tuple[Status, str]:
+    """What is said of a node with this text below it, and with these modules beside it."""
+    beside = {f"my_robot_controller/{name}.py": code for name, code in files.items()}
+    package = submission({NODE_FILE: f"import time\n{NODE}\n{text}\n", **beside})
+    finding = found(NO_CALLS, evidence(package=package), names=SLEEP, cause="Count.")
+    return finding.status, finding.seen
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from time import sleep as nap\nnap(1)",
+        "import time as t\nt.sleep(1)",
+        "nap = time.sleep\nnap(1)",
+        "import time as t\nnap: object = t.sleep",
+        'nap = getattr(time, "sleep")\nnap(1)',
+        'nap = getattr(__import__("time"), "sl" "eep")',
+        "def wait():\n    from time import sleep as nap\n    nap(1)",
+        "class Waits:\n    nap = staticmethod(time.sleep)",
+        "from functools import partial\nnap = partial(time.sleep, 1)",
+        "def wait(nap=time.sleep):\n    nap(1)",
+        "list(map(time.sleep, [1]))",
+        'time.__dict__["sleep"](1)',
+        'vars(time)["sleep"](1)',
+        'from operator import methodcaller\nmethodcaller("sleep", 1)(time)',
+        'exec("import time; time.sleep(1)")',
+        "nap = node.get_clock().sleep_for",
+        "make = node.create_rate",
+        "if (nap := time.sleep): nap(1)",
+        "naps = {'a': time.sleep}",
+    ],
+)
+def test_a_function_by_another_name_is_the_same_function(text: str) -> None:
+    status, seen = used(text)
+    assert status is Status.FAILED
+    assert any(name in seen for name in SLEEP)
+
+
+@pytest.mark.parametrize(
+    ("text", "helper"),
+    [
+        ("from my_robot_controller.helper import nap\nnap(1)", "from time import sleep as nap"),
+        ("from my_robot_controller import helper\nhelper.nap(1)", "import time\nnap = time.sleep"),
+        ("from .helper import wait\nwait()", "import time\ndef wait():\n    time.sleep(1)"),
+        ("from .helper import wait as w\nw()", "import time\ndef rest():\n    time.sleep(1)\ndef wait():\n    rest()"),
+        (
+            "from .helper import Waits\nWaits().go()",
+            "import time\nclass Waits:\n    def go(self):\n        time.sleep(1)",
+        ),
+        ("import my_robot_controller.helper as h\nh.wait()", "import time\ndef wait():\n    time.sleep(1)"),
+        ("from .helper import *\nwait()", "import time\ndef wait():\n    time.sleep(1)"),
+    ],
+)
+def test_another_file_does_not_hide_it(text: str, helper: str) -> None:
+    assert used(text, helper=helper)[0] is Status.FAILED
+
+
+def test_another_file_behind_another_does_not_hide_it() -> None:
+    text = "from my_robot_controller.helper import wait\nwait()"
+    helper = "from my_robot_controller.deeper import rest\ndef wait():\n    rest()"
+    assert used(text, helper=helper, deeper="import time\nrest = time.sleep")[0] is Status.FAILED
+
+
+@pytest.mark.parametrize(
+    ("text", "helper"),
+    [
+        ("", ""),
+        ("from time import sleep", ""),
+        ("node.sleep = 3\nprint(node.sleep)", ""),
+        ('print("no sleep here")', ""),
+        ('names = {"sleep": 1}\nnames["sleep"]', ""),
+        (
+            "from my_robot_controller.helper import count\ncount()",
+            "import time\ndef wait():\n    time.sleep(1)\ndef count(): ...",
+        ),
+        (
+            "from my_robot_controller import helper\nhelper.count()",
+            "import time\ndef wait():\n    time.sleep(1)\ndef count(): ...",
+        ),
+    ],
+)
+def test_what_is_not_used_is_not_held_against_anybody(text: str, helper: str) -> None:
+    assert used(text, helper=helper)[0] is Status.PASSED
 
 
 def test_what_other_files_call_is_not_the_nodes() -> None:

@@ -1,0 +1,196 @@
+"""Uses of functions that are known by their last name, under whatever other name the source gives them.
+
+A call of `sleep` is found by its name. It is not found where the source says `from time import sleep as nap`,
+`nap = time.sleep`, `partial(time.sleep, 1)` or `getattr(time, "sleep")`, nor where a function of another file of the
+submission calls it for the node. So every mention of such a function counts as a use, and what another file makes of
+it is followed through that file's own names.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from grader.submission.constants import dotted
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator, Sequence
+
+    from grader.submission.code import Module
+
+BY_TEXT = frozenset({"getattr", "attrgetter", "methodcaller", "__getattribute__", "__getattr__", "get", "exec", "eval"})
+"""Functions that are told by a string which function is meant."""
+
+
+@dataclass(frozen=True)
+class Use:
+    """Where a function is used; `name` is what it is known by, `written` what the source calls it there."""
+
+    name: str
+    written: str
+    where: Where
+
+
+@dataclass
+class _File:
+    """One file of the submission, and what its names stand for."""
+
+    module: Module
+    functions: dict[str, str] = field(default_factory=dict)
+    """Local name -> one of the functions, from `from x import FUNCTION as LOCAL`."""
+    modules: set[str] = field(default_factory=set)
+    """Names that may stand for modules."""
+    others: dict[str, Top] = field(default_factory=dict)
+    """Local name, or MODULE.NAME -> the name at another file's top level that it stands for."""
+    stored: set[str] = field(default_factory=set)
+    """Attributes that the file itself assigns: `self.sleep = 0` is a number, and no function."""
+
+
+Top = tuple[str, str]
+"""A name at the top level of a file: the file, and the name."""
+
+
+def uses_of(modules: Sequence[Module], file: str | None, names: Collection[str]) -> list[Use]:
+    """Every use of the named functions in `file`, in the order of the source; the other modules are what it imports."""
+    files = {module.file: _read(module, modules, names) for module in modules}
+    here = files.get(file or "")
+    if here is None:
+        return []
+    reached = _reached([each for each in files.values() if each is not here], names)
+    uses = [use for node in here.module.nodes for use in _use(node, here, names)]
+    for node in here.module.nodes:
+        written = dotted(node) if isinstance(node, ast.Name | ast.Attribute) else None
+        top = here.others.get(written or "")
+        if top in reached:
+            uses.append(Use(reached[top], top[1], Where(here.module.file, getattr(node, "lineno", None))))
+    return sorted(uses, key=lambda use: use.where.line or 0)
+
+
+def _reached(files: Sequence[_File], names: Collection[str]) -> dict[Top, str]:
+    """The names at the files' top levels through which one of the functions is reached -> that function's name."""
+    reached: dict[Top, str] = {}
+    users: dict[Top, set[Top]] = {}
+    for each in files:
+        path = each.module.file
+        reached |= {(path, local): name for local, name in each.functions.items()}
+        for local, top in each.others.items():
+            users.setdefault(top, set()).add((path, local))
+        for bound, node in _below_top(each.module):
+            reached |= {top: use.name for use in _use(node, each, names) for top in bound}
+            written = dotted(node) if isinstance(node, ast.Name | ast.Attribute) else None
+            if written is not None:
+                users.setdefault(each.others.get(written, (path, written)), set()).update(bound)
+    waiting = list(reached)
+    while waiting:
+        top = waiting.pop()
+        for user in users.get(top, ()):
+            if user not in reached:
+                reached[user] = reached[top]
+                waiting.append(user)
+    return reached
+
+
+def _below_top(module: Module) -> Iterator[tuple[set[Top], ast.AST]]:
+    """Every node of a file with the names that the statement of the top level gives a meaning to in which it stands."""
+    for statement in module.body:
+        bound = {(module.file, name) for name in _bound([statement])}
+        if bound and not isinstance(statement, ast.Import | ast.ImportFrom):
+            yield from ((bound, node) for node in ast.walk(statement))
+
+
+def _bound(statements: Iterable[ast.stmt]) -> set[str]:
+    """The names that these statements give a meaning to at their own level."""
+    bound: set[str] = set()
+    for statement in statements:
+        if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            bound.add(statement.name)
+        elif isinstance(statement, ast.Import | ast.ImportFrom):
+            bound |= {alias.asname or alias.name.partition(".")[0] for alias in statement.names}
+        elif isinstance(statement, ast.Assign):
+            bound |= {
+                node.id for target in statement.targets for node in ast.walk(target) if isinstance(node, ast.Name)
+            }
+        elif isinstance(statement, ast.AnnAssign | ast.AugAssign) and isinstance(statement.target, ast.Name):
+            bound.add(statement.target.id)
+    return bound
+
+
+def _read(module: Module, modules: Sequence[Module], names: Collection[str]) -> _File:
+    """A file with what its imports, wherever they stand in it, make its names stand for."""
+    found = _File(module)
+    tops = {
+        each.file.rpartition("/")[2].removesuffix(".py"): {name: (each.file, name) for name in _bound(each.body)}
+        for each in modules
+        if each is not module
+    }
+    for node in module.nodes:
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                local = alias.asname or alias.name
+                found.modules.add(local)
+                found.others |= _below(local, tops.get(alias.name.rpartition(".")[2], {}))
+        elif isinstance(node, ast.ImportFrom):
+            _import_from(found, node, tops, names)
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            found.stored.add(node.attr)
+    return found
+
+
+def _import_from(found: _File, node: ast.ImportFrom, tops: dict[str, dict[str, Top]], names: Collection[str]) -> None:
+    inside = tops.get((node.module or "").rpartition(".")[2], {})
+    for alias in node.names:
+        local = alias.asname or alias.name
+        if alias.name == "*":
+            found.others |= inside
+        elif alias.name in inside:
+            found.others[local] = inside[alias.name]
+        elif alias.name in tops:  # `from package import module`
+            found.modules.add(local)
+            found.others |= _below(local, tops[alias.name])
+        elif alias.name in names:
+            found.functions[local] = alias.name
+        else:
+            found.modules.add(local)
+
+
+def _below(module: str, tops: dict[str, Top]) -> dict[str, Top]:
+    return {f"{module}.{name}": top for name, top in tops.items()}
+
+
+def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
+    """The use that a node is by itself, if it is one."""
+    name: str | None = None
+    written: str | None = None
+    if isinstance(node, ast.Call):
+        written = (dotted(node.func) or "").rpartition(".")[2] or getattr(node.func, "attr", "")
+        name = written if written in names else _by_text(node, names) if written in BY_TEXT else None
+    elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
+        name, written = file.functions.get(node.id), node.id
+    elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load) and node.attr in names:
+        if (dotted(node.value) or "") in file.modules or node.attr not in file.stored:
+            name = written = node.attr
+    elif isinstance(node, ast.Subscript) and _is_of_a_module(node.value):
+        # time.__dict__["sleep"], vars(time)["sleep"]
+        key = node.slice.value if isinstance(node.slice, ast.Constant) else None
+        name = written = key if isinstance(key, str) and key in names else None
+    if name is not None:
+        yield Use(name, written or name, Where(file.module.file, getattr(node, "lineno", None)))
+
+
+def _is_of_a_module(node: ast.expr) -> bool:
+    """Whether it may be the dictionary of a module's names."""
+    return isinstance(node, ast.Call) or getattr(node, "attr", "") == "__dict__"
+
+
+def _by_text(call: ast.Call, names: Collection[str]) -> str | None:
+    """The function that a string among the arguments names, or that such source code uses."""
+    for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
+        if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
+            words: list[str] = re.findall(r"\w+", argument.value[:10_000])
+            found = next((word for word in words if word in names), None)
+            if found is not None:
+                return found
+    return None
