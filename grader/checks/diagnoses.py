@@ -7,7 +7,16 @@ grader/checks/README.md.
 
 from __future__ import annotations
 
-GROUPS: dict[str, dict[str, str]] = {
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from grader.checks.diagnosis import Diagnosis
+
+GROUPS: dict[str, dict[Diagnosis, str]] = {
+    "what is handed in": {
+        "no-package": "there is no package, or there are several",
+        "no-answers-file": "there is no answers.toml, or there are several",
+    },
     "package.xml": {
         "package-xml-missing": "the package has no package.xml",
         "xml-malformed": "package.xml is not valid XML: a tag is not closed, or there is text after the last tag",
@@ -278,4 +287,4 @@ GROUPS: dict[str, dict[str, str]] = {
 }
 """Subject -> id -> meaning, in the order in which a submission is graded."""
 
-DIAGNOSES: dict[str, str] = {id_: meaning for group in GROUPS.values() for id_, meaning in group.items()}
+DIAGNOSES: dict[Diagnosis, str] = {id_: meaning for group in GROUPS.values() for id_, meaning in group.items()}

@@ -7,6 +7,7 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from grader.checks.diagnosis import Diagnosis
     from grader.submission.where import Where
 
 
@@ -42,7 +43,7 @@ def passed(seen: str, *, near_edge: bool = False) -> Finding:
 
 
 def failed(
-    diagnosis: str,
+    diagnosis: Diagnosis,
     seen: str,
     expected: str,
     cause: str = "",

@@ -22,7 +22,9 @@ MISTAKES = CASES.parent / "mistakes"
 SHOWN_BY_TESTS = {
     "build-limit": "checks/subjects/test_building.py",
     "lobe-gap": "checks/subjects/test_eight.py",
+    "no-answers-file": "classroom/test_task.py",
     "no-commands": "checks/subjects/test_values.py",
+    "no-package": "classroom/test_grade_class.py",
     "no-timer": "checks/subjects/test_node.py",
     "numbers-of-another": "checks/subjects/test_own.py",
     "overwhelmed": "checks/test_judge.py",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.outcome import Finding, failed
 from grader.common.words import shorten
 from grader.submission.where import Where
@@ -16,12 +17,12 @@ def bad_entry_point(point: EntryPoint) -> Finding:
     """Return a failed finding about an entry point that setuptools cannot read."""
     seen = f'setuptools cannot read the entry point "{shorten(point.text)}".'
     expected = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION."
-    diagnosis, cause = "entry-point-format", "Check it character by character: = and : must each appear once."
+    why = Cause("entry-point-format", "Check it character by character: = and : must each appear once.")
     if point.text.count("=") > 1:
-        diagnosis, cause = "entry-point-comma", "A comma is missing between two strings, so Python joins them into one."
+        why = Cause("entry-point-comma", "A comma is missing between two strings, so Python joins them into one.")
     elif "/" in point.text:
-        diagnosis, cause = "entry-point-slash", "This is a file path. A module name has a dot between folder and file."
+        why = Cause("entry-point-slash", "This is a file path. A module name has a dot between folder and file.")
     elif ":" not in point.text:
-        cause = "It does not name a function. After the module comes a colon, then the function name."
-        diagnosis = "entry-point-no-function"
-    return failed(diagnosis, seen, expected, cause, where=Where("setup.py", point.line))
+        text = "It does not name a function. After the module comes a colon, then the function name."
+        why = Cause("entry-point-no-function", text)
+    return failed(why.diagnosis, seen, expected, why.text, where=Where("setup.py", point.line))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from grader.checks.diagnosis import Diagnosis
     from grader.submission.where import Where
 
 
@@ -13,6 +14,6 @@ if TYPE_CHECKING:
 class Cause:
     """A diagnosis id, the cause in words, and the place to look at if it is known better than from what was seen."""
 
-    diagnosis: str
+    diagnosis: Diagnosis
     text: str
     where: Where | None = None

@@ -12,13 +12,14 @@ from grader.submission.package_xml import line_of
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from grader.checks.diagnosis import Diagnosis
     from grader.submission.code import Unreadable
 
 NOT_UTF8 = r"codec can't decode|unicode error|[Nn]on-UTF-8|encoding"
 """Python's messages about a file that is not valid UTF-8."""
 EXPECTED = "The file is valid Python."
 
-CAUSES = (
+CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
     (NOT_UTF8, "not-utf8", "Save the file as UTF-8."),
     (
         "inconsistent use of tabs",

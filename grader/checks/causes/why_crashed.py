@@ -16,10 +16,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from grader.checks.causes.crash import Crash
+    from grader.checks.diagnosis import Diagnosis
     from grader.evidence.evidence import Evidence
 
 
-def _always(diagnosis: str) -> Callable[[CrashScene], Cause]:
+def _always(diagnosis: Diagnosis) -> Callable[[CrashScene], Cause]:
     return lambda scene: Cause(diagnosis, scene.crash.meaning)
 
 

@@ -11,6 +11,7 @@ from grader.submission.constants import dotted
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from grader.checks.diagnosis import Diagnosis
     from grader.evidence.evidence import Evidence
 
 SPINS = ("spin", "spin_once", "spin_until_future_complete")
@@ -27,7 +28,7 @@ def why_ended(evidence: Evidence) -> Cause:
     if not code.calls("spin") and code.calls("spin_once") and not _loops(evidence):
         text = "rclpy.spin_once handles one event and returns. rclpy.spin continues until Ctrl-C."
         return Cause("spin-once", text, evidence.place("spin_once"))
-    ended = "ends-at-once" if ended_at_start(evidence.recording) else "ended-early"
+    ended: Diagnosis = "ends-at-once" if ended_at_start(evidence.recording) else "ended-early"
     return Cause(ended, "", evidence.place("spin", "init"))
 
 

@@ -40,7 +40,7 @@ def why_nothing(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
     """Return the cause of a silent node, or None. `sends` are the functions that publish or log."""
     fault = timer_fault(evidence)
     if fault is not None:
-        return Cause(fault.diagnosis, fault.cause, fault.where)
+        return fault
     return (
         named_only(evidence, "rclpy.spin")
         or _stuck(evidence)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.kind import Kind, NoParams, choice, number, string, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
@@ -18,6 +19,7 @@ from grader.submission.where import Where
 if TYPE_CHECKING:
     from collections.abc import Collection
 
+    from grader.checks.diagnosis import Diagnosis
     from grader.evidence.evidence import Evidence
     from grader.trial.recording import Endpoint, Recording
 
@@ -66,7 +68,7 @@ def answer_text(evidence: Evidence, params: OneOf) -> Finding:
         return given
     if _plain(str(given)) in {_plain(each) for each in params.accepts}:
         return passed(f'"{shorten(str(given))}" is right.')
-    return _wrong(evidence, params.answer, given, "wrong-answer", params.cause.strip())
+    return _wrong(evidence, params.answer, given, Cause("wrong-answer", params.cause.strip()))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +120,7 @@ def answer_graph(evidence: Evidence, params: GraphQuestion) -> Finding:
     if answer in truth:
         return passed(f"{shorten(answer)} is right.")
     return _wrong(
-        evidence, params.answer, answer, *_why(answer, params.find, truth, _all(evidence.recording, params.find))
+        evidence, params.answer, answer, _why(answer, params.find, truth, _all(evidence.recording, params.find))
     )
 
 
@@ -146,18 +148,20 @@ def _counts(end: Endpoint, params: GraphQuestion) -> bool:
     )
 
 
-def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]) -> tuple[str, str]:
+def _why(answer: str, find: str, truth: Collection[str], others: Collection[str]) -> Cause:
     if find in ("topic", "node") and f"/{answer}" in truth:
-        return "no-slash", f"The full name of a {find} starts with a slash."
+        return Cause("no-slash", f"The full name of a {find} starts with a slash.")
     if find == "type" and any(each.replace("/msg/", "/") == answer for each in truth):
-        return "type-without-msg", "In ROS 2 a type has three parts: the package, the word msg, and the name."
+        return Cause("type-without-msg", "In ROS 2 a type has three parts: the package, the word msg, and the name.")
     if find == "type" and any(each.endswith(f"/{answer}") for each in truth):
-        return "type-without-package", "The full name of a type starts with its package, as in std_msgs/msg/String."
+        return Cause(
+            "type-without-package", "The full name of a type starts with its package, as in std_msgs/msg/String."
+        )
     if any(each.lower() == answer.lower() for each in truth):
-        return "capitals", "Upper and lower case matter."
+        return Cause("capitals", "Upper and lower case matter.")
     if answer in others:
-        return "answer-another", f"This {find} exists, but it is not the one that the question asks for."
-    return "wrong-answer", KEEP_LOOKING
+        return Cause("answer-another", f"This {find} exists, but it is not the one that the question asks for.")
+    return Cause("wrong-answer", KEEP_LOOKING)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -186,14 +190,14 @@ def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
     assert isinstance(given, float)
     if Band.around(truth, truth * params.tolerance_percent / 100.0).holds(given):
         return passed(f"{given:g} Hz is right.")
-    diagnosis, cause = "wrong-answer", "`ros2 topic hz` shows the number of messages per second."
+    why = Cause("wrong-answer", "`ros2 topic hz` shows the number of messages per second.")
     # The answer cannot be 0 here: the handout writes 0 for an answer that is still missing.
     if Band.around(truth, truth * params.tolerance_percent / 100.0).holds(1.0 / given):
-        diagnosis, cause = (
+        why = Cause(
             "period-for-rate",
             "This is the period, the time between two messages in seconds. The rate is 1 divided by the period.",
         )
-    return _wrong(evidence, params.answer, given, diagnosis, cause)
+    return _wrong(evidence, params.answer, given, why)
 
 
 def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Finding:
@@ -221,13 +225,13 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
     difference = " and ".join(part for part in parts if part)
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
     seen = f"{name} is {_shown(given)}: {difference}."
-    diagnosis = "wrong-list" if extra and missing else "list-too-long" if extra else "list-incomplete"
+    diagnosis: Diagnosis = "wrong-list" if extra and missing else "list-too-long" if extra else "list-incomplete"
     return failed(diagnosis, seen, "The list has every right item and no others.", cause.strip(), where=where)
 
 
-def _wrong(evidence: Evidence, name: str, given: Answer, diagnosis: str, cause: str) -> Finding:
+def _wrong(evidence: Evidence, name: str, given: Answer, why: Cause) -> Finding:
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
-    return failed(diagnosis, f"{name} is {_shown(given)}.", "What ROS 2 reports.", cause, where=where)
+    return failed(why.diagnosis, f"{name} is {_shown(given)}.", "What ROS 2 reports.", why.text, where=where)
 
 
 def _plain(answer: str) -> str:

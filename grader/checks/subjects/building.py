@@ -15,6 +15,7 @@ from grader.submission.code import import_path
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from grader.checks.diagnosis import Diagnosis
     from grader.evidence.evidence import Evidence
 
 INSTALLED_MODULE = re.compile(r"(?:local/)?lib/python[\d.]+/(?:site|dist)-packages/(?P<path>.+\.py)")
@@ -149,7 +150,7 @@ def installs(evidence: Evidence, _: NoParams) -> Finding:
     where = Where("setup.py", _setup_line(evidence))
     seen = f"Not installed: {a_list(missing)}."
     expected = "data_files in setup.py installs the marker file into the resource index and package.xml into share."
-    diagnosis = "resource-marker" if "marker" in missing[0] else "package-xml-not-installed"
+    diagnosis: Diagnosis = "resource-marker" if "marker" in missing[0] else "package-xml-not-installed"
     return failed(
         diagnosis, seen, expected, "`ros2 run` and other tools use these files to find a package.", where=where
     )

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.causes.crash import crash_of, end_seen, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_silent import why_nothing, why_qos
@@ -75,17 +76,17 @@ def _silent(evidence: Evidence, expected: str) -> Finding:
 def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expected: str) -> Finding:
     line = logged[-1]
     seen = f'The last log line is "{shorten(line, 90)}".'
-    diagnosis, cause = "log-format", "Compare it letter by letter: capital letters, spaces and dots count."
+    why = Cause("log-format", "Compare it letter by letter: capital letters, spaces and dots count.")
     pattern = lines.Format(params.format).pattern()
     if re.fullmatch(pattern.pattern, line, re.IGNORECASE | re.ASCII):
-        diagnosis, cause = "log-capitals", "Upper and lower case matter."
+        why = Cause("log-capitals", "Upper and lower case matter.")
     elif re.search(rf"{pattern.pattern}(?!\.?\d)", line, re.ASCII):  # (not only the first digits of a number)
-        diagnosis, cause = "log-more", "The line contains more than it should."
+        why = Cause("log-more", "The line contains more than it should.")
     elif _same_words(line, params.format):
-        diagnosis, cause = "log-numbers", "The words are right, but the numbers are missing or have the wrong format."
+        why = Cause("log-numbers", "The words are right, but the numbers are missing or have the wrong format.")
         if ":." in params.format:
-            cause += " In an f-string, {value:.2f} writes two decimal places."
-    return failed(diagnosis, seen, expected, cause, where=evidence.place(*LEVELS))
+            why = replace(why, text=why.text + " In an f-string, {value:.2f} writes two decimal places.")
+    return failed(why.diagnosis, seen, expected, why.text, where=evidence.place(*LEVELS))
 
 
 def _same_words(line: str, format_: str) -> bool:

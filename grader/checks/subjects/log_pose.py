@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.common.lazy import np
@@ -62,12 +63,12 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
         f"At {line.t_s:.0f} s the line shows x={line.numbers['x']:.2f} y={line.numbers['y']:.2f}, "
         f"but the turtle was at x={x:.2f} y={y:.2f}."
     )
-    diagnosis, cause = "wrong-position", "x and y are fields of the message that your callback receives."
+    why = Cause("wrong-position", "x and y are fields of the message that your callback receives.")
     if all(off(each, each.numbers["y"], each.numbers["x"]) <= params.tolerance_m for each in logged):
-        diagnosis, cause = "x-y-swapped", "x and y are swapped."
+        why = Cause("x-y-swapped", "x and y are swapped.")
     elif len({(each.numbers["x"], each.numbers["y"]) for each in logged}) == 1:
-        diagnosis, cause = "stale-pose", "The numbers never change. Store x and y in self each time a message arrives."
-    return failed(diagnosis, seen, expected, cause, where=evidence.place("info", "create_subscription"))
+        why = Cause("stale-pose", "The numbers never change. Store x and y in self each time a message arrives.")
+    return failed(why.diagnosis, seen, expected, why.text, where=evidence.place("info", "create_subscription"))
 
 
 def log_distance(evidence: Evidence, params: LogDistance) -> Finding:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.causes.crash import ended_early
 from grader.checks.kind import Kind, NoParams, choice, number
 from grader.checks.outcome import Finding, Status, failed, passed
@@ -168,16 +169,16 @@ def _too_short(evidence: Evidence, track: Track, turns: float, expected: str, *,
         return failed("ended-early", seen, expected, early, where=evidence.place("publish"), near_edge=near_edge)
     if track.rests:
         seen = f"The turtle drove {turns:.2f} of a turn, with {count(track.rests, 'stop')} on the way."
-        diagnosis, cause = "stops-and-goes", "The turtle stops when no command arrives for 1 s."
+        why = Cause("stops-and-goes", "The turtle stops when no command arrives for 1 s.")
     elif seen_in.end_s(evidence.recording) - evidence.commands[-1].t_s > LIVES_S:
         seen = f"The turtle drove {turns:.2f} of a turn; the last command arrived at {evidence.commands[-1].t_s:.1f} s."
-        diagnosis, cause = "stopped-early", "The turtle stops when no command arrives for 1 s."
+        why = Cause("stopped-early", "The turtle stops when no command arrives for 1 s.")
     else:
         speed = _steady(evidence)
         turn_s = 2.0 * math.pi / abs(speed[1]) if speed and speed[1] else 0.0
         cause = f"With angular.z {shown(speed[1])} rad/s, one turn takes {turn_s:.1f} s." if speed and turn_s else ""
         return failed("too-short", seen, expected, cause, where=_line(evidence), near_edge=near_edge)
-    return failed(diagnosis, seen, expected, cause, where=evidence.place("publish"), near_edge=near_edge)
+    return failed(why.diagnosis, seen, expected, why.text, where=evidence.place("publish"), near_edge=near_edge)
 
 
 def _steady(evidence: Evidence) -> tuple[float, float] | None:

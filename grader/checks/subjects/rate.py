@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.causes.crash import crash_of, end_seen, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
@@ -19,7 +20,6 @@ from grader.submission.constants import number as constant
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
-    from grader.submission.where import Where
 
 FEWEST = 3
 """With fewer commands there is at most one interval, which is not enough for a rate."""
@@ -156,39 +156,39 @@ def _wrong_mean(
         seen = f"{what.plural} arrived every {mean:.2f} s ({1.0 / mean:.1f} Hz)."
     if often is not None:
         return failed(often.diagnosis, seen, expected, often.text, where=often.where, near_edge=near_edge)
-    diagnosis, cause, where = _why_mean(evidence, what, mean)
-    if diagnosis == "timer-period" and abs(mean - params.rate_hz) <= SAME * params.rate_hz:
-        diagnosis, cause = (
-            "rate-for-period",
-            "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate.",
-        )
-    return failed(diagnosis, seen, expected, cause, where=where, near_edge=near_edge)
+    why = _why_mean(evidence, what, mean)
+    if why.diagnosis == "timer-period" and abs(mean - params.rate_hz) <= SAME * params.rate_hz:
+        text = "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate."
+        why = Cause("rate-for-period", text, why.where)
+    return failed(why.diagnosis, seen, expected, why.text, where=why.where, near_edge=near_edge)
 
 
-def _why_mean(evidence: Evidence, what: Subject, mean: float) -> tuple[str, str, Where | None]:
-    """Return the diagnosis, its cause in words, and the place: a timer or a sleep with that period, or neither."""
+def _why_mean(evidence: Evidence, what: Subject, mean: float) -> Cause:
+    """Return the cause: a timer or a sleep with that period, or neither."""
     code = evidence.code
     timers = [
         (call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in code.calls("create_timer")
     ]
     for timer, period in timers:
         if period is not None and abs(period - mean) <= SAME * mean:
-            return "timer-period", "The first argument of create_timer is the timer period in seconds.", timer.where
+            return Cause(
+                "timer-period", "The first argument of create_timer is the timer period in seconds.", timer.where
+            )
     for sleep in code.calls("sleep"):
         length = constant(sleep.argument(0, "secs"), sleep.module.names)
         if timers and length is not None:
             cause = "While a method sleeps, nothing else in the node runs, not even its timer."
-            return "sleep-in-callback", cause, sleep.where
+            return Cause("sleep-in-callback", cause, sleep.where)
         if length is not None and abs(length - mean) <= SAME * mean:
-            return "sleep-period", f"The node sleeps for {length:g} s between two {what.noun}s.", sleep.where
+            return Cause("sleep-period", f"The node sleeps for {length:g} s between two {what.noun}s.", sleep.where)
     if len(timers) > 1:
-        return (
+        return Cause(
             "several-timers",
             f"There are {len(timers)} timers, and each of them calls its own method.",
             timers[1][0].where,
         )
     where = timers[0][0].where if timers else evidence.place(what.call)
-    return "wrong-rate", f"The time between two calls of {what.call} sets the rate.", where
+    return Cause("wrong-rate", f"The time between two calls of {what.call} sets the rate.", where)
 
 
 def _uneven_cause(evidence: Evidence, what: Subject) -> str:

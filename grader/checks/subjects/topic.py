@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.causes.crash import crash_of, end_seen
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
@@ -76,28 +77,29 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     guess = nearest(params.topic, topics)
     shown = [guess] if guess is not None else topics
     seen = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but no turtle subscribes to that."
-    diagnosis, cause = _why_topic(params.topic, shown[0])
-    return failed(diagnosis, seen, _expected(params), cause, where=_publisher_line(evidence, shown[0]))
+    why = _why_topic(params.topic, shown[0])
+    return failed(why.diagnosis, seen, _expected(params), why.text, where=_publisher_line(evidence, shown[0]))
 
 
-def _why_topic(wanted: str, topic: str) -> tuple[str, str]:
-    """Return the diagnosis and the cause for a wrong topic name, as far as the two names show it."""
+def _why_topic(wanted: str, topic: str) -> Cause:
+    """Return the cause of a wrong topic name, as far as the two names show it."""
     last = wanted.rpartition("/")[2]
     if topic == f"/{last}":
-        return (
-            "topic-without-turtle",
-            "Each turtle has its own topic, so the topic name contains the name of the turtle.",
+        return Cause(
+            "topic-without-turtle", "Each turtle has its own topic, so the topic name contains the name of the turtle."
         )
     if topic.lower() == wanted.lower():
-        return "topic-capitals", "Upper and lower case matter."
+        return Cause("topic-capitals", "Upper and lower case matter.")
     if topic.endswith(wanted):
-        return (
+        return Cause(
             "topic-namespace",
             "The node adds its namespace to the name. A name that starts with a slash stays as it is.",
         )
     if topic.endswith(f"/{last}") and topic.count("/") == 2 and nearest(topic, [wanted]):
-        return "topic-other-turtle", "There is no turtle with that name."
-    return "wrong-topic", "The topic name is the second argument of create_publisher. Compare it letter by letter."
+        return Cause("topic-other-turtle", "There is no turtle with that name.")
+    return Cause(
+        "wrong-topic", "The topic name is the second argument of create_publisher. Compare it letter by letter."
+    )
 
 
 def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
@@ -128,21 +130,20 @@ def _silent(evidence: Evidence, params: Topic) -> Finding:
     if evidence.recording.end.by == "itself":
         why = why_ended(evidence)
         return failed(why.diagnosis, f"{seen} {end_seen(evidence)}", _expected(params), why.text, where=why.where)
-    cause, diagnosis, where = _why_silent(evidence)
-    return failed(diagnosis, f"{seen} {end_seen(evidence)}".rstrip(), _expected(params), cause, where=where)
+    why = _why_silent(evidence)
+    seen = f"{seen} {end_seen(evidence)}".rstrip()
+    return failed(why.diagnosis, seen, _expected(params), why.text, where=why.where)
 
 
-def _why_silent(evidence: Evidence) -> tuple[str, str, Where | None]:
+def _why_silent(evidence: Evidence) -> Cause:
     code = evidence.code
     if not code.calls("publish"):
-        return "publish is never called.", "no-publish", code.start
+        return Cause("no-publish", "publish is never called.", code.start)
     why = why_qos(evidence) or why_nothing(evidence, ("publish",))
     if why is not None:
-        return why.text, why.diagnosis, why.where or code.start
-    cause = (
-        "The line that publishes is never reached, or it runs only at the start, before a subscription is connected."
-    )
-    return cause, "never-publishes", evidence.place("publish")
+        return replace(why, where=why.where or code.start)
+    text = "The line that publishes is never reached, or it runs only at the start, before a subscription is connected."
+    return Cause("never-publishes", text, evidence.place("publish"))
 
 
 def _publisher_line(evidence: Evidence, topic: str) -> Where | None:

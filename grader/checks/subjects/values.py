@@ -7,6 +7,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
@@ -16,6 +17,7 @@ from grader.common.words import number as shown
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from grader.checks.diagnosis import Diagnosis
     from grader.evidence.evidence import Evidence
     from grader.submission.where import Where
     from grader.trial.recording import Command
@@ -71,13 +73,10 @@ def values(evidence: Evidence, params: Values) -> Finding:
     )
     alike = len({str(six) for six in wrong}) == 1
     seen = f"{amount} wrong: {actual}{'' if alike else ' in the first of them'}."
-    diagnosis, cause, field = _why(first, params.wanted, off)
-    if diagnosis == "wrong-value" and bad < total:
-        diagnosis, cause = (
-            "values-change",
-            "The other commands were right. Something changes the values while the node runs.",
-        )
-    return failed(diagnosis, seen, expected, cause, where=_line(evidence, field), near_edge=near)
+    why, field = _why(first, params.wanted, off)
+    if why.diagnosis == "wrong-value" and bad < total:
+        why = Cause("values-change", "The other commands were right. Something changes the values while the node runs.")
+    return failed(why.diagnosis, seen, expected, why.text, where=_line(evidence, field), near_edge=near)
 
 
 def _expected(wanted: Six) -> str:
@@ -107,20 +106,18 @@ def _same(value: float, other: float) -> bool:
     return math.isclose(value, other, rel_tol=1e-3)
 
 
-def _why(six: Six, wanted: Six, off: list[int]) -> tuple[str, str, str]:
-    """Return the diagnosis, its cause in words, and the field to look at."""
+def _why(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str]:
+    """Return the cause, and the field to look at."""
     first = FIELDS[off[0]]
     not_numbers = [FIELDS[index] for index in off if not math.isfinite(six[index])]
     if not_numbers:
-        return (
-            "not-a-number",
-            "Such a value comes from a calculation that has no result, such as infinity minus infinity.",
-            not_numbers[0],
-        )
+        return Cause(
+            "not-a-number", "Such a value comes from a calculation that has no result, such as infinity minus infinity."
+        ), not_numbers[0]
     if not any(six):
-        return "empty-twist", "All fields of a new Twist are 0. Set them before you publish it.", first
+        return Cause("empty-twist", "All fields of a new Twist are 0. Set them before you publish it."), first
     if any(wanted) and _same(six[0], wanted[5]) and _same(six[5], wanted[0]) and not _same(wanted[0], wanted[5]):
-        return "values-swapped", "The forward speed and the turning speed are swapped.", "linear.x"
+        return Cause("values-swapped", "The forward speed and the turning speed are swapped."), "linear.x"
     for index in off:
         if wanted[index] and not six[index]:
             other = [each for each in off if _same(six[each], wanted[index]) and not wanted[each]]
@@ -128,8 +125,8 @@ def _why(six: Six, wanted: Six, off: list[int]) -> tuple[str, str, str]:
                 cause = (
                     f"{FIELDS[other[0]]} has the value that belongs in {FIELDS[index]}: {_meaning(FIELDS[other[0]])}"
                 )
-                return "wrong-field", cause, FIELDS[other[0]]
-    return _scaled(six, wanted, off) or ("wrong-value", MEANING, first)
+                return Cause("wrong-field", cause), FIELDS[other[0]]
+    return _scaled(six, wanted, off) or (Cause("wrong-value", MEANING), first)
 
 
 MEANING = "linear.x is the forward speed, and angular.z is how fast the turtle turns to the left."
@@ -141,7 +138,7 @@ def _meaning(field: str) -> str:
     return "the turtle turns about the axis that points up, z."
 
 
-SCALES: tuple[tuple[str, str, Callable[[float], float]], ...] = (
+SCALES: tuple[tuple[Diagnosis, str, Callable[[float], float]], ...] = (
     ("wrong-sign", "The sign is wrong.", lambda value: -value),
     ("degrees", "Angles are in radians. This value looks like degrees.", math.degrees),
     (
@@ -152,12 +149,12 @@ SCALES: tuple[tuple[str, str, Callable[[float], float]], ...] = (
 )
 
 
-def _scaled(six: Six, wanted: Six, off: list[int]) -> tuple[str, str, str] | None:
+def _scaled(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str] | None:
     for index in off:
         for diagnosis, cause, scale in SCALES:
             fits = wanted[index] != 0.0 and _same(six[index], scale(wanted[index]))
             if fits and (diagnosis != "degrees" or FIELDS[index].startswith("angular")):
-                return diagnosis, cause, FIELDS[index]
+                return Cause(diagnosis, cause), FIELDS[index]
     return None
 
 

@@ -153,7 +153,7 @@ HOSTILE = st.text(alphabet=st.sampled_from("ab\x1b[]{}/\\\n\r\t\u202e\x9b\x07:re
 @given(HOSTILE, st.sampled_from([20, 60, 120]), st.booleans())
 def test_nothing_of_a_students_acts_on_the_terminal(text: str, width: int, terminal: bool) -> None:
     made = report("passed")
-    finding = failed("x", text, text, text, where=Where(text, 3))
+    finding = failed("crash", text, text, text, where=Where(text, 3))
     outcomes = (replace(made.outcomes[0], title=text, finding=finding), replace(made.outcomes[1], finding=passed(text)))
     shown = told(replace(made, outcomes=outcomes, submission=text), width=width, terminal=terminal)
     for own in ("\x1b[0m", "\x1b[1m", "\x1b[2m", "\x1b[32m", "\x1b[36m", "\x1b[1;31m", "\x1b[1;32m", "\x1b[2;32m"):
