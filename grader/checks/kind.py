@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from grader.checks.outcome import Finding
+    from grader.checks.requested import Requested
     from grader.evidence.evidence import Evidence
     from grader.evidence.stage import Stage
     from grader.exercise.kind_spec import Param
@@ -48,6 +49,12 @@ class Kind(Generic[P]):
     advice: bool = False
     early: Callable[[Evidence, P], Finding | None] | None = None
     """For a check that needs a build or a trial: the finding when the files alone show that it fails, else None."""
+    drives: bool = False
+    """Whether a node must command the turtle to pass."""
+    requested: Callable[[Evidence, P], Requested | None] | None = None
+    """What there is to draw of it; None where this submission leaves that open."""
+    radius_m: Callable[[P], float] | None = None
+    """The radius of the circle that must have room on either side of a start that is drawn."""
 
     def parameters(self) -> dict[str, Allowed]:
         """Return the name of every parameter with its allowed values."""
@@ -66,6 +73,14 @@ class Kind(Generic[P]):
         if self.stage == "source":
             return self.judge(evidence, values)
         return self.early(evidence, self.params(**values)) if self.early is not None else None
+
+    def request(self, evidence: Evidence, values: Mapping[str, Param]) -> Requested | None:
+        """What there is to draw of a check with these parameter values; None where there is nothing."""
+        return self.requested(evidence, self.params(**values)) if self.requested is not None else None
+
+    def radius(self, values: Mapping[str, Param]) -> float | None:
+        """The radius (m) of the circle that a drawn start must leave room for; None where there is none."""
+        return self.radius_m(self.params(**values)) if self.radius_m is not None else None
 
 
 def number(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 import grader
 from grader.checks.judge import in_words, judge, judge_early, near_edge, of_this_trial, wants_trial
+from grader.checks.kinds import KINDS
 from grader.checks.outcome import Status
 from grader.colcon import workspace
 from grader.common.refusal import refusal
@@ -45,6 +46,9 @@ ClockChoice = Literal["auto", "simulated", "wall"]
 
 WALL_TRIALS = 3
 """How often at most a wall-clock trial is made that failed while the machine was busy with other things."""
+
+USUAL_RADIUS_M = 2.0
+"""A drawn start leaves room for a circle of this radius where no check asks for another."""
 
 UNASKED_SEED = 1
 """What is drawn from where nobody asked for a seed, in scenarios that vary all the same."""
@@ -289,7 +293,8 @@ class _Grading:
     def _trial(self, evidence: Evidence, clock: ClockName, here: Ros, extra: Path | None) -> Trial:
         exercise, scenario = self.exercise, evidence.trial.scenario
         checks = [check for check in exercise.checks if check.trial == evidence.trial.id]
-        radius = max((float(c.params["radius_m"]) for c in checks if "radius_m" in c.params), default=2.0)  # type: ignore[arg-type]
+        radii = [KINDS[check.kind].radius(check.params) for check in checks]
+        radius = max((each for each in radii if each is not None), default=USUAL_RADIUS_M)
         seed = self.options.seed
         start = start_pose(UNASKED_SEED if seed is None and scenario.anywhere else seed, radius)
         plan = Plan(

@@ -10,11 +10,11 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.subjects.rate import Rate, measure
-from grader.checks.subjects.values import FIELDS, Values
+from grader.checks.subjects.rate import measure
+from grader.checks.subjects.values import FIELDS
 from grader.common.words import number
 from grader.evidence import observed
-from grader.report.requested import params_of
+from grader.report.requested import requested_interval, requested_values
 from grader.report.svg import coordinate, picture, points, tag, words
 
 if TYPE_CHECKING:
@@ -115,26 +115,24 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
     measured = measure(evidence)
     if not measured.intervals:
         return None
-    rate = params_of(evidence, "rate", Rate)
+    wanted = requested_interval(evidence)
     end_s = _end_s(evidence)
     pairs = zip(measured.begins, measured.intervals, strict=True)
     series: Series = tuple((begin + interval, interval) for begin, interval in pairs)
     stalled = len(measured.arrivals) - 1 - len(series)
-    allowed = (rate.min_interval_s, rate.max_interval_s) if rate else (0.0, math.inf)
-    wanted = 1.0 / rate.rate_hz if rate else measured.mean_s
-    top = max(1.25 * wanted, 1.1 * max(measured.intervals), 1.15 * rate.max_interval_s if rate else 0.0)
+    low_s, high_s = (wanted.low_s, wanted.high_s) if wanted else (0.0, math.inf)
+    middle_s = wanted.requested_s if wanted else measured.mean_s
+    top = max(1.25 * middle_s, 1.1 * max(measured.intervals), 1.15 * wanted.high_s if wanted else 0.0)
     area = Area(end_s, 0.0, max(top, 1e-3))
     low, high = min(measured.intervals), max(measured.intervals)
     caption = f"{len(series)} intervals, {_s(measured.mean_s)} s on average, from {_s(low)} to {_s(high)} s."
     if stalled:
         caption += f" {stalled} more were lengthened by the machine, not by the node, and are left out."
     drawn = ""
-    if rate:
-        caption += f" Asked for: {wanted:.2f} s; allowed: {allowed[0]:.2f} to {allowed[1]:.2f} s (the green band)."
-        drawn += _band(area, *allowed) + _dashes(area, wanted)
-    drawn += "".join(
-        _dot(area, t, value, good=allowed[0] <= value <= allowed[1]) for t, value in thin(series, end_s, bins)
-    )
+    if wanted:
+        caption += f" Asked for: {middle_s:.2f} s; allowed: {low_s:.2f} to {high_s:.2f} s (the green band)."
+        drawn += _band(area, low_s, high_s) + _dashes(area, middle_s)
+    drawn += "".join(_dot(area, t, value, good=low_s <= value <= high_s) for t, value in thin(series, end_s, bins))
     svg = picture(
         area.frame("seconds since the command before"),
         drawn,
@@ -160,8 +158,8 @@ def values(evidence: Evidence, name: str = "values", bins: int = BINS) -> Chart 
     commands = evidence.commands
     if not commands:
         return None
-    asked = params_of(evidence, "values", Values)
-    wanted = asked.wanted if asked else (0.0,) * 6
+    asked = requested_values(evidence)
+    wanted = asked or (0.0,) * 6
     end_s = _end_s(evidence)
     rows, captions = [], []
     shown = [i for i in range(6) if wanted[i] or i in (0, 5) or any(six(command)[i] for command in commands)]

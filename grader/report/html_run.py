@@ -12,6 +12,7 @@ from grader.common.words import a_list, count
 from grader.evidence import observed
 from grader.report import charts
 from grader.report.graph_drawing import GraphDrawing, draw_graph
+from grader.report.requested import must_drive
 from grader.report.scene import scene_of
 from grader.report.shapes import SIDE_M
 from grader.report.svg import LEFT, SIDE, TOP, scene_svg, sign
@@ -28,8 +29,6 @@ MOST_ROWS = 100
 """Of the table of commands."""
 MOST_STEPS = 1000
 """Of the commands that a player tells."""
-DRIVING = ("circle", "figure_eight", "goal", "own_circle", "own_rate", "rate", "square", "values")
-"""Kinds of check for which a node has to command the turtle."""
 
 
 @dataclass(frozen=True)
@@ -79,8 +78,6 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
     )
     recording = evidence.recording
     graph = draw_graph(recording, f"{key}-graph")
-    trial = evidence.trial.id
-    driving = any(spec.kind in DRIVING and spec.trial == trial for spec in evidence.exercise.checks)
     return Run(
         key=key,
         title=evidence.trial.executable if several else "",
@@ -92,7 +89,7 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
         charts=tuple(Picture(Markup(each.svg), each.caption) for each in found if each is not None),
         rows=tuple(_rows(evidence)),
         amount=len(evidence.commands),
-        idle=driving and not evidence.commands,
+        idle=must_drive(evidence) and not evidence.commands,
         graph=graph,
         graph_svg=Markup(graph.svg if graph else ""),
         data=_data(evidence, among),

@@ -1,101 +1,49 @@
-"""Asked: what an exercise asks the turtle to drive, as shapes on the canvas."""
+"""What the checks of a trial ask for, as shapes on the canvas and limits in the charts; each kind says so itself."""
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
-from grader.checks.subjects.eight import Eight
-from grader.checks.subjects.goal import Goal
-from grader.checks.subjects.own import OwnCircle, own_circle_params
-from grader.checks.subjects.path import CircleParams, expected_centre
-from grader.checks.subjects.square import SIDES, Square
-from grader.common.lazy import np
-from grader.evidence.track import RESTS_M, STRAIGHT_RAD
-from grader.report.shapes import Line, Point, Ring
-from grader.trial.recording import Pose
+from grader.checks.kinds import KINDS
+from grader.report.shapes import Line, Ring
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.checks.requested import Interval, Requested
     from grader.evidence.evidence import Evidence
 
-GOAL_M = 0.3
-"""The length of each of the four strokes that lead to a goal; the ring between them is what counts as arrived."""
 
-P = TypeVar("P")
-
-
-def asked_shapes(evidence: Evidence) -> tuple[tuple[Line | Ring, ...], str]:
-    """The shapes that this trial asks for, and in words which they are; nothing where the way is free."""
-    circle = asked_circle(evidence)
-    if circle is not None:
-        return (_ring(evidence.recording.start, circle),), f"asked for: radius {circle.radius_m:.2f} m"
-    eight = params_of(evidence, "figure_eight", Eight)
-    if eight is not None:
-        return _eight(evidence, eight), f"asked for: two lobes of {eight.radius_m:.2f} m"
-    square = params_of(evidence, "square", Square)
-    if square is not None:
-        return (Line("expected", _corners(evidence, square)),), f"asked for: sides of {square.side_m:.2f} m"
-    goal = params_of(evidence, "goal", Goal)
-    if goal is not None:
-        return _goal(goal), f"asked for: x={goal.x_m:g} y={goal.y_m:g}"
-    return (), ""
-
-
-def asked_circle(evidence: Evidence) -> CircleParams | None:
-    """The circle that the exercise asks for in this trial, the student's own where it does so; None without one."""
-    own = params_of(evidence, "own_circle", OwnCircle)
-    found = own_circle_params(evidence, own) if own is not None else None
-    return found if isinstance(found, CircleParams) else params_of(evidence, "circle", CircleParams)
-
-
-def params_of(evidence: Evidence, kind: str, params: type[P]) -> P | None:
-    """The parameters of the first check of this kind of the trial that is not hidden; None without one."""
+def requested(evidence: Evidence) -> Iterator[Requested]:
+    """What each check of this trial asks for that is not hidden, in the order of the exercise."""
     for spec in evidence.exercise.checks:
-        if spec.kind == kind and spec.trial == evidence.trial.id and not spec.hidden:
-            given: dict[str, Any] = dict(spec.params)
-            return params(**given)
-    return None
+        if spec.trial == evidence.trial.id and not spec.hidden:
+            found = KINDS[spec.kind].request(evidence, spec.params)
+            if found is not None:
+                yield found
 
 
-def _ring(start: Pose, params: CircleParams) -> Ring:
-    return Ring("expected", expected_centre(start, params), params.radius_m)
+def requested_path(evidence: Evidence) -> Requested | None:
+    """The first path that is asked for; None where the turtle may drive as it likes."""
+    return next((each for each in requested(evidence) if each.path), None)
 
 
-def _eight(evidence: Evidence, params: Eight) -> tuple[Ring, ...]:
-    begin = _begin(evidence)
-    senses = ("counter-clockwise", "clockwise")
-    return tuple(_ring(begin, CircleParams(radius_m=params.radius_m, sense=sense)) for sense in senses)
+def requested_interval(evidence: Evidence) -> Interval | None:
+    """The interval between two commands that is asked for first; None where it is free."""
+    return next((each.interval for each in requested(evidence) if each.interval is not None), None)
 
 
-def _corners(evidence: Evidence, params: Square) -> tuple[Point, ...]:
-    """The corners (m), the first one again at the end; the side that is free is the one that the turtle took."""
-    begin = _begin(evidence)
-    turn = evidence.track.turn[np.abs(evidence.track.turn) > STRAIGHT_RAD]
-    taken = -1.0 if len(turn) and turn[-1] < 0.0 else 1.0
-    side = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(params.sense, taken)
-    x, y, corners = begin.x, begin.y, [(begin.x, begin.y)]
-    for number in range(SIDES):
-        theta = begin.theta + side * number * math.pi / 2.0
-        x, y = x + params.side_m * math.cos(theta), y + params.side_m * math.sin(theta)
-        corners.append((x, y))
-    return tuple(corners)
+def requested_values(evidence: Evidence) -> tuple[float, ...] | None:
+    """The values of each command that are asked for first; None where they are free."""
+    return next((each.values for each in requested(evidence) if each.values is not None), None)
 
 
-def _goal(params: Goal) -> tuple[Line | Ring, ...]:
-    x, y = params.x_m, params.y_m
-    rays = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
-    near, far = params.tolerance_m, params.tolerance_m + GOAL_M
-    cross = [Line("expected", ((x + near * a, y + near * b), (x + far * a, y + far * b))) for a, b in rays]
-    return (Ring("expected", (x, y), params.tolerance_m), *cross)
+def shapes_of(path: Requested) -> tuple[Line | Ring, ...]:
+    """The path as shapes on the canvas."""
+    rings = tuple(Ring("expected", centre, radius) for centre, radius in path.circles)
+    return (*rings, *(Line("expected", points) for points in path.lines))
 
 
-def _begin(evidence: Evidence) -> Pose:
-    """Where the turtle starts, looking the way that it first drives: it may have turned before."""
-    start, track = evidence.recording.start, evidence.track
-    if not track.finite:
-        return start
-    moving = np.flatnonzero(track.steps > RESTS_M)
-    if not len(moving):
-        return start
-    at = moving[0]
-    return Pose(start.x, start.y, math.atan2(track.y[at + 1] - track.y[at], track.x[at + 1] - track.x[at]))
+def must_drive(evidence: Evidence) -> bool:
+    """Whether some check of this trial needs commands to the turtle."""
+    return any(KINDS[spec.kind].drives and spec.trial == evidence.trial.id for spec in evidence.exercise.checks)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.evidence import observed
-from grader.report.requested import asked_circle, asked_shapes
+from grader.report.requested import requested_path, shapes_of
 from grader.report.shapes import SIDE_M, Arrow, Line, Point, Ring, Role
 
 if TYPE_CHECKING:
@@ -49,11 +49,11 @@ def scene_of(evidence: Evidence) -> Scene:
     if len(points) > 1:
         shapes.append(Line("way", tuple(points)))
         legend.append(("way", "the turtle's way"))
-    asked, told = asked_shapes(evidence)
-    if asked:
-        shapes += asked
-        legend.append(("expected", told))
-    fitted = track.circle if moved and asked_circle(evidence) is not None else None
+    path = requested_path(evidence)
+    if path is not None:
+        shapes += shapes_of(path)
+        legend.append(("expected", f"asked for: {path.path}"))
+    fitted = track.circle if moved and path is not None and path.fits else None
     if fitted is not None and fitted.radius <= SIDE_M:
         shapes.append(Ring("fitted", (fitted.x, fitted.y), fitted.radius))
         legend.append(("fitted", f"best fit: radius {fitted.radius:.2f} m"))

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from grader.checks.causes.too_soon import too_soon
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
-from grader.checks.subjects.path import not_driven
+from grader.checks.requested import Requested, first_heading
+from grader.checks.subjects.path import CircleParams, expected_centre, not_driven
 from grader.checks.tolerance import Band, unless_starved
 from grader.common.lazy import np
 from grader.evidence.circle_fit import Circle, fit_circle
@@ -142,6 +143,15 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
     return None, near
 
 
+def requested_eight(evidence: Evidence, params: Eight) -> Requested:
+    """A circle on either side of where the turtle first drives."""
+    begin = first_heading(evidence)
+    senses = ("counter-clockwise", "clockwise")
+    sides = [CircleParams(radius_m=params.radius_m, sense=sense) for sense in senses]
+    circles = tuple((expected_centre(begin, side), params.radius_m) for side in sides)
+    return Requested(f"two lobes of {params.radius_m:.2f} m", circles)
+
+
 EIGHT = Kind(
     "figure_eight",
     "trial",
@@ -149,4 +159,7 @@ EIGHT = Kind(
     Eight,
     eight,
     about="The turtle drives two round lobes of the same size, one to each side, that meet where it started.",
+    drives=True,
+    requested=requested_eight,
+    radius_m=lambda params: params.radius_m,
 )

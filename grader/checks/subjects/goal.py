@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
+from grader.checks.requested import Requested
 from grader.checks.subjects.path import MOVED_M, not_driven
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 REST_S = 0.5
 """The turtle must stand still for this long at the end."""
 REST_M = 0.02
+STROKE_M = 0.3
+"""The length of each of the four strokes that lead to a goal in a drawing."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,6 +67,15 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     return passed(f"The turtle drove to its goal, {start:.1f} m away, and stopped.", near_edge=near)
 
 
+def requested_goal(_: Evidence, params: Goal) -> Requested:
+    """A ring around what counts as arrived, and four strokes that lead to it."""
+    x, y = params.x_m, params.y_m
+    near, far = params.tolerance_m, params.tolerance_m + STROKE_M
+    rays = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
+    strokes = tuple(((x + near * a, y + near * b), (x + far * a, y + far * b)) for a, b in rays)
+    return Requested(f"x={x:g} y={y:g}", (((x, y), params.tolerance_m),), strokes)
+
+
 GOAL = Kind(
     "goal",
     "trial",
@@ -71,4 +83,6 @@ GOAL = Kind(
     Goal,
     goal,
     about="The turtle drives to the goal by commands and stands still there at the end.",
+    drives=True,
+    requested=requested_goal,
 )

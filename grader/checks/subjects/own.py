@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 from grader.checks.kind import Kind, NoParams, number
 from grader.checks.outcome import Finding, failed, passed
-from grader.checks.subjects.path import CircleParams, circle
+from grader.checks.subjects.path import CircleParams, circle, requested_circle
 from grader.checks.subjects.rate import Rate, rate
 from grader.common.words import shorten
 from grader.exercise.own_numbers import FILE, OwnNumbers, draw_numbers, from_toml, normal_id
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from grader.checks.requested import Requested
     from grader.evidence.evidence import Evidence
 
 EARLY, LATE = 0.8, 1.3
@@ -111,6 +112,12 @@ def own_rate(evidence: Evidence, params: OwnRate) -> Finding:
     return rate(evidence, wanted)
 
 
+def _requested(evidence: Evidence, params: OwnCircle) -> Requested | None:
+    """The student's own circle; none where the numbers cannot be read."""
+    own = own_circle_params(evidence, params)
+    return requested_circle(evidence, own) if isinstance(own, CircleParams) else None
+
+
 NUMBERS = Kind(
     "own_numbers",
     "source",
@@ -126,6 +133,8 @@ CIRCLE = Kind(
     OwnCircle,
     own_circle,
     about="Like the kind `circle`, but radius and direction are the student's own numbers.",
+    drives=True,
+    requested=_requested,
 )
 RATE = Kind(
     "own_rate",
@@ -134,4 +143,5 @@ RATE = Kind(
     OwnRate,
     own_rate,
     about="Like the kind `rate`, but the rate is the student's own number.",
+    drives=True,
 )

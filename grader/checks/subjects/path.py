@@ -10,6 +10,7 @@ from grader.checks.causes.cause import Cause
 from grader.checks.causes.crash import ended_early
 from grader.checks.kind import Kind, NoParams, choice, number
 from grader.checks.outcome import Finding, Status, failed, passed
+from grader.checks.requested import Requested
 from grader.checks.tolerance import Band
 from grader.common.words import count, shorten
 from grader.common.words import number as shown
@@ -230,6 +231,12 @@ def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     return passed("The turtle did not touch a wall.")
 
 
+def requested_circle(evidence: Evidence, params: CircleParams) -> Requested:
+    """The circle, where the turtle's start puts it."""
+    centre = expected_centre(evidence.recording.start, params)
+    return Requested(f"radius {params.radius_m:.2f} m", ((centre, params.radius_m),), fits=True)
+
+
 CIRCLE = Kind(
     "circle",
     "trial",
@@ -237,6 +244,9 @@ CIRCLE = Kind(
     CircleParams,
     circle,
     about="The turtle drives a circle by commands: round, in the right direction, of the right size and place.",
+    drives=True,
+    requested=requested_circle,
+    radius_m=lambda params: params.radius_m,
 )
 NO_WALL = Kind(
     "no_wall", "trial", "The turtle does not touch a wall", NoParams, no_wall, about="The turtle never touches a wall."

@@ -12,6 +12,7 @@ from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_rate import why_often, why_timers_grow
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, Status, failed, passed
+from grader.checks.requested import Interval, Requested
 from grader.checks.tolerance import Band
 from grader.common.words import count
 from grader.evidence import observed as seen_in
@@ -219,6 +220,11 @@ def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: st
     )
 
 
+def requested_rate(_: Evidence, params: Rate) -> Requested:
+    """The interval between two commands."""
+    return Requested(interval=Interval(1.0 / params.rate_hz, params.min_interval_s, params.max_interval_s))
+
+
 RATE = Kind(
     "rate",
     "trial",
@@ -226,4 +232,6 @@ RATE = Kind(
     Rate,
     rate,
     about="Commands arrive at the given rate: on average, each one, and from soon after the start until the end.",
+    drives=True,
+    requested=requested_rate,
 )

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 from grader.checks.causes.too_soon import too_soon
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
+from grader.checks.requested import Requested, first_heading
 from grader.checks.subjects.path import not_driven
 from grader.checks.tolerance import Band, unless_starved
 from grader.common.lazy import np
 from grader.common.words import count
-from grader.evidence.track import RESTS_M
+from grader.evidence.track import RESTS_M, STRAIGHT_RAD
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -130,6 +131,20 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
     return passed(seen, near_edge=near or closed.near(gap))
 
 
+def requested_square(evidence: Evidence, params: Square) -> Requested:
+    """The corners, the first one again at the end; the side that is free is the one that the turtle took."""
+    begin = first_heading(evidence)
+    turn = evidence.track.turn[np.abs(evidence.track.turn) > STRAIGHT_RAD]
+    taken = -1.0 if len(turn) and turn[-1] < 0.0 else 1.0
+    side = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(params.sense, taken)
+    x, y, corners = begin.x, begin.y, [(begin.x, begin.y)]
+    for number_ in range(SIDES):
+        theta = begin.theta + side * number_ * math.pi / 2.0
+        x, y = x + params.side_m * math.cos(theta), y + params.side_m * math.sin(theta)
+        corners.append((x, y))
+    return Requested(f"sides of {params.side_m:.2f} m", lines=(tuple(corners),))
+
+
 SQUARE = Kind(
     "square",
     "trial",
@@ -137,4 +152,6 @@ SQUARE = Kind(
     Square,
     square,
     about="The turtle drives four straight sides with four corners of 90 degrees, and is back at its start.",
+    drives=True,
+    requested=requested_square,
 )

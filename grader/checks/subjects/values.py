@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from grader.checks.causes.cause import Cause
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
+from grader.checks.requested import Requested
 from grader.checks.tolerance import Band
 from grader.common.words import a_list
 from grader.common.words import number as shown
@@ -158,6 +159,11 @@ def _scaled(six: Six, wanted: Six, off: list[int]) -> tuple[Cause, str] | None:
     return None
 
 
+def requested_values(_: Evidence, params: Values) -> Requested:
+    """The six values of each command."""
+    return Requested(values=params.wanted)
+
+
 VALUES = Kind(
     "values",
     "trial",
@@ -165,4 +171,6 @@ VALUES = Kind(
     Values,
     values,
     about="Each command has the given values; a value that is not given must be 0.",
+    drives=True,
+    requested=requested_values,
 )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.exercises import find_exercise
-from grader.report.requested import asked_shapes
+from grader.report.requested import requested_path, shapes_of
 from grader.report.shapes import Line, Ring
 from grader.tests.checks.made import every, evidence, legs, recording
 from grader.trial.recording import Pose
@@ -28,6 +28,11 @@ def in_challenge(trial: str, way: list[Timed], start: Pose = NORTH) -> Evidence:
     return evidence(recording(way, start), exercise=find_exercise("07-challenges"), trial_id=trial)
 
 
+def asked_shapes(given: Evidence) -> tuple[tuple[Line | Ring, ...], str]:
+    path = requested_path(given)
+    return ((), "") if path is None else (shapes_of(path), path.path)
+
+
 def points(shape: Line | Ring) -> list[tuple[float, float]]:
     assert isinstance(shape, Line)
     return [(round(x, 6), round(y, 6)) for x, y in shape.points]
@@ -37,7 +42,7 @@ def test_the_lobes_of_an_eight_lie_left_and_right_of_the_start() -> None:
     shapes, told = asked_shapes(in_challenge("eight", AHEAD))
     centres = [number for ring in shapes if isinstance(ring, Ring) for number in ring.centre]
     assert centres == pytest.approx([3.0, 5.0, 5.0, 5.0])
-    assert told == "asked for: two lobes of 1.00 m"
+    assert told == "two lobes of 1.00 m"
 
 
 def test_a_square_lies_on_the_side_that_the_turtle_took() -> None:
@@ -57,7 +62,7 @@ def test_whoever_turns_first_is_asked_for_a_square_that_is_turned_too() -> None:
 def test_a_goal_is_a_ring_as_large_as_its_tolerance() -> None:
     shapes, told = asked_shapes(in_challenge("goal", AHEAD))
     assert shapes[0] == Ring("expected", (8.5, 2.5), 0.1)
-    assert told == "asked for: x=8.5 y=2.5"
+    assert told == "x=8.5 y=2.5"
 
 
 @pytest.mark.parametrize("trial", ["eight", "square", "goal"])

@@ -1,0 +1,20 @@
+"""What belongs to a kind is told by the kind."""
+
+from __future__ import annotations
+
+from grader.checks.exercises import find_exercise
+from grader.checks.kinds import KINDS
+
+
+def test_a_drawn_start_leaves_room_for_the_circle_of_the_check() -> None:
+    asked = {spec.id: KINDS[spec.kind].radius(spec.params) for spec in find_exercise("07-challenges").checks}
+    # The own circle is drawn from the student's id, and no larger than what a start leaves room for anyway.
+    assert {id_: radius for id_, radius in asked.items() if radius is not None} == {"eight": 1.0}
+    circle = next(spec for spec in find_exercise("03").checks if spec.id == "circle")
+    assert KINDS[circle.kind].radius({**circle.params, "radius_m": 3.25}) == 3.25
+
+
+def test_what_is_drawn_of_a_kind_is_what_a_node_must_drive_for() -> None:
+    drawn = {name for name, kind in KINDS.items() if kind.requested is not None}
+    assert drawn == {"circle", "own_circle", "figure_eight", "square", "goal", "rate", "values"}
+    assert {name for name, kind in KINDS.items() if kind.drives} == drawn | {"own_rate"}
