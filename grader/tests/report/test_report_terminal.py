@@ -69,6 +69,26 @@ def test_what_ran_without_a_sandbox_is_told_in_one_line() -> None:
     assert "sandbox" not in told(report("passed"))
 
 
+def worth(points: float, *, others: tuple[float, ...] = (100.0,)) -> Report:
+    """A report with one failed check that is worth so many points, beside passed ones."""
+    first = report("passed").outcomes[0]
+    good = [replace(first, id=str(place), points=each, max=each) for place, each in enumerate(others)]
+    bad = replace(first, id="bad", points=0.0, max=points, finding=failed("wrong-rate", "Too slow.", "Faster."))
+    return report("passed", outcomes=(*good, bad))
+
+
+@pytest.mark.parametrize(
+    ("made", "verdict", "exit_code"),
+    [
+        (worth(0.0), "Passed: 100 of 100 points, with 1 warning: see what did not pass above.", 0),
+        (worth(5.0), "Not passed yet: 100 of 105 points, 1 check failed.", 1),
+        (worth(0.0, others=(0.0,)), "Not passed yet: 0 of 0 points, 1 check failed.", 1),
+    ],
+)
+def test_a_check_that_is_worth_nothing_is_a_warning(made: Report, verdict: str, exit_code: int) -> None:
+    assert (told(made).splitlines()[-1], made.exit_code) == (verdict, exit_code)
+
+
 @pytest.mark.parametrize(
     ("status", "verdict"),
     [
