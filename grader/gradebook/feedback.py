@@ -20,22 +20,49 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 Resources = dict[str, Any]
-BEGIN = ClearHiddenTests.begin_test_delimeter.default_value
 
 
 class HideHiddenTests(ClearHiddenTests):  # type: ignore[misc, unused-ignore]
-    """Takes hidden tests out of the feedback: their lines, and what they printed or raised, which tells as much."""
+    """Takes hidden tests out of the feedback: their lines, and all that a kernel that has seen them has said.
+
+    A kernel runs a student's code. It can keep the source of a hidden test, and print it below any cell: a later one,
+    an instructor's by a hook, an earlier one by an update of its display, or in a widget. So where a notebook has
+    hidden tests, no output of its kernel is shown.
+    """
+
+    def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
+        """Hide what is hidden in the notebook."""
+        if any(self._is_hidden(cell) for cell in nb.cells):
+            nb.metadata.pop("widgets", None)
+            for cell in nb.cells:
+                if cell.cell_type == "code":
+                    cell.outputs = [_text(_points(cell))] if _about(cell).get("grade") else []
+                    cell.execution_count = None
+        return super().preprocess(nb, resources)  # type: ignore[no-any-return, unused-ignore]
 
     def preprocess_cell(
         self, cell: NotebookNode, resources: Resources, cell_index: int
     ) -> tuple[NotebookNode, Resources]:
         """Hide what is hidden in one cell."""
-        hidden = BEGIN in cell.source
+        if not self._is_hidden(cell):
+            return cell, resources  # a student's own words may be whatever they are
         cell, resources = super().preprocess_cell(cell, resources, cell_index)
-        if hidden and cell.cell_type == "code":
-            about = cell.metadata.nbgrader
-            cell.outputs = [_text(f"Hidden check: {about['score']:g} of {about['points']:g} points")]
+        if cell.cell_type == "code":
+            cell.outputs = [_text(f"Hidden check: {_points(cell)}")]
         return cell, resources
+
+    def _is_hidden(self, cell: NotebookNode) -> bool:
+        return bool(_about(cell).get("grade")) and self.begin_test_delimeter in cell.source
+
+
+def _about(cell: NotebookNode) -> dict[str, Any]:
+    about: dict[str, Any] = cell.get("metadata", {}).get("nbgrader", {})
+    return about
+
+
+def _points(cell: NotebookNode) -> str:
+    about = _about(cell)
+    return f"{about.get('score') or 0:g} of {about['points']:g} points"
 
 
 class GraderReasons(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]

@@ -14,7 +14,7 @@ import pytest
 
 from grader.exercise.model import catalogue, course_folder
 from grader.notebook.kernel import install
-from grader.tests.gradebook.term import STEP, Term
+from grader.tests.gradebook.term import STEP, Term, with_cell
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,6 +33,16 @@ HIDDEN: dict[str, Any] = {
     "outputs": [],
     "source": "1\n### BEGIN HIDDEN TESTS\nassert 'a secret' == 'known'\n### END HIDDEN TESTS",
 }  # fmt: skip
+
+
+SPIES = """\
+def spy(result):
+    source = result.info.raw_cell
+    if "BEGIN HIDDEN" in source:
+        print("FO" + "UND", source)
+
+get_ipython().events.register("post_run_cell", spy)
+"""
 
 
 def same(one: Path, other: Path) -> bool:
@@ -81,11 +91,14 @@ def test_hidden_tests_are_neither_released_nor_told_in_feedback(tmp_path: Path) 
     source.write_text(json.dumps(notebook))
     term.generate()
     assert "secret" not in (term.root / "exercises" / STEP / f"{STEP}.ipynb").read_text()
-    term.hand_in("somebody", lambda _: None)
+    term.hand_in("somebody", lambda folder: with_cell(folder, SPIES))
     term.grade()
     assert "a secret" in (term.root / "class/autograded/somebody" / STEP / f"{STEP}.ipynb").read_text()
+    autograded = (term.root / "class/autograded/somebody" / STEP / f"{STEP}.ipynb").read_text()
+    assert "FOUND " in autograded
     feedback = term.feedback("somebody")
     assert "secret" not in feedback
+    assert "FOUND " not in feedback
     assert "Hidden check: 0 of 1 points" in feedback
 
 
