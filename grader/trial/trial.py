@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from grader.trial.recording import ClockName, Pose, Recording
 
 _FOLDER = Path(grader.__file__).parent
+CONDUCTORS_ROOMS = ("common", "ros", "sandbox", "trial", "turtlesim")
+"""What grader.trial.conductor imports from, beside the package's own modules."""
 MOST_MEMORY = 3 * 1024 * bubblewrap.MIB
 """Address space of the conductor (bytes)."""
 
@@ -72,7 +74,7 @@ class OverwhelmedError(Exception):
 def compile_conductor() -> None:
     """Compile what the conductor imports, where that is out of date: in its room it cannot keep what it compiles."""
     if not sys.dont_write_bytecode:
-        for folder in (_FOLDER, _FOLDER / "trial", _FOLDER / "simulator"):
+        for folder in (_FOLDER, *(_FOLDER / room for room in CONDUCTORS_ROOMS)):
             compileall.compile_dir(folder, maxlevels=0, quiet=2)
 
 

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 from grader.ros.installation import find_ros
 from grader.tests.waiting import until, until_gone
 from grader.trial.recording import Pose
-from grader.trial.trial import Plan, Trial, compile_conductor
+from grader.trial.trial import CONDUCTORS_ROOMS, Plan, Trial, compile_conductor
 
 if TYPE_CHECKING:
-    import pytest
+    import grimp
+import pytest
 
 
 def test_the_end_of_a_trial_is_the_end_of_a_child_that_does_not_die_with_its_parent(
@@ -49,7 +50,7 @@ def test_a_trial_that_is_ready_may_wait_for_its_turn_as_long_as_it_takes(monkeyp
 
 
 def test_what_the_conductor_imports_is_compiled_when_it_starts(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    modules = [tmp_path / name for name in ("ros.py", "trial/rest.py", "simulator/node.py")]
+    modules = [tmp_path / name for name in ("errors.py", *(f"{room}/a.py" for room in CONDUCTORS_ROOMS))]
     for module in modules:
         module.parent.mkdir(exist_ok=True)
         module.write_text("pass\n")
@@ -62,3 +63,9 @@ def test_what_the_conductor_imports_is_compiled_when_it_starts(monkeypatch: pyte
             assert all(Path(cache_from_source(str(module))).is_file() for module in modules)
     finally:
         compile_conductor.cache_clear()
+
+
+def test_the_rooms_that_are_compiled_are_those_that_the_conductor_imports_from() -> None:
+    graph = grimp.build_graph("grader", cache_dir=None, exclude_type_checking_imports=True)
+    modules = graph.find_upstream_modules("grader.trial.conductor")
+    assert {module.split(".")[1] for module in modules if module.count(".") > 1} == set(CONDUCTORS_ROOMS)
