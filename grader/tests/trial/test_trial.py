@@ -7,14 +7,15 @@ from pathlib import Path
 from threading import Timer
 from typing import TYPE_CHECKING
 
+import grimp
+
 from grader.ros.installation import find_ros
 from grader.tests.waiting import until, until_gone
 from grader.trial.recording import Pose
 from grader.trial.trial import CONDUCTORS_ROOMS, Plan, Trial, compile_conductor
 
 if TYPE_CHECKING:
-    import grimp
-import pytest
+    import pytest
 
 
 def test_the_end_of_a_trial_is_the_end_of_a_child_that_does_not_die_with_its_parent(
