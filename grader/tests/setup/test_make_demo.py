@@ -25,5 +25,6 @@ def test_a_learner_begins(tmp_path: Path) -> None:
     assert "Passed: 100 of 100 points." in course.run("source .venv/bin/activate && grader check")
     ros = f"cd {shlex.quote(str(course.folder))} && source .venv/bin/activate && source <(grader env) && cd ~/ros2_ws"
     course.run(f"{ros} && colcon build")
-    run = "ros2 run my_robot_controller test_node 2>&1 | grep --max-count 1 'Hello 0'"
+    node = "exec 3< <(exec ros2 run my_robot_controller test_node 2>&1)"
+    run = f"{node} && grep --max-count 1 'Hello 0' <&3 && kill $!"
     assert "[first_node]: Hello 0" in course.run(f"{ros} && source install/setup.bash && {run}")
