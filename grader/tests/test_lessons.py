@@ -125,7 +125,7 @@ def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
     shell.sendline(f"{start} &")
     shell.sendline("ros2 topic echo /turtle1/cmd_vel geometry_msgs/msg/Twist --once")
     shell.expect_exact("x: 1.5")
-    shell.sendline("until rqt_graph --text | grep '(/draw_circle) .*cmd_vel'; do :; done; kill -INT $!; exit")
+    shell.sendline("until rqt_graph --text | grep '(/draw_circle) .*cmd_vel'; do :; done; kill -INT -- -$!; wait; exit")
     shell.expect_exact("(/draw_circle) ───▶ [/turtle1/cmd_vel]")
     shell.expect(pexpect.EOF)
     shell.close()

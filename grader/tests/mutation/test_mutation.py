@@ -119,7 +119,7 @@ def _noticed(recorded: list[Recorded], mutants: Sequence[Mutant]) -> dict[str, b
 
 
 def test_a_case_notices_that_its_diagnosis_was_taken_out(recorded: list[Recorded]) -> None:
-    found = noticed(recorded, 'return "no-slash"')
+    found = noticed(recorded, 'return Cause("no-slash"')
     assert all(found.values()), found
 
 
