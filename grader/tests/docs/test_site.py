@@ -31,15 +31,12 @@ def build(source: Path, to: Path) -> subprocess.CompletedProcess[str]:
 def source(tmp_path: Path) -> Path:
     """What the site is made of, where it may be changed."""
     copy = tmp_path / "source"
-    left_out = shutil.ignore_patterns("__pycache__", "tests")
+    left_out = shutil.ignore_patterns("__pycache__", "bases", "cases", "golden", "hostile", "mistakes", "unusual")
     for name in ("docs", "course", "grader"):
         shutil.copytree(ROOT / name, copy / name, ignore=left_out)
     for path in ROOT.iterdir():
         if path.is_file():
             shutil.copy(path, copy / path.name)
-    (copy / "grader/tests").mkdir()
-    shutil.copy(ROOT / "grader/tests/case.py", copy / "grader/tests/case.py")
-    shutil.copytree(ROOT / "grader/tests/checks", copy / "grader/tests/checks", ignore=left_out)
     return copy
 
 
