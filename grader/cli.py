@@ -174,7 +174,7 @@ def main() -> None:
         from typer.completion import completion_init  # type: ignore[attr-defined]
 
         completion_init()
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's threads, as in ros.environment
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's threads, as in grader.ros.installation
     try:
         app()
     except GraderError as error:

@@ -144,7 +144,7 @@ def lone_cell(
 
 def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> list[str]:
     """`argv` under resource limits: all that can be had without bubblewrap, and part of what a cell has."""
-    # Outside of a cell the kernel counts all processes of the user; watch.py counts those of `argv`.
+    # Outside of a cell the kernel counts all processes of the user; usage.py counts those of `argv`.
     processes = limits.processes if in_cell else limits.processes + MOST_OTHERS
     return [
         "prlimit",
