@@ -1,0 +1,267 @@
+"""How often a report names the true cause, and how often it says something false: measured on made mistakes.
+
+    python -m grader.benchmarks.causes [--count 200] [--seed 1] [--only OPERATOR ...] [--keep FOLDER]
+
+Makes right packages wrong by the operators of grader/benchmarks/operators, two at once in a third of them, and judges
+them in simulated time. The right packages are the solutions and those cases of tests/unusual that follow ROS time. A
+package that passes all the same was not made wrong, and is left out. Printed are, of the others:
+
+- first: the first failed check names the cause, at a line that must change;
+- at all: some failed check does;
+- false: a failed check names a cause that is none. A diagnosis that only repeats what was observed is none of them.
+
+What is missed is listed. `--keep` stores the recordings, and `--again` judges them anew without running anything.
+"""
+
+from __future__ import annotations
+
+import argparse
+import pickle
+import random
+import re
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.benchmarks.operators import (
+    package_xml,
+    places,
+    setup_py,
+    source_calls,
+    source_names,
+    source_syntax,
+    source_values,
+)
+from grader.benchmarks.operators.operator import Package
+from grader.checks.exercises import find_exercise
+from grader.checks.judge import judge
+from grader.checks.outcome import Status
+from grader.evidence.evidence import Evidence
+from grader.grading.grade import Options, grade
+from grader.sandbox import bubblewrap
+from grader.submission.package import open_submission
+from grader.tests.case import CASES, Case, make_submission, read_cases
+from grader.tests.grading_here import Builds
+from grader.trial.clues import wall_clues
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from grader.benchmarks.operators.operator import Change, Operator
+    from grader.checks.outcome import Outcome
+
+OPERATORS: tuple[Operator, ...] = (
+    *source_names.OPERATORS,
+    *source_calls.OPERATORS,
+    *source_values.OPERATORS,
+    *source_syntax.OPERATORS,
+    *setup_py.OPERATORS,
+    *package_xml.OPERATORS,
+    *places.OPERATORS,
+)
+STEPS = ("01-first-node", "03-circle-publisher", "04-package-files", "06-pose-subscriber")
+"""The solutions that are made wrong; each stands for as many packages as there are unusual ones together."""
+TWO_AT_ONCE = 1 / 3
+OBSERVATIONS = frozenset(
+    {
+        "ended-early", "ends-at-once", "wrong-rate", "uneven-rate", "late-start", "stopped-early", "published-once",
+        "logged-once", "too-few-commands", "too-few-log-lines", "no-commands", "not-moving", "turns-on-the-spot",
+        "straight-line", "wall", "wrong-direction", "wrong-radius", "wrong-centre", "polygon", "not-round", "too-short",
+        "stops-and-goes",
+        "build-failed", "wrong-position", "wrong-distance",
+    }
+)  # fmt: skip
+"""Diagnoses that repeat what was observed, and claim no cause."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """A package made wrong: of which right one, by which operators, and where."""
+
+    name: str
+    exercise: str
+    files: Mapping[str, str]
+    mistakes: tuple[tuple[Operator, Change], ...]
+
+    @property
+    def operators(self) -> str:
+        """The names of the operators."""
+        return " + ".join(operator.name for operator, _ in self.mistakes)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A made mistake with the outcomes of its checks, and the seconds that took."""
+
+    made: Made
+    outcomes: tuple[Outcome, ...]
+    seconds: float
+
+    @property
+    def failed(self) -> list[Outcome]:
+        """The failed checks in the order of the report, advice left out."""
+        return [each for each in self.outcomes if each.status is Status.FAILED and not each.advice]
+
+    @property
+    def first(self) -> bool:
+        """Whether the first failed check names the cause."""
+        return names(self.failed[0], self.made)
+
+    @property
+    def at_all(self) -> bool:
+        """Whether some failed check does."""
+        return any(names(outcome, self.made) for outcome in self.failed)
+
+    @property
+    def false(self) -> list[Outcome]:
+        """The failed checks that say something false."""
+        return [outcome for outcome in self.failed if is_false(outcome, self.made)]
+
+
+def names(outcome: Outcome, made: Made) -> bool:
+    """Whether an outcome names one of the mistakes, at a line that must change."""
+    finding = outcome.finding
+    for operator, change in made.mistakes:
+        where = finding.where
+        here = where is not None and where.file == change.file and (not change.lines or where.line in change.lines)
+        if finding.diagnosis in operator.says and here:
+            return True
+    return False
+
+
+def is_false(outcome: Outcome, made: Made) -> bool:
+    """Whether an outcome claims a cause that is none of the mistakes, or says what is false about one of them."""
+    finding = outcome.finding
+    text = f"{finding.seen} {finding.cause}"
+    if any(operator.never and re.search(operator.never, text) for operator, _ in made.mistakes):
+        return True
+    says = {diagnosis for operator, _ in made.mistakes for diagnosis in operator.says | operator.also}
+    return finding.diagnosis not in says | OBSERVATIONS
+
+
+def bases(folder: Path) -> list[tuple[str, Package]]:
+    """The right packages, each with its exercise: (exercise, package)."""
+    unusual = [case for case in read_cases(CASES.parent / "unusual") if case.result == "passed"]
+    found = [_read(case, folder) for case in unusual if case.exercise and not case.exercise.startswith(("02", "07"))]
+    right = [each for each in found if each is not None]
+    for step in STEPS:
+        own = _read(Case(name=step, why="", result="passed", base=step), folder)
+        assert own is not None
+        right += [own] * max(1, len(right) // len(STEPS))
+    return right
+
+
+def _read(case: Case, folder: Path) -> tuple[str, Package] | None:
+    """The package of a case; None where it follows wall time or is not all text."""
+    submission = open_submission(make_submission(case, folder / case.name))
+    exercise = find_exercise(case.exercise or case.base)
+    evidence = Evidence(exercise, submission)
+    source = evidence.node_file
+    entry = evidence.entry_point()
+    if source is None or wall_clues(submission.files, entry.partition(":")[0].strip() if entry else None):
+        return None
+    try:
+        return exercise.id, Package({path: data.decode() for path, data in submission.files.items()}, source)
+    except UnicodeDecodeError:
+        return None
+
+
+def make(right: Sequence[tuple[str, Package]], number: int, seed: int, operators: Sequence[Operator]) -> Made:
+    """The wrong package with this number: the same for the same seed."""
+    draw = random.Random(f"{seed} {number}")
+    amount = 2 if draw.random() < TWO_AT_ONCE and len(operators) > 1 else 1
+    while True:
+        exercise, package = draw.choice(right)
+        mistakes: list[tuple[Operator, Change]] = []
+        for operator in draw.sample(operators, min(amount, len(operators))):
+            seen = Package(mistakes[-1][1].files if mistakes else package.files, package.source)
+            change = operator.make(seen, draw) if seen.source in seen.files else None
+            if change is not None:
+                mistakes.append((operator, change))
+        if len(mistakes) == amount:
+            return Made(f"{number:04}", exercise, mistakes[-1][1].files, tuple(mistakes))
+
+
+def judged(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judged:
+    """Judge a wrong package in simulated time."""
+    package = folder / made.name / "my_robot_controller"
+    for path, text in made.files.items():
+        target = package / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(text, "utf-8")
+    begun = time.monotonic()
+    options = Options(bubblewrap.usable(), "simulated", trials_at_once=1)
+    graded = grade(find_exercise(made.exercise), open_submission(folder / made.name), options, build=builds)
+    seconds = time.monotonic() - begun
+    if keep is not None:
+        (keep / f"{made.name}.pickle").write_bytes(pickle.dumps(graded.evidence))
+    return Judged(made, graded.report.outcomes, seconds)
+
+
+def again(made: Made, keep: Path) -> Judged:
+    """Judge a stored recording anew."""
+    evidence: Evidence = pickle.loads((keep / f"{made.name}.pickle").read_bytes())
+    begun = time.monotonic()
+    return Judged(made, judge(evidence), time.monotonic() - begun)
+
+
+def tell(all_: Iterable[Judged]) -> None:
+    """Print what was missed, and the figures."""
+    every = list(all_)
+    wrong = [each for each in every if each.failed]
+    for each in wrong:
+        marks = [
+            mark for mark, bad in (("first", not each.first), ("at all", not each.at_all), ("FALSE", each.false)) if bad
+        ]
+        if marks:
+            print(f"\n{each.made.name} {each.made.exercise} {each.made.operators}: {', '.join(marks)}")
+            for _, change in each.made.mistakes:
+                print(f"  true: {change.file}:{','.join(map(str, sorted(change.lines)))}")
+            for outcome in each.failed:
+                finding = outcome.finding
+                print(f"  {outcome.id} [{finding.diagnosis}] {finding.where}: {finding.seen} | {finding.cause}")
+    passed = [each.made.operators for each in every if not each.failed]
+    for each in every:
+        broken = [outcome.finding.seen for outcome in each.outcomes if outcome.status is Status.ERROR]
+        if broken:
+            print(f"\n{each.made.name} {each.made.operators}: error: {broken[0]}")
+    print(f"\nnot made wrong: {len(passed)} ({', '.join(sorted(set(passed)))})")
+    for label, hits in (
+        ("cause named first", sum(each.first for each in wrong)),
+        ("cause named at all", sum(each.at_all for each in wrong)),
+        ("false statements", sum(bool(each.false) for each in wrong)),
+    ):
+        print(f"{label}: {hits} of {len(wrong)} ({100.0 * hits / max(len(wrong), 1):.1f} %)")
+
+
+def main() -> None:
+    """Make, judge, print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--count", type=int, default=200, help="how many wrong packages")
+    parser.add_argument("--seed", type=int, default=1, help="which ones")
+    parser.add_argument("--only", nargs="*", default=[], help="names of operators; all when left out")
+    parser.add_argument("--keep", type=Path, help="a folder for the recordings")
+    parser.add_argument("--again", type=Path, help="such a folder, to be judged anew")
+    parser.add_argument("--workers", type=int, default=2, help="how many are judged side by side")
+    wanted = parser.parse_args()
+    operators = [operator for operator in OPERATORS if not wanted.only or operator.name in wanted.only]
+    with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(wanted.workers) as pool:
+        right = bases(Path(name) / "right")
+        mades = [make(right, number, wanted.seed, operators) for number in range(wanted.count)]
+        begun = time.monotonic()
+        if wanted.again:
+            found = [again(made, wanted.again) for made in mades]
+        else:
+            if wanted.keep:
+                wanted.keep.mkdir(parents=True, exist_ok=True)
+            builds = Builds()
+            found = list(pool.map(lambda made: judged(made, Path(name) / "made", builds, wanted.keep), mades))
+        tell(found)
+        print(f"{len(right)} right packages, seed {wanted.seed}: {time.monotonic() - begun:.0f} s")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,116 @@
+"""Operator: one kind of mistake, which can be made in a right package, with what a report must say about it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from random import Random
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from grader.checks.diagnosis import Diagnosis
+
+
+@dataclass(frozen=True)
+class Package:
+    """A package as text: path -> content, and the file with the node's code that operators on source change."""
+
+    files: Mapping[str, str]
+    source: str
+
+    @property
+    def folder(self) -> str:
+        """The folder of the Python files."""
+        return self.source.rpartition("/")[0]
+
+
+@dataclass(frozen=True)
+class Change:
+    """A package after a mistake, the file to look at, and the lines of it that may be named (none: any line)."""
+
+    files: Mapping[str, str]
+    file: str
+    lines: frozenset[int] = frozenset()
+
+
+Make = Callable[[Package, Random], Change | None]
+"""Make the mistake at a place drawn from those that fit; None where the package has no such place."""
+
+
+@dataclass(frozen=True)
+class Operator:
+    """A kind of mistake: `says` are the diagnoses that name it, `never` a pattern of what would be false about it.
+
+    `also` are diagnoses of what follows from it, which are true but do not name it.
+    """
+
+    name: str
+    make: Make
+    says: frozenset[Diagnosis]
+    never: str = ""
+    also: frozenset[Diagnosis] = frozenset()
+
+
+Replacement = str | Callable[[re.Match[str]], str]
+
+
+def edited(package: Package, file: str, new: str, *lines: int) -> Change:
+    """The package with a new text of one file."""
+    return Change({**package.files, file: new}, file, frozenset(lines))
+
+
+def line_at(text: str, place: int) -> int:
+    """The number of the line with this character, from 1."""
+    return text.count("\n", 0, place) + 1
+
+
+def replace(pattern: str, by: Replacement, *, file: str = "") -> Make:
+    """An operator that replaces one match of the pattern, drawn from all; in the source, or in the file."""
+
+    def make(package: Package, draw: Random) -> Change | None:
+        path = file or package.source
+        text = package.files.get(path, "")
+        found = list(re.finditer(pattern, text, re.MULTILINE))
+        while found:
+            match = found.pop(draw.randrange(len(found)))
+            new = by(match) if callable(by) else match.expand(by)
+            if new != match[0]:
+                first = line_at(text, match.start() + len(match[0]) - len(match[0].lstrip("\n")))
+                last = line_at(text, max(match.start(), match.end() - 1))
+                return edited(package, path, text[: match.start()] + new + text[match.end() :], *range(first, last + 1))
+        return None
+
+    return make
+
+
+def remove_line(pattern: str, *, file: str = "") -> Make:
+    """An operator that empties one line with the pattern; in the place of a statement stands `pass`, or nothing."""
+    is_code = not file
+
+    def make(package: Package, draw: Random) -> Change | None:
+        path = file or package.source
+        lines = package.files.get(path, "").split("\n")
+        found = [index for index, line in enumerate(lines) if re.search(pattern, line)]
+        if not found:
+            return None
+        index = draw.choice(found)
+        line = lines[index]
+        indent = line[: len(line) - len(line.lstrip())]
+        lines[index] = f"{indent}pass" if is_code and indent else ""
+        return edited(package, path, "\n".join(lines))
+
+    return make
+
+
+def misspelt(word: str, draw: Random) -> str:
+    """The word with two neighbours exchanged, or one letter left out."""
+    pairs = [at for at in range(1, len(word) - 1) if word[at] != word[at + 1] and word[at].isalpha()]
+    if not pairs:
+        return word[:-1]
+    at = draw.choice(pairs)
+    if draw.random() < 0.5:
+        return word[:at] + word[at + 1 :]
+    return word[:at] + word[at + 1] + word[at] + word[at + 2 :]

@@ -1,0 +1,76 @@
+"""What makes Python refuse the file of a node, and wrong indentation that it accepts."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from grader.benchmarks.operators.operator import Change, Make, Operator, Package, edited, line_at, replace
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from grader.benchmarks.operators.operator import Replacement
+    from grader.checks.diagnosis import Diagnosis
+
+BLOCK = r"^( *(?:def|class|if|try|except|finally|for|while|else)\b.*):(?= *(?:#.*)?$)"
+
+
+def _source(name: str, pattern: str, by: Replacement, *says: Diagnosis, never: str = "") -> Operator:
+    return Operator(name, replace(pattern, by), frozenset(says), never)
+
+
+def _method_moved(by: int) -> Make:
+    """A method with its whole body, moved by so many columns."""
+
+    def make(package: Package, draw: Random) -> Change | None:
+        text = package.files[package.source]
+        found = list(
+            re.finditer(r"^    def (?!__init__).*\n(?:(?:        .*)?\n)+?(?=\S|    def|\Z)", text, re.MULTILINE)
+        )
+        if not found:
+            return None
+        method = draw.choice(found)
+        lines = method[0].split("\n")
+        moved = [line[4:] if by < 0 else f"    {line}" for line in lines]
+        new = text[: method.start()] + "\n".join(line.rstrip() for line in moved) + text[method.end() :]
+        return edited(package, package.source, new, line_at(text, method.start()))
+
+    return make
+
+
+def _main_in_class(package: Package, _: Random) -> Change | None:
+    text = package.files[package.source]
+    found = re.search(r"^def main\(.*\n(?:(?:    .*)?\n)+", text, re.MULTILINE)
+    if found is None or "\nclass " not in text:
+        return None
+    moved = "\n".join(f"    {line}".rstrip() for line in found[0].split("\n"))
+    return edited(
+        package, package.source, text[: found.start()] + moved + text[found.end() :], line_at(text, found.start())
+    )
+
+
+SYNTAX: tuple[Diagnosis, ...] = ("syntax-error",)
+OPERATORS = (
+    _source("colon-left-out", BLOCK, r"\1", "colon-missing"),
+    _source("colon-a-semicolon", BLOCK, r"\1;", "colon-missing", *SYNTAX),
+    _source("bracket-left-out", r"\)$", "", "bracket-open"),
+    _source("bracket-too-many", r"\)$", "))", "bracket-extra"),
+    _source("quote-left-out", r"(?<=[\w.])([\"'])(?=[,)])", "", "quote-open"),
+    _source("quote-typographic", r"\"(/?\w[\w/]*)\"", "\u201c\\1\u201d", "typographic-character"),
+    _source("comma-left-out", r"(?<=\w), (?=[\"'])", " ", "comma-missing", *SYNTAX),
+    _source("comma-for-dot", r"(rclpy|self|msg)\.(?=\w+)", r"\1,", *SYNTAX, "equals"),
+    _source("space-after-def-left-out", r"^( *)def (\w+\()", r"\1def\2", *SYNTAX),
+    _source("two-equals", r"^( +self\.\w+) = ", r"\1 == ", "equals", "attribute-missing"),
+    _source("ampersands", r"if (.*):$", r"if \1 && True:", *SYNTAX),
+    _source("line-too-far-right", r"^        (\w+\.\w+.*)$", r"          \1", "indentation"),
+    _source("line-too-far-left", r"^        (\w+\.\w+.*)$", r"      \1", "indentation"),
+    _source("tab", r"^        (\w+\.\w+.*)$", "\t\\1", "tabs-and-spaces"),
+    _source("body-left-out", r"^(    def \w+\(.*\):)\n(?:        .*\n)+", r"\1" + "\n", "indentation"),
+    _source("conflict", r"^( +self\.\w+ = .*)$", "<<<<<<< HEAD\n\\1\n=======\n\\1\n>>>>>>> main", "merge-conflict"),
+    _source("print-of-python-2", r"^( +)self\.get_logger\(\)\.info\((.*)\)$", r"\1print \2", "python-2-print"),
+    Operator("method-outside-class", _method_moved(-1), frozenset({"method-outside-class"})),
+    Operator("method-in-method", _method_moved(1), frozenset({"method-in-method"})),
+    Operator("main-in-class", _main_in_class, frozenset({"main-in-class"})),
+    _source("main-renamed", r"^def main\(", "def run(", "entry-point-function"),
+)
