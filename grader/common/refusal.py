@@ -1,25 +1,27 @@
-"""What the system refuses, in one sentence with what to do: no room, no memory, no more files or processes."""
+"""What the system refuses, in one sentence with what to do: no room, no memory, no more files or processes.
 
-from __future__ import annotations
+Like machine.py, this runs under any Python 3 before anything is installed: syntax of Python 3.6.
+"""
 
 import errno
 import os
 import resource
+from typing import Optional
 
-_ROOM = "make room there, or name another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
+ROOM = "make room there, or name another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
 _NOT_ALLOWED = "see what `grader doctor` says"
 
 
-def refusal(error: BaseException) -> str | None:
+def refusal(error: BaseException) -> Optional[str]:
     """The sentence for an error that the system has raised; None for any other error."""
     if isinstance(error, MemoryError):
-        return _sentence(errno.ENOMEM, "")
+        return sentence(errno.ENOMEM)
     if isinstance(error, RuntimeError) and "start new thread" in str(error):
-        return _sentence(errno.EAGAIN, "")
+        return sentence(errno.EAGAIN)
     if isinstance(error, OSError):
-        where = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else ""
-        return _sentence(error.errno or 0, where)
+        where = os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes)) else ""
+        return sentence(error.errno or 0, where)
     return None
 
 
@@ -28,12 +30,13 @@ def of_the_machine(error: OSError) -> bool:
     return error.errno in _SCARCE
 
 
-def _sentence(number: int, where: str) -> str:
+def sentence(number: int, where: str = "", room: str = ROOM) -> str:
+    """The sentence for an errno; `where` is the path that it was about, `room` what to do where a disk is full."""
     at = f" for {where}" if where else ""
     if number in (errno.ENOSPC, errno.EDQUOT):
-        return f"The disk is full{at}: {_ROOM}."
+        return f"The disk is full{at}: {room}."
     if number == errno.EROFS:
-        return f"The disk cannot be written to{at}: {_ROOM}."
+        return f"The disk cannot be written to{at}: {room}."
     if number == errno.EMFILE:
         most = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
         return f"The grader may open no more than {most} files: raise that, as with `ulimit -n 4096`."

@@ -20,14 +20,14 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from grader.common import interpreter, packages
 from grader.common.packages import Need
-from grader.setup import machine
+from grader.setup import machine, refused
 from grader.setup.provide import provide
+from grader.setup.refused import MACHINE_BROKEN
 
 ROOT = Path(__file__).resolve().parents[2]
 VENV = ROOT / ".venv"
 PYTHON = VENV / "bin/python3"
 STAMP = VENV / "course-setup.json"
-MACHINE_BROKEN = 3
 PARTS = {
     "learner": ["setup", "grader", "ros"],
     "cluster": ["setup", "grader", "ros", "cluster"],
@@ -149,7 +149,10 @@ def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool
         # Kept back, since all it ever says is why it failed, or that it was interrupted.
         subprocess.check_output(making.argv, stderr=subprocess.STDOUT, env=making.env, cwd=str(ROOT))
     except subprocess.CalledProcessError as error:
-        print(error.output.decode(errors="replace"), end="", file=sys.stderr)
+        said = error.output.decode(errors="replace")
+        known = refused.of_output(said, VENV)
+        unknown = f"{said}Python could not make {VENV}; what it said stands above."
+        print(known or unknown, file=sys.stderr)
         return False
     return True
 
@@ -208,9 +211,11 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
         parts = [part for part in PARTS["tests"] if part in parts or part in stamp.parts]
         stamp = stamp._replace(digest=digest(), parts=parts, seconds={})
     elif python:
+        if machine.is_offline(os.environ):
+            print(refused.NO_NETWORK.format("it has no network"), file=sys.stderr)
+            return MACHINE_BROKEN
         begin = time.monotonic()
         if not make_venv(python, ros):
-            print(f"Python could not make {VENV}; what it said stands above.", file=sys.stderr)
             return MACHINE_BROKEN
         seconds = {"environment": time.monotonic() - begin}
         stamp = Stamp(str(ROOT), kind, python.path, list(python.version), digest(), parts, seconds)
@@ -224,8 +229,4 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(sys.argv[1:]))
-    except KeyboardInterrupt:
-        print("\nStopped. The same command goes on from here: what was downloaded is kept.", file=sys.stderr)
-        sys.exit(130)
+    sys.exit(refused.guarded(lambda: main(sys.argv[1:])))

@@ -14,23 +14,33 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.common.interpreter import clean, interpreter
 from grader.errors import MachineError
-from grader.setup import lock
-from grader.setup.bootstrap import MACHINE_BROKEN, ROOT, STAMP, Stamp, say, write_stamp
+from grader.setup import lock, refused
+from grader.setup.bootstrap import ROOT, STAMP, Stamp, say, write_stamp
 
 BIN = Path(sys.prefix, "bin")
 _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
 _PROGRESS = ("Downloading ", "Using cached ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
 _MOST_LINES = 40
+_RETRIES = 2
+"""A name that was not found twice is no hiccup: pip would go on for ten seconds."""
 _FIRST = frozenset({"uv", "setuptools"})
 """What pip, which is slower, installs; setuptools because uv builds empy with it."""
-_NO_NETWORK = (
-    "The packages could not be installed; what the installer said stands above. Is this machine online? A proxy is "
-    "read from HTTPS_PROXY, a mirror from pip's own configuration. The same command goes on from here: what was "
-    "downloaded is kept."
+_UNKNOWN = (
+    "The packages could not be installed; what the installer said stands above. A proxy is read from HTTPS_PROXY, a "
+    f"mirror from pip's own configuration; {refused.AGAIN}."
 )
+
+
+class Ran(NamedTuple):
+    """An installer that has ended: its exit code, its progress, and all else that it printed."""
+
+    code: int
+    shown: list[str]
+    said: str
 
 
 def main(stamp: Stamp) -> int:
@@ -39,7 +49,7 @@ def main(stamp: Stamp) -> int:
         seconds = {**stamp.seconds, **install(stamp.parts, sourced=stamp.ros != "wheels")}
     except MachineError as error:
         print(f"\n{error}", file=sys.stderr)
-        return MACHINE_BROKEN
+        return refused.MACHINE_BROKEN
     write_stamp(stamp._replace(seconds=seconds))
     say("Set up: " + ", ".join(f"{name} {value:.0f} s" for name, value in seconds.items()))
     return 0
@@ -58,9 +68,7 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
 
     begin = time.monotonic()
     say("Installing the installer (uv)")
-    first = _write("setup", lock.select(text, ["setup"], only=_FIRST))
-    if _pip(first) != 0:
-        raise MachineError(_NO_NETWORK)
+    _pip(_write("setup", lock.select(text, ["setup"], only=_FIRST)))
 
     say("Installing " + ("what the grader needs" if sourced else "ROS 2 Jazzy and what the grader needs"))
     rest = _write("rest", lock.select(text, parts, without=without))
@@ -68,8 +76,7 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     if downloading is None:
         # pip knows settings that uv does not read: mirrors, certificates and proxies in pip.conf.
         say("That did not work with uv; once more with pip, which is slower")
-        if _pip(rest) != 0:
-            raise MachineError(_NO_NETWORK)
+        _pip(rest)
     project = ("--no-deps", "--no-build-isolation", "--editable", str(ROOT))
     if _uv(*project) is None:
         message = f"The course's own package could not be installed from {ROOT}; what the installer said stands above."
@@ -78,30 +85,60 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     return {"download": downloading or 0.0, "install": total - (downloading or 0.0)}
 
 
-def _pip(requirements: Path) -> int:
-    """`pip install` from the lock; returns the exit code."""
+def _pip(requirements: Path) -> None:
+    """`pip install` from the lock.
+
+    Raises:
+        MachineError: it failed.
+    """
     options = ("--disable-pip-version-check", "--no-input", "--retries", "2", "--progress-bar", "off", *_OPTIONS)
-    return _run(*interpreter("-m", "pip", "install", *options, "-r", str(requirements)))[0]
+    done = _run(*interpreter("-m", "pip", "install", *options, "-r", str(requirements)))
+    if done.code != 0:
+        known = refused.of_output(done.said, STAMP.parent)
+        network = refused.offline(done.said)
+        if network and not known:
+            known = refused.NO_NETWORK.format(network)
+        if not known:
+            _repeat(done)
+        raise MachineError(known or _UNKNOWN)
 
 
 def _uv(*arguments: str) -> float | None:
-    """`uv pip install`; returns the seconds of download, or None if it failed."""
+    """`uv pip install`; returns the seconds of download, or None if it failed and pip may do better.
+
+    Raises:
+        MachineError: the machine has no room or no rights for it.
+    """
     command = [str(BIN / "uv"), "pip", "install", "--python", sys.executable, *arguments]
     stores = ssl.get_default_verify_paths()
     if stores.cafile or (stores.capath and any(Path(stores.capath).iterdir())):
         command.append("--system-certs")  # As other programs here do; a minimal system has none, and uv brings some.
-    code, shown = _run(command, clean(os.environ))
-    prepared = next((line for line in shown if line.startswith("Prepared ")), "")
-    return None if code else seconds_of(prepared)
+    if not _may_write(refused.cache()):
+        command.append("--no-cache")  # Of a home that cannot be written to, uv needs nothing else.
+    done = _run(command, clean(os.environ))
+    if done.code == 0:
+        return seconds_of(next((line for line in done.shown if line.startswith("Prepared ")), ""))
+    known = refused.of_output(done.said, STAMP.parent)
+    if known:
+        raise MachineError(known)
+    _repeat(done)
+    return None
 
 
-def _run(command: list[str], env: dict[str, str]) -> tuple[int, list[str]]:
-    """Run an installer and show its progress as lines, all the rest only if it fails; returns exit code and progress.
+def _may_write(folder: Path) -> bool:
+    """Whether files can be made below a folder, which may still have to be made itself."""
+    there = next((above for above in [folder, *folder.parents] if above.exists()), folder)
+    return os.access(there, os.W_OK)
+
+
+def _run(command: list[str], env: dict[str, str]) -> Ran:
+    """Run an installer and show its progress as lines; where it finds no network twice, it is ended at once.
 
     Piped, both installers print a line where a download begins: a slow one is seen, and logs stay readable.
     """
     shown: list[str] = []
     rest: list[str] = []
+    retried = 0
     with subprocess.Popen(
         command, env=env, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
     ) as process:
@@ -109,11 +146,17 @@ def _run(command: list[str], env: dict[str, str]) -> tuple[int, list[str]]:
             if line.strip().startswith(_PROGRESS):
                 shown.append(line.strip().partition(" (from ")[0])
                 print(f"  {shown[-1]}", flush=True)
-            else:
-                rest.append(line)
-    if process.returncode != 0:
-        print("".join(rest[-_MOST_LINES:]), end="", flush=True)
-    return process.returncode, shown
+                continue
+            rest.append(line)
+            retried += "Retrying" in line and refused.offline(line) is not None
+            if retried == _RETRIES:
+                process.terminate()
+    return Ran(process.returncode, shown, "".join(rest))
+
+
+def _repeat(done: Ran) -> None:
+    """Print the end of what an installer said."""
+    print("".join(done.said.splitlines(keepends=True)[-_MOST_LINES:]), end="", flush=True)
 
 
 def seconds_of(line: str) -> float:
@@ -130,7 +173,4 @@ def _write(name: str, requirements: str) -> Path:
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(Stamp(**json.loads(sys.argv[1]))))
-    except KeyboardInterrupt:
-        sys.exit(130)
+    sys.exit(refused.guarded(lambda: main(Stamp(**json.loads(sys.argv[1])))))

@@ -15,6 +15,7 @@ from typing import Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequ
 from grader.common import packages
 from grader.common.interpreter import clean, interpreter
 from grader.common.packages import Need
+from grader.common.refusal import of_the_machine
 
 OLDEST, NEWEST = (3, 10), (3, 14)
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -97,6 +98,24 @@ def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Opti
     )
 
 
+def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
+    """Whether packages certainly cannot be downloaded: no way leads out of this machine, and nothing else is set up.
+
+    With a mirror, a proxy or a folder of wheels on this machine, only an installer can tell. `root` is where /proc is.
+    """
+    settings = ("PIP_", "UV_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")
+    home = Path(env.get("HOME", "/nowhere"))
+    files = [root / "etc/pip.conf", home / ".config/pip/pip.conf", home / ".pip/pip.conf", home / ".config/uv/uv.toml"]
+    if any(name.upper().startswith(settings) for name in env) or any(file.exists() for file in files):
+        return False
+    try:
+        routes = (root / "proc/net/route").read_text().splitlines()[1:]
+        routes += (root / "proc/net/ipv6_route").read_text().splitlines()
+    except OSError:
+        return False
+    return all(line.split()[-1] == "lo" for line in routes if line.strip())
+
+
 def closed_folder(path: str) -> Optional[Path]:
     """The topmost folder above `path` that other users cannot enter: what lies below it, they cannot run."""
     folders = Path(path).resolve().parents
@@ -104,12 +123,18 @@ def closed_folder(path: str) -> Optional[Path]:
 
 
 def probe(executable: str) -> Optional[Python]:
-    """Ask an interpreter what it is; None if it does not answer, like a shim for one not installed."""
+    """Ask an interpreter what it is; None if it does not answer, like a shim for one not installed.
+
+    Raises:
+        OSError: the machine has no room for a process more, which tells nothing about the interpreter.
+    """
     try:
         asking = interpreter("-c", _PROBE, python=executable)
         output = subprocess.check_output(asking.argv, env=asking.env, stderr=subprocess.DEVNULL, timeout=30)
         answer = json.loads(output.decode())
-    except (OSError, ValueError, subprocess.SubprocessError):
+    except (OSError, ValueError, subprocess.SubprocessError) as error:
+        if isinstance(error, OSError) and of_the_machine(error):
+            raise
         return None
     return Python(answer["path"], tuple(answer["version"]), answer["cpython"], answer["venv"], answer["headers"])
 

@@ -13,6 +13,7 @@ from grader.common.packages import Need
 from grader.setup import bootstrap, machine
 from grader.setup.bootstrap import Stamp
 from grader.setup.machine import Python, SourcedRos
+from grader.setup.refused import MACHINE_BROKEN
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,6 +34,7 @@ class Course:
         self.needs: list[Need] = []
         self.of_tests: list[Need] = []
         self.asked: list[list[str]] = []
+        self.offline = False
         self.granted: set[str] = set()
         """The packages that can be had."""
 
@@ -84,6 +86,7 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Course:
     monkeypatch.setattr(machine, "probe", lambda _path: course.python)
     monkeypatch.setattr(machine, "find_pythons", lambda _path: iter([course.python]))
     monkeypatch.setattr(machine, "missing_tools", lambda _path, _ros: list(course.needs))
+    monkeypatch.setattr(machine, "is_offline", lambda _env: course.offline)
     monkeypatch.setattr(machine, "missing_of_tests", lambda _path: list(course.of_tests))
     return course
 
@@ -137,6 +140,39 @@ def test_an_interrupted_set_up_begins_anew(course: Course) -> None:
     assert course.programs == ["venv", "grader.setup.install"]
 
 
+@pytest.mark.parametrize("stage", ["venv", "grader.setup.install"])
+def test_a_set_up_that_was_stopped_within_a_stage_is_made_whole(
+    course: Course, monkeypatch: pytest.MonkeyPatch, stage: str
+) -> None:
+    carry_out = course.call
+
+    def stopped(command: list[str], **options: object) -> int:
+        if stage in command:
+            (course.root / ".venv").mkdir(exist_ok=True)
+            raise KeyboardInterrupt
+        return carry_out(command, **options)
+
+    for name in ("call", "check_output"):
+        monkeypatch.setattr(subprocess, name, stopped)
+    with pytest.raises(KeyboardInterrupt):
+        course.set_up()
+    for name in ("call", "check_output"):
+        monkeypatch.setattr(subprocess, name, carry_out)
+    assert course.set_up() == 0
+    assert course.programs == ["venv", "grader.setup.install"]
+
+
+def test_without_a_network_nothing_is_begun(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
+    course.offline = True
+    assert course.set_up() == MACHINE_BROKEN
+    assert course.commands == []
+    assert "(it has no network). Is it online?" in capsys.readouterr().err
+    course.offline = False
+    course.set_up()
+    course.offline = True
+    assert course.set_up() == 0
+
+
 def test_another_python_behind_the_environment_makes_it_anew(course: Course) -> None:
     course.set_up()
     course.python = SYSTEMS._replace(version=(3, 11, 9))
@@ -162,7 +198,7 @@ def test_a_sourced_ros_sees_the_systems_packages(course: Course) -> None:
 def test_what_is_missing_is_told_and_nothing_is_done(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
     course.needs = [Need("cmake", "cmake")]
     course.python = SYSTEMS._replace(headers=False)
-    assert course.set_up() == bootstrap.MACHINE_BROKEN
+    assert course.set_up() == MACHINE_BROKEN
     assert course.commands == []
     message = capsys.readouterr().err
     assert "Python.h" in message
@@ -206,7 +242,7 @@ def test_what_can_be_done_without_is_tried_for_once_and_told_each_time(
 def test_what_cannot_be_done_without_is_tried_for_each_time(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
     course.set_up()
     course.needs = [CMAKE, BUBBLEWRAP]
-    assert course.set_up() == bootstrap.MACHINE_BROKEN
+    assert course.set_up() == MACHINE_BROKEN
     assert course.asked == [["cmake", "bubblewrap"]]
     assert course.commands == []
     message = capsys.readouterr().err
@@ -216,7 +252,7 @@ def test_what_cannot_be_done_without_is_tried_for_each_time(course: Course, caps
 
 def test_the_tests_need_a_sandbox(course: Course) -> None:
     course.needs = [BUBBLEWRAP]
-    assert course.set_up(TESTS) == bootstrap.MACHINE_BROKEN
+    assert course.set_up(TESTS) == MACHINE_BROKEN
     assert course.commands == []
 
 
@@ -245,7 +281,7 @@ def test_a_python_that_cannot_make_an_environment_is_told(
         raise subprocess.CalledProcessError(1, command, b"Error: no space left on device\n")
 
     monkeypatch.setattr(subprocess, "check_output", fails)
-    assert course.set_up() == bootstrap.MACHINE_BROKEN
+    assert course.set_up() == MACHINE_BROKEN
     assert "no space left on device" in capsys.readouterr().err
     assert course.commands == []
 
@@ -302,34 +338,3 @@ def test_the_target_and_the_python_asked_for_are_set_up(
     monkeypatch.setattr(bootstrap, "set_up", set_up)
     assert bootstrap.main(arguments) == 7
     assert asked == [TESTS, machine.sourced_ros(os.environ, ROOT), course.python if len(arguments) > 1 else None]
-
-
-# --- make ---
-
-
-def make(*arguments: str) -> subprocess.CompletedProcess[str]:
-    command = ["env", "-i", "HOME=/nowhere", "make", "--no-print-directory", *arguments]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-
-
-def test_make_exports_a_path_where_there_is_none() -> None:
-    shown = make("--eval", "show: ; @env", "show").stdout
-    path = next(line for line in shown.splitlines() if line.startswith("PATH="))
-    assert {"/usr/bin", "/bin", "/usr/sbin"} <= set(path[len("PATH=") :].split(":"))
-
-
-def test_make_help_lists_every_target() -> None:
-    text = (ROOT / "Makefile").read_text(encoding="utf-8")
-    targets = text.split(".PHONY: ")[1].splitlines()[0].split()
-    assert [line.split()[1] for line in make("help").stdout.splitlines()] == sorted(targets, key=targets.index)
-
-
-def test_make_hands_on_the_python_asked_for_and_no_other() -> None:
-    assert "--python python3.12" in make("-n", "demo", "PYTHON=python3.12").stdout
-    assert "--python" not in make("-n", "demo").stdout
-
-
-def test_ci_runs_the_readmes_command() -> None:
-    script = ROOT / ".ci/run"
-    assert os.access(script, os.X_OK)
-    assert "make test" in script.read_text(encoding="utf-8")

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import signal
 import sys
 from pathlib import Path
 
@@ -16,27 +17,25 @@ class Installers:
     def __init__(self) -> None:
         self.pip: list[str] = []
         self.uv: list[str] = []
-        self.pip_code = 0
-        self.uv_works = True
+        self.failed: dict[str, str] = {}
+        """What an installer that fails prints, by its name."""
 
-    def run_pip(self, requirements: Path) -> int:
-        self.pip.append(requirements.read_text(encoding="utf-8"))
-        return self.pip_code
-
-    def run_uv(self, *arguments: str) -> float | None:
-        if "--editable" in arguments:
-            return 0.0
-        assert {"--no-deps", "--require-hashes", "--no-build-isolation"} <= set(arguments)
-        self.uv.append(Path(arguments[arguments.index("-r") + 1]).read_text(encoding="utf-8"))
-        return 4.0 if self.uv_works else None
+    def run(self, command: list[str], _: dict[str, str]) -> install.Ran:
+        if "--editable" in command:
+            return install.Ran(0, [], "")
+        assert {"--no-deps", "--require-hashes", "--no-build-isolation"} <= set(command)
+        requirements = Path(command[command.index("-r") + 1]).read_text(encoding="utf-8")
+        name = "uv" if command[0].endswith("/uv") else "pip"
+        (self.uv if name == "uv" else self.pip).append(requirements)
+        said = self.failed.get(name, "")
+        return install.Ran(1 if said else 0, ["Prepared 3 packages in 4s"], said)
 
 
 @pytest.fixture
 def installers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Installers:
     installers = Installers()
     monkeypatch.setattr(install, "STAMP", tmp_path / "stamp.json")
-    monkeypatch.setattr(install, "_pip", installers.run_pip)
-    monkeypatch.setattr(install, "_uv", installers.run_uv)
+    monkeypatch.setattr(install, "_run", installers.run)
     return installers
 
 
@@ -68,23 +67,44 @@ def test_a_sourced_ros_keeps_its_own_packages(installers: Installers, parts: lis
 
 
 def test_pip_installs_what_uv_could_not(installers: Installers) -> None:
-    installers.uv_works = False
+    installers.failed["uv"] = "error: invalid peer certificate\n"
     install.install(PARTS["learner"], sourced=False)
     assert installers.pip[1] == installers.uv[0]
 
 
-def test_without_a_network_it_is_the_machine(installers: Installers) -> None:
-    installers.pip_code = 1
-    with pytest.raises(MachineError, match="online"):
+def test_without_a_network_it_is_the_machine(installers: Installers, capfd: pytest.CaptureFixture[str]) -> None:
+    installers.failed["pip"] = "WARNING: Retrying: [Errno -3] Temporary failure in name resolution\nERROR: none\n"
+    with pytest.raises(MachineError, match=r"\(Temporary failure in name resolution\)\. Is it online\? A proxy"):
         install.install(PARTS["learner"], sourced=False)
+    assert "ERROR" not in capfd.readouterr().out
 
 
-def test_progress_is_shown_and_the_rest_only_on_failure(capfd: pytest.CaptureFixture[str]) -> None:
+def test_what_a_machine_has_no_room_for_pip_is_not_asked_for(installers: Installers) -> None:
+    installers.failed["uv"] = "error: Failed\n  cause: failed to copy file: No space left on device (os error 28)\n"
+    with pytest.raises(MachineError, match=r"^The disk is full for .*: make room there"):
+        install.install(PARTS["learner"], sourced=False)
+    assert len(installers.pip) == 1
+
+
+def test_what_is_not_understood_is_repeated(installers: Installers, capfd: pytest.CaptureFixture[str]) -> None:
+    installers.failed["pip"] = "ERROR: THESE PACKAGES DO NOT MATCH THE HASHES\n"
+    with pytest.raises(MachineError, match="what the installer said stands above"):
+        install.install(PARTS["learner"], sourced=False)
+    assert "DO NOT MATCH THE HASHES" in capfd.readouterr().out
+
+
+def test_a_name_that_is_not_found_twice_ends_the_installer() -> None:
+    line = "print('WARNING: Retrying after: [Errno -3] Temporary failure in name resolution', flush=True)"
+    done = install._run([sys.executable, "-c", f"{line}\n{line}\nimport time\nwhile True: time.sleep(1)"], {})
+    assert done.code == -signal.SIGTERM
+
+
+def test_progress_is_shown_and_the_rest_is_kept(capfd: pytest.CaptureFixture[str]) -> None:
     talk = "print('  Downloading numpy (from -r x)'); print('noise'); print('Prepared 3 packages in 2s')"
-    assert install._run([sys.executable, "-c", talk], {}) == (0, ["Downloading numpy", "Prepared 3 packages in 2s"])
+    done = install._run([sys.executable, "-c", talk], {})
+    assert done == (0, ["Downloading numpy", "Prepared 3 packages in 2s"], "noise\n")
     assert capfd.readouterr().out == "  Downloading numpy\n  Prepared 3 packages in 2s\n"
-    assert install._run([sys.executable, "-c", talk + "; raise SystemExit(7)"], {})[0] == 7
-    assert capfd.readouterr().out.endswith("Prepared 3 packages in 2s\nnoise\n")
+    assert install._run([sys.executable, "-c", talk + "; raise SystemExit(7)"], {}).code == 7
 
 
 @pytest.mark.parametrize(

@@ -51,8 +51,8 @@ def fake_ros(prefix: Path, *packages: str, python: str = "python3.12") -> None:
 
 
 RUNS_FIRST = (
-    *("__init__.py", "common/__init__.py", "common/interpreter.py", "common/packages.py"),
-    *("setup/__init__.py", "setup/bootstrap.py", "setup/machine.py", "setup/provide.py"),
+    *("__init__.py", "common/__init__.py", "common/interpreter.py", "common/packages.py", "common/refusal.py"),
+    *("setup/__init__.py", "setup/bootstrap.py", "setup/machine.py", "setup/provide.py", "setup/refused.py"),
 )
 
 
