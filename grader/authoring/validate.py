@@ -146,4 +146,4 @@ def _lesson(file: Path) -> Iterator[str]:
 
 def _told(outcome: Outcome) -> str:
     finding = outcome.finding
-    return f"{outcome.title}: {outcome.status.value}. {finding.seen} {finding.cause}".strip()
+    return f"{outcome.title}: {outcome.status.value}. {finding.observed} {finding.cause}".strip()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.common.words import shorten
@@ -134,10 +135,10 @@ def unreadable(how: str) -> Finding:
 
     It is not an error: a check reads only what the submission produced, so only the submission can make it fail.
     """
-    seen = f"The submission could not be read: {shorten(how, 150)}."
+    observed = f"The submission could not be read: {shorten(how, 150)}."
     expected = "The grader can read the submitted files and the data that the node sends."
     cause = "Very large, deeply nested or damaged content can cause this. If yours is none of that, please report it."
-    return failed("unreadable", seen, expected, cause)
+    return failed(observed, expected, Cause("unreadable", cause))
 
 
 def in_words(error: Exception) -> str:
@@ -148,10 +149,10 @@ def in_words(error: Exception) -> str:
 
 
 def _overwhelmed(how: str) -> Finding:
-    seen = f"The trial could not be finished: the node made the simulator fail ({shorten(how, 150)})."
+    observed = f"The trial could not be finished: the node made the simulator fail ({shorten(how, 150)})."
     expected = "The simulator keeps running while the node publishes and calls services at a reasonable rate."
     cause = "The node sends without a pause, or sends invalid data. If yours does neither, please report this."
-    return failed("overwhelmed", seen, expected, cause)
+    return failed(observed, expected, Cause("overwhelmed", cause))
 
 
 def _because(cause: CheckSpec, finding: Finding) -> Finding:

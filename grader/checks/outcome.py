@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from grader.checks.diagnosis import Diagnosis
+    from grader.checks.causes.cause import Cause
     from grader.submission.where import Where
 
 
@@ -29,30 +29,26 @@ class Finding:
     """
 
     status: Status
-    seen: str
+    observed: str
     expected: str = ""
     cause: str = ""
     diagnosis: str | None = None
     where: Where | None = None
     near_edge: bool = False
 
+    def because(self, cause: Cause) -> Finding:
+        """Return the finding with this cause instead of its own."""
+        return replace(self, diagnosis=cause.diagnosis, cause=cause.text, where=cause.where)
 
-def passed(seen: str, *, near_edge: bool = False) -> Finding:
+
+def passed(observed: str, *, near_edge: bool = False) -> Finding:
     """Return the finding of a check that passed."""
-    return Finding(Status.PASSED, seen, near_edge=near_edge)
+    return Finding(Status.PASSED, observed, near_edge=near_edge)
 
 
-def failed(
-    diagnosis: Diagnosis,
-    seen: str,
-    expected: str,
-    cause: str = "",
-    *,
-    where: Where | None = None,
-    near_edge: bool = False,
-) -> Finding:
+def failed(observed: str, expected: str, cause: Cause, *, near_edge: bool = False) -> Finding:
     """Return the finding of a check that failed because of the student's work."""
-    return Finding(Status.FAILED, seen, expected, cause, diagnosis, where, near_edge)
+    return Finding(Status.FAILED, observed, expected, cause.text, cause.diagnosis, cause.where, near_edge)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from grader.checks.causes.cause import Cause
 from grader.checks.exercises import exercise_from
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.classroom.key import grader_key
@@ -131,7 +132,7 @@ def _refused(task: Task, exercise: Exercise, reason: str) -> Graded:
     what = "a package" if exercise.package else "answers.toml"
     title = f"The submission holds {what}"
     expected = f"One folder with {what} in it, or a .zip or .tar.gz of that."
-    first = failed("no-package" if exercise.package else "no-answers-file", reason, expected)
+    first = failed(reason, expected, Cause("no-package" if exercise.package else "no-answers-file"))
     skipped = Finding(Status.SKIPPED, f'Not judged, because "{title}" did not pass.')
     return _unjudged(task, exercise, skipped, Outcome("submission", "submission", title, 0.0, 0.0, first))
 

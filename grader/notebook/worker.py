@@ -50,7 +50,7 @@ def reason(outcome: Outcome) -> str:
     lines = [f"{sign} {outcome.title}{points}"]
     if outcome.status is not Status.PASSED:
         where = str(finding.where) if finding.where else ""
-        rows = (("seen", finding.seen), ("expected", finding.expected), ("why", finding.cause), ("where", where))
+        rows = (("seen", finding.observed), ("expected", finding.expected), ("why", finding.cause), ("where", where))
         lines += [f"    {label}: {text}" for label, text in rows if text]
     return "\n".join(map(plain_line, lines))
 

@@ -79,7 +79,7 @@ def _row(student: str, report: Report, grader: str, file: str, attention: str) -
         tone(report),
         " ".join(outcome.id for outcome in failed),
         " ".join(dict.fromkeys(outcome.finding.diagnosis or "" for outcome in failed)).strip(),
-        failed[0].finding.seen if failed else "",
+        failed[0].finding.observed if failed else "",
         report.clock,
         "" if report.seed is None else report.seed,
         grader,

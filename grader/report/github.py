@@ -67,7 +67,7 @@ def _told(outcome: Outcome) -> str:
     if outcome.status is Status.PASSED:
         return ""
     where = f"({finding.where})" if finding.where else ""
-    return _text(" ".join(text for text in (finding.seen, finding.expected, finding.cause, where) if text))
+    return _text(" ".join(text for text in (finding.observed, finding.expected, finding.cause, where) if text))
 
 
 def _text(text: str) -> str:
@@ -102,7 +102,9 @@ def _command(kind: str, student: str, outcome: Outcome, folder: str) -> str:
         if where.line is not None:
             properties["line"] = str(where.line)
     finding = outcome.finding
-    message = shorten(" ".join(text for text in (finding.seen, finding.expected, finding.cause) if text), 3 * LONGEST)
+    message = shorten(
+        " ".join(text for text in (finding.observed, finding.expected, finding.cause) if text), 3 * LONGEST
+    )
     told = ",".join(f"{name}={_property(value)}" for name, value in properties.items())
     return f"::{kind} {told}::{_data(message)}"
 

@@ -65,4 +65,6 @@ def _output(outcome: Outcome) -> str:
     where = f"Where: {finding.where}" if finding.where else ""
     expected = f"Expected: {finding.expected}" if finding.expected else ""
     error = "This could not be judged; your instructor is told." if outcome.status is Status.ERROR else ""
-    return "\n".join(printable(text) for text in (note, error, finding.seen, expected, finding.cause, where) if text)
+    return "\n".join(
+        printable(text) for text in (note, error, finding.observed, expected, finding.cause, where) if text
+    )

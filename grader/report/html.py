@@ -50,7 +50,7 @@ class ShownCheck:
     @property
     def seen(self) -> str:
         """What was seen; empty where that is hidden or only repeats the title."""
-        text = self.outcome.finding.seen
+        text = self.outcome.finding.observed
         return "" if self.outcome.hidden or text.rstrip(".") == self.outcome.title else text
 
     def shows(self, where: Where) -> bool:
@@ -96,7 +96,7 @@ def _page(evidence: Evidence, report: Report) -> str:
     shown = list(_shown(evidence, report))
     fault = evidence.fault.message if evidence.fault and not evidence.fault.unreadable else ""
     # One fault of the machine is told once, not with every check that it took along.
-    unmade = [check for check in shown if check.kind == "error" and check.outcome.finding.seen == fault]
+    unmade = [check for check in shown if check.kind == "error" and check.outcome.finding.observed == fault]
     values = {
         "report": report,
         "unconfined": UNCONFINED,

@@ -70,7 +70,7 @@ class Entry:
     def first_error(self) -> str:
         """What the machine said."""
         errors = self.report.with_status(Status.ERROR)
-        return errors[0].finding.seen if errors else ""
+        return errors[0].finding.observed if errors else ""
 
 
 @dataclass
@@ -187,7 +187,7 @@ def failures(entries: Iterable[Entry]) -> list[FailedCheck]:
             cause = outcome.finding.diagnosis or "unknown"
             diagnosis = check.by_cause.setdefault(cause, Diagnosis(cause))
             diagnosis.entries.append(entry)
-            diagnosis.texts[outcome.finding.cause or outcome.finding.seen] += 1
+            diagnosis.texts[outcome.finding.cause or outcome.finding.observed] += 1
     return sorted(checks.values(), key=lambda check: (-len(check.entries), check.exercise, check.id))
 
 

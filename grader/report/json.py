@@ -65,7 +65,7 @@ def _outcome(outcome: Outcome) -> dict[str, Any]:
         "status": finding.status.value,
         "points": outcome.points,
         "max": outcome.max,
-        "seen": _encodable(finding.seen),
+        "seen": _encodable(finding.observed),
         "expected": _encodable(finding.expected),
         "cause": _encodable(finding.cause),
         "diagnosis": finding.diagnosis,
@@ -123,7 +123,7 @@ def _read_outcome(data: dict[str, Any]) -> Outcome:
     where = data["where"]
     finding = Finding(
         status=Status(data["status"]),
-        seen=data["seen"],
+        observed=data["seen"],
         expected=data["expected"],
         cause=data["cause"],
         diagnosis=data["diagnosis"],

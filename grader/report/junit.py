@@ -65,7 +65,7 @@ def _case(suite: ET.Element, student: str, report: Report, outcome: Outcome) -> 
     if tag is None:
         return
     finding = outcome.finding
-    told = ET.SubElement(case, tag, message=_text(finding.seen))
+    told = ET.SubElement(case, tag, message=_text(finding.observed))
     if tag != "skipped":
         told.set("type", _text(finding.diagnosis or tag))
     rows = (("expected", finding.expected), ("why", finding.cause), ("where", str(finding.where or "")))

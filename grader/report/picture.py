@@ -114,7 +114,7 @@ def _title(draw: ImageDraw.ImageDraw, report: Report, width: int) -> None:
     if errors:
         draw.text((LEFT, 44), f"Not finished, {points}: the machine failed.", fill=BAD, font=_font(16))
     elif report.exit_code:
-        first = f": {printable(failed[0].finding.seen)}" if failed and not failed[0].hidden else ""
+        first = f": {printable(failed[0].finding.observed)}" if failed and not failed[0].hidden else ""
         text = _cut(draw, f"Not passed yet, {points}{first}", width - LEFT - 20)
         draw.text((LEFT, 44), text, fill=BAD, font=_font(16))
     else:

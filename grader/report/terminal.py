@@ -37,7 +37,7 @@ def render(report: Report, console: Console, *, brief: bool = False, verbose: bo
     for outcome in report.outcomes:
         if not (brief and _look(outcome) in ("passed", "skipped")):
             _check(outcome, console, told)
-        told = outcome.finding.seen
+        told = outcome.finding.observed
     console.print()
     if brief:
         amount = count(len(report.with_status(Status.PASSED)), "check")
@@ -53,7 +53,7 @@ def early(outcomes: Sequence[Outcome]) -> list[str]:
     """Lines on what the files alone tell, to be read while the rest is built and run."""
     told = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
     lines = [
-        f"{outcome.title}: {finding.seen}" + (f" ({finding.where})" if finding.where else "")
+        f"{outcome.title}: {finding.observed}" + (f" ({finding.where})" if finding.where else "")
         for outcome, finding in told
     ]
     return [printable(f"Not right, as the files say: {line}") for line in lines]
@@ -76,14 +76,14 @@ def _check(outcome: Outcome, console: Console, told: str) -> None:
         points = f"{_points(outcome.points)}/{_points(outcome.max)}" + (" so far" if look == "error" else "")
         head.append(f"  {points}", style="dim" if look == "passed" else STYLES[look])
     _line(console, head)
-    if look == "passed" or outcome.hidden or outcome.finding.seen == told:
+    if look == "passed" or outcome.hidden or outcome.finding.observed == told:
         return
     finding = outcome.finding
     if look == "skipped":
-        _details(console, [("", finding.seen)])
+        _details(console, [("", finding.observed)])
         return
     where = str(finding.where) if finding.where is not None else ""
-    labels = (("seen", finding.seen), ("expected", finding.expected), ("why", finding.cause), ("where", where))
+    labels = (("seen", finding.observed), ("expected", finding.expected), ("why", finding.cause), ("where", where))
     _details(console, [(label, text) for label, text in labels if text])
 
 

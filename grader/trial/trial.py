@@ -242,14 +242,14 @@ class Trial:
                 raise OverwhelmedError(answer["overwhelmed"])
             if "fault" in answer:
                 raise OverwhelmedError(answer["fault"])
-            raise self._end_seen()
+            raise self._how_it_ended()
         self._kill()
         self._errors.seek(0)
         said = answer.get("fault") or last_words(self._errors.read()[-2000:])
         message = f"The simulator failed: {said or 'it said nothing'}. `grader doctor` tells what is missing."
         raise MachineError(message)
 
-    def _end_seen(self) -> OverwhelmedError:
+    def _how_it_ended(self) -> OverwhelmedError:
         try:
             code = self._process.wait(5.0)
         except subprocess.TimeoutExpired:

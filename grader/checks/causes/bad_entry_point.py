@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def bad_entry_point(point: EntryPoint) -> Finding:
     """Return a failed finding about an entry point that setuptools cannot read."""
-    seen = f'setuptools cannot read the entry point "{shorten(point.text)}".'
+    observed = f'setuptools cannot read the entry point "{shorten(point.text)}".'
     expected = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION."
     why = Cause("entry-point-format", "Check it character by character: = and : must each appear once.")
     if point.text.count("=") > 1:
@@ -25,4 +25,4 @@ def bad_entry_point(point: EntryPoint) -> Finding:
     elif ":" not in point.text:
         text = "It does not name a function. After the module comes a colon, then the function name."
         why = Cause("entry-point-no-function", text)
-    return failed(why.diagnosis, seen, expected, why.text, where=Where("setup.py", point.line))
+    return failed(observed, expected, why.at(Where("setup.py", point.line)))

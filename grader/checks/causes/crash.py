@@ -58,7 +58,7 @@ class Crash:
     where: Where | None = None
 
     @property
-    def seen(self) -> str:
+    def observed(self) -> str:
         """The exception with its message, such as 'ZeroDivisionError: division by zero'."""
         return f"{self.error}: {shorten(self.message, 90)}" if self.message else self.error
 
@@ -100,14 +100,14 @@ def ended_early(evidence: Evidence) -> str:
     return f"The node crashed: {crash.error}{place}."
 
 
-def end_seen(evidence: Evidence) -> str:
+def end_observed(evidence: Evidence) -> str:
     """Return a sentence that the node ended before the scenario was over, with the time, or an empty string."""
     end = evidence.recording.end
     if end.by != "itself":
         return ""
     when = "at startup" if ended_at_start(evidence.recording) else f"after {end.t_s:.1f} s"
     crash = crash_of(evidence)
-    return f"The node ended by itself {when}." if crash is None else f"The node crashed {when}: {crash.seen}."
+    return f"The node ended by itself {when}." if crash is None else f"The node crashed {when}: {crash.observed}."
 
 
 def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:

@@ -35,7 +35,7 @@ def no_entry_point(evidence: Evidence) -> Finding:
     joined = next((point for point in points if point.text.count("=") > 1), None)
     if joined is not None:
         return bad_entry_point(joined)
-    seen = f"The package has no executable {executable}."
+    observed = f"The package has no executable {executable}."
     cause = _unread(evidence, setup) or _script(evidence)
     if cause is None:
         others = sorted(set(evidence.built.entry_points) | set(evidence.built.executables))
@@ -43,10 +43,10 @@ def no_entry_point(evidence: Evidence) -> Finding:
         if guess is not None:
             where = next((Where("setup.py", point.line) for point in points if point.name == guess), line(evidence))
             text = "Compare the two names letter by letter. The name is the part before the = sign."
-            seen = f"There is no executable {executable}, but there is {shorten(guess)}."
-            return failed("entry-point-name", seen, expected, text, where=where)
+            observed = f"There is no executable {executable}, but there is {shorten(guess)}."
+            return failed(observed, expected, Cause("entry-point-name", text, where))
         cause = _missing(evidence, points)
-    return failed(cause.diagnosis, seen, expected, cause.text, where=cause.where or line(evidence))
+    return failed(observed, expected, cause.at(line(evidence)))
 
 
 def _script(evidence: Evidence) -> Cause | None:

@@ -79,7 +79,7 @@ def why_unreadable(unreadable: Unreadable, data: bytes) -> Cause:
     return Cause("syntax-error", OTHERWISE)
 
 
-def unreadable_seen(file: str, unreadable: Unreadable) -> str:
+def unreadable_observed(file: str, unreadable: Unreadable) -> str:
     """Return a sentence about a file that Python cannot read."""
     message = shorten(unreadable.message, 120)
     return f"Python cannot read {file}: {message}{'' if message.endswith(('.', '?', '!')) else '.'}"
@@ -88,5 +88,5 @@ def unreadable_seen(file: str, unreadable: Unreadable) -> str:
 def unreadable_finding(file: str, unreadable: Unreadable, data: bytes) -> Finding:
     """Return a failed finding about a file that Python cannot read."""
     cause = why_unreadable(unreadable, data)
-    seen = unreadable_seen(file, unreadable)
-    return failed(cause.diagnosis, seen, EXPECTED, cause.text, where=Where(file, unreadable.line))
+    observed = unreadable_observed(file, unreadable)
+    return failed(observed, EXPECTED, cause.at(Where(file, unreadable.line)))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from grader.checks.causes.cause import Cause
 
 if TYPE_CHECKING:
     from grader.checks.outcome import Finding
@@ -20,8 +21,8 @@ def too_soon(finding: Finding, evidence: Evidence) -> Finding:
     """
     if evidence.recording.clock != "wall" or any(evidence.code.calls(name) for name in WAITS_FOR_SUBSCRIBER):
         return finding
-    cause = (
+    text = (
         "Everything after that is right. The first commands were published before the simulator was connected, so "
         "they were lost. Do not publish while get_subscription_count() returns 0."
     )
-    return replace(finding, diagnosis="too-soon", cause=cause, where=evidence.place("publish"))
+    return finding.because(Cause("too-soon", text, evidence.place("publish")))

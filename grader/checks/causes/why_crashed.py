@@ -50,8 +50,7 @@ def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
     return cause or Cause("crash", crash.meaning)
 
 
-def crash_finding(evidence: Evidence, crash: Crash, seen: str, expected: str) -> Finding:
+def crash_finding(evidence: Evidence, crash: Crash, observed: str, expected: str) -> Finding:
     """Return a failed finding for a check that did not pass because of a crash."""
     cause = why_crashed(evidence, crash)
-    where = cause.where or crash.where or evidence.place("init")
-    return failed(cause.diagnosis, seen, expected, cause.text, where=where)
+    return failed(observed, expected, cause.at(crash.where or evidence.place("init")))

@@ -135,8 +135,7 @@ def _class_for_object(name: str) -> Cause:
 def _of_a_wrong_thing(scene: CrashScene, owner: str, name: str) -> Cause | None:
     if owner == "property":
         made = next((node for node in scene.nodes if isinstance(node, ast.Assign) and _is_message(node.value)), None)
-        cause = _class_for_object(ast.unparse(made.value) if made is not None else "It")
-        return Cause(cause.diagnosis, cause.text, scene.at(made))
+        return _class_for_object(ast.unparse(made.value) if made is not None else "It").at(scene.at(made))
     if owner == "NoneType":
         return _of_none(scene, name)
     return Cause("not-called", "The function is named but not called: the parentheses are missing.")

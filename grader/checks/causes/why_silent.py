@@ -77,7 +77,7 @@ def _stuck(evidence: Evidence) -> Cause | None:
             where = Where(module.file, getattr(node, "lineno", None))
             waiting = _waits(node, module)
             if waiting is not None:
-                return Cause(waiting.diagnosis, waiting.text, where)
+                return waiting.at(where)
             if method.name == "__init__" and isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS:
                 text = "__init__ loops forever, so rclpy.spin is never reached. A timer repeats without a loop."
                 return Cause("blocks-in-init", text, where)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, Status, failed, passed
 
@@ -24,11 +25,9 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
     if evidence.code.calls("create_rate"):
         cause = "A rate from create_rate only works while another thread spins the node. A timer needs no thread."
     return failed(
-        "no-timer",
         "The node does not use a timer.",
         "A ROS 2 node does regular work in a timer callback.",
-        cause,
-        where=evidence.place("publish", "sleep"),
+        Cause("no-timer", cause, evidence.place("publish", "sleep")),
     )
 
 

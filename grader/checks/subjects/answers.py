@@ -34,21 +34,21 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
     found = evidence.answers
     expected = f"{FILE} is a TOML file with a table [answers] and one line per question."
     if found is None:
-        return failed("no-answers", f"There is no {FILE}.", expected)
+        return failed(f"There is no {FILE}.", expected, Cause("no-answers"))
     if found.problem is not None:
         cause = 'Write a string in "quotation marks", a list in [brackets], and a number without either.'
         return failed(
-            "answers-unreadable", f"{FILE} cannot be read: {found.problem}.", expected, cause, where=Where(FILE)
+            f"{FILE} cannot be read: {found.problem}.", expected, Cause("answers-unreadable", cause, Where(FILE))
         )
     questions = {str(check.params["answer"]) for check in evidence.exercise.checks if "answer" in check.params}
     other = sorted(set(found.given) - questions)
     if other:
-        seen = f"{FILE} answers {a_list([shorten(name) for name in other])}, but no question has that name."
+        observed = f"{FILE} answers {a_list([shorten(name) for name in other])}, but no question has that name."
         cause = f"The names of the questions are {a_list(sorted(questions - set(found.given)) or sorted(questions))}."
         where = Where(FILE, found.lines.get(other[0]))
-        return failed("unknown-answer", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("unknown-answer", cause, where))
     if not found.given:
-        return failed("answers-empty", f"{FILE} has no answers yet.", expected, where=Where(FILE))
+        return failed(f"{FILE} has no answers yet.", expected, Cause("answers-empty", where=Where(FILE)))
     return passed(f"{FILE} can be read.")
 
 
@@ -206,11 +206,11 @@ def _given(evidence: Evidence, name: str, form: str, kind: type) -> Answer | Fin
     where = Where(FILE, found.lines.get(name) if found is not None else None)
     answer = found.given.get(name) if found is not None else None
     if answer is None:
-        return failed("no-answer", f"{name} is not answered yet.", f"{name} is {form}.", where=where)
+        return failed(f"{name} is not answered yet.", f"{name} is {form}.", Cause("no-answer", where=where))
     if not isinstance(answer, kind):
-        seen = f"{name} is {_shown(answer)}."
+        observed = f"{name} is {_shown(answer)}."
         return failed(
-            "answer-form", seen, f"{name} is {form}.", "The lesson shows how to write an answer.", where=where
+            observed, f"{name} is {form}.", Cause("answer-form", "The lesson shows how to write an answer.", where)
         )
     return answer
 
@@ -224,14 +224,14 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
     parts = [f"{extra} too many" if extra else "", f"{missing} missing" if missing else ""]
     difference = " and ".join(part for part in parts if part)
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
-    seen = f"{name} is {_shown(given)}: {difference}."
+    observed = f"{name} is {_shown(given)}: {difference}."
     diagnosis: Diagnosis = "wrong-list" if extra and missing else "list-too-long" if extra else "list-incomplete"
-    return failed(diagnosis, seen, "The list has every right item and no others.", cause.strip(), where=where)
+    return failed(observed, "The list has every right item and no others.", Cause(diagnosis, cause.strip(), where))
 
 
 def _wrong(evidence: Evidence, name: str, given: Answer, why: Cause) -> Finding:
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
-    return failed(why.diagnosis, f"{name} is {_shown(given)}.", "What ROS 2 reports.", why.text, where=where)
+    return failed(f"{name} is {_shown(given)}.", "What ROS 2 reports.", why.at(where))
 
 
 def _plain(answer: str) -> str:

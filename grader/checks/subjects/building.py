@@ -6,8 +6,9 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.causes.bad_entry_point import bad_entry_point
+from grader.checks.causes.cause import Cause
 from grader.checks.causes.crash import read_tracebacks
-from grader.checks.causes.syntax import unreadable_seen, why_unreadable
+from grader.checks.causes.syntax import unreadable_observed, why_unreadable
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, shorten
@@ -32,9 +33,11 @@ def plain_files(evidence: Evidence, _: NoParams) -> Finding:
     """The submission contains only files that the grader accepts."""
     rejected = evidence.submission.rejected
     if rejected:
-        seen = f"Left out: {shorten(rejected[0], 150)}"
+        observed = f"Left out: {shorten(rejected[0], 150)}"
         more = f" (and {len(rejected) - 1} more)." if len(rejected) > 1 else "."
-        return failed("rejected-file", seen.rstrip(".") + more, "A package contains only normal files and folders.")
+        return failed(
+            observed.rstrip(".") + more, "A package contains only normal files and folders.", Cause("rejected-file")
+        )
     return passed("The package contains only normal files and folders.")
 
 
@@ -47,15 +50,13 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
     if build.timed_out:
         cause = "setup.py should only call setup(). It must not sleep, ask for input or loop."
         return failed(
-            "build-timeout",
             f"`colcon build` was still running after {build.seconds:.0f} s.",
             EXPECTED,
-            cause,
-            where=Where("setup.py", _setup_line(evidence)),
+            Cause("build-timeout", cause, Where("setup.py", _setup_line(evidence))),
         )
     if build.out_of is not None:
-        seen = f"`colcon build` used all the {shorten(build.out_of, 40)} that a package may use."
-        return failed("build-limit", seen, EXPECTED, "setup.py should only call setup().", where=Where("setup.py"))
+        observed = f"`colcon build` used all the {shorten(build.out_of, 40)} that a package may use."
+        return failed(observed, EXPECTED, Cause("build-limit", "setup.py should only call setup().", Where("setup.py")))
     if build.exit_code != 0:
         return _broken(evidence)
     return _modules(evidence)
@@ -67,12 +68,12 @@ def early(evidence: Evidence, _: NoParams) -> Finding | None:
     if setup is None:
         cause = "colcon builds an ament_python package by running its setup.py."
         where = Where("package.xml") if "package.xml" in evidence.submission.files else None
-        return failed("setup-py-missing", "There is no setup.py next to package.xml.", EXPECTED, cause, where=where)
+        return failed("There is no setup.py next to package.xml.", EXPECTED, Cause("setup-py-missing", cause, where))
     if setup.unreadable is None:
         return None
     why = why_unreadable(setup.unreadable, evidence.submission.files["setup.py"])
-    seen = unreadable_seen("setup.py", setup.unreadable)
-    return failed("setup-py-syntax", seen, EXPECTED, why.text, where=Where("setup.py", setup.unreadable.line))
+    observed = unreadable_observed("setup.py", setup.unreadable)
+    return failed(observed, EXPECTED, Cause("setup-py-syntax", why.text, Where("setup.py", setup.unreadable.line)))
 
 
 def _broken(evidence: Evidence) -> Finding:
@@ -85,18 +86,20 @@ def _broken(evidence: Evidence) -> Finding:
     crashes = [crash for _, crash in read_tracebacks(log, evidence.submission.files) if crash.where is not None]
     if crashes:
         crash = crashes[0]
-        return failed("setup-py-raises", f"setup.py failed: {crash.seen}.", EXPECTED, crash.meaning, where=crash.where)
+        return failed(
+            f"setup.py failed: {crash.observed}.", EXPECTED, Cause("setup-py-raises", crash.meaning, crash.where)
+        )
     where = Where("setup.py", _setup_line(evidence))
     if UNREAD_SETUP in build.log:
-        seen = "colcon could not read the arguments of setup() in setup.py."
+        observed = "colcon could not read the arguments of setup() in setup.py."
         cause = "setup.py should only call setup(). It must not print anything or exit."
-        return failed("setup-py-output", seen, EXPECTED, cause, where=where)
+        return failed(observed, EXPECTED, Cause("setup-py-output", cause, where))
     words = [line for line in LAST_WORDS.findall(build.log) if "CalledProcessError" not in line]
     message = f": {shorten(words[-1], 150)}" if words else f" (exit code {build.exit_code})"
     if words and NO_FILE.search(words[-1]):
         cause = "data_files in setup.py names a file that does not exist in the package."
-        return failed("data-file-missing", f"`colcon build` failed{message}.", EXPECTED, cause, where=where)
-    return failed("build-failed", f"`colcon build` failed{message}.", EXPECTED, _other_type(evidence), where=where)
+        return failed(f"`colcon build` failed{message}.", EXPECTED, Cause("data-file-missing", cause, where))
+    return failed(f"`colcon build` failed{message}.", EXPECTED, Cause("build-failed", _other_type(evidence), where))
 
 
 def _other_type(evidence: Evidence) -> str:
@@ -116,14 +119,16 @@ def _modules(evidence: Evidence) -> Finding:
     finds = evidence.setup_py is not None and evidence.setup_py.finds_packages
     missing = not any(INSTALLED_MODULE.fullmatch(path) for path in evidence.built.installed) and not is_linked(evidence)
     if (missing or (finds and is_linked(evidence))) and bare and len(bare) == len(folders):
-        seen = f"`colcon build` installed none of the Python files: the folder {shorten(bare[0])} has no __init__.py."
+        observed = (
+            f"`colcon build` installed none of the Python files: the folder {shorten(bare[0])} has no __init__.py."
+        )
         expected = "Each folder with Python files has a file __init__.py, which may be empty."
         cause = "find_packages in setup.py finds only folders with an __init__.py." if finds else ""
-        return failed("missing-init", seen, expected, cause, where=Where("setup.py", _setup_line(evidence)))
+        return failed(observed, expected, Cause("missing-init", cause, Where("setup.py", _setup_line(evidence))))
     if missing:
-        seen = "`colcon build` finished but installed none of the Python files."
+        observed = "`colcon build` finished but installed none of the Python files."
         cause = _other_type(evidence) or "The packages argument of setup() lists the folders to install."
-        return failed("nothing-installed", seen, EXPECTED, cause, where=Where("setup.py", _setup_line(evidence)))
+        return failed(observed, EXPECTED, Cause("nothing-installed", cause, Where("setup.py", _setup_line(evidence))))
     return passed("`colcon build` built and installed the package.")
 
 
@@ -148,11 +153,11 @@ def installs(evidence: Evidence, _: NoParams) -> Finding:
     if not missing:
         return passed("ROS 2 finds the installed package.")
     where = Where("setup.py", _setup_line(evidence))
-    seen = f"Not installed: {a_list(missing)}."
+    observed = f"Not installed: {a_list(missing)}."
     expected = "data_files in setup.py installs the marker file into the resource index and package.xml into share."
     diagnosis: Diagnosis = "resource-marker" if "marker" in missing[0] else "package-xml-not-installed"
     return failed(
-        diagnosis, seen, expected, "`ros2 run` and other tools use these files to find a package.", where=where
+        observed, expected, Cause(diagnosis, "`ros2 run` and other tools use these files to find a package.", where)
     )
 
 

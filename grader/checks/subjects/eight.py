@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.causes.too_soon import too_soon
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
@@ -76,16 +77,16 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
     if still is not None:
         return still
     if track.wall.any():
-        return failed("wall", "The turtle ran into a wall.", expected, "The lobes are too large.", where=where)
+        return failed("The turtle ran into a wall.", expected, Cause("wall", "The lobes are too large.", where))
     lobes = lobes_of(track)
     if len(lobes) < 2:
         what = f"only one lobe, to the {lobes[0].side}" if lobes else "no lobe"
         cause = "When the first lobe is closed, the sign of angular.z must change for the second one."
-        return failed("one-lobe", f"The trajectory has {what}.", expected, cause, where=where)
+        return failed(f"The trajectory has {what}.", expected, Cause("one-lobe", cause, where))
     if params.first not in (lobes[0].side, "either"):
-        seen = f"The first lobe goes to the {lobes[0].side}."
+        observed = f"The first lobe goes to the {lobes[0].side}."
         cause = "A positive angular.z turns the turtle to the left."
-        return failed("wrong-side-first", seen, f"The first lobe goes to the {params.first}.", cause, where=where)
+        return failed(observed, f"The first lobe goes to the {params.first}.", Cause("wrong-side-first", cause, where))
     near = False
     first, second = (
         _lobe(evidence, params, name, lobe, last=name == NAMES[-1]) for name, lobe in zip(NAMES, lobes, strict=False)
@@ -107,17 +108,19 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
     round_ = Band.at_most(params.residual_m)
     if lobe.circle is None or not round_.holds(lobe.circle.rms):
         off = lobe.circle.rms if lobe.circle is not None else math.inf
-        seen = f"{subject} is not round: it deviates by {off:.2f} m from the best-fitting circle."
+        observed = f"{subject} is not round: it deviates by {off:.2f} m from the best-fitting circle."
         cause = "All commands within one lobe must be the same."
-        return failed("lobe-not-round", seen, wanted, cause, where=where), False
+        return failed(observed, wanted, Cause("lobe-not-round", cause, where)), False
     size = Band.around(params.radius_m, params.radius_tolerance_m)
     radius = lobe.circle.radius
     near = size.near(radius) or round_.near(lobe.circle.rms)
     if not size.holds(radius):
         more = radius - params.radius_m
-        seen = f"{subject} has a radius of {radius:.2f} m: {abs(more):.2f} m too {'large' if more > 0 else 'small'}."
+        observed = (
+            f"{subject} has a radius of {radius:.2f} m: {abs(more):.2f} m too {'large' if more > 0 else 'small'}."
+        )
         cause = "The radius is linear.x divided by angular.z."
-        return failed("lobe-radius", seen, wanted, cause, where=where, near_edge=near), near
+        return failed(observed, wanted, Cause("lobe-radius", cause, where), near_edge=near), near
     degrees = abs(math.degrees(lobe.turned_rad))
     full = Band.around(360.0, params.angle_tolerance_deg)
     if last:  # (a turtle that continues after the second lobe has still driven a figure eight)
@@ -125,19 +128,21 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
     near |= full.near(degrees)
     if not full.holds(degrees):
         if degrees < 360.0:
-            seen = f"{subject} is not closed: it ends {360.0 - degrees:.0f} degrees too early."
+            observed = f"{subject} is not closed: it ends {360.0 - degrees:.0f} degrees too early."
         else:
-            seen = f"{subject} continues for {degrees - 360.0:.0f} degrees after it was closed."
+            observed = f"{subject} continues for {degrees - 360.0:.0f} degrees after it was closed."
         cause = "A full circle takes 2 pi / angular.z seconds. How many timer calls is that?"
-        finding = failed("lobe-angle", seen, wanted, cause, where=evidence.place("create_timer"), near_edge=near)
+        finding = failed(observed, wanted, Cause("lobe-angle", cause, evidence.place("create_timer")), near_edge=near)
         turning = math.degrees(float(np.abs(recording.frames.angular).max()))
         return unless_starved(finding, recording, abs(degrees - 360.0) - params.angle_tolerance_deg, turning), near
     start = (evidence.recording.start.x, evidence.recording.start.y)
     gap = math.dist(lobe.end, start)
     meets = Band.at_most(params.closing_m)
     if not last and not meets.holds(gap):
-        seen = f"{subject} ends {gap:.2f} m away from the start position."
-        finding = failed("lobe-gap", seen, "Both lobes meet at the start position.", where=where, near_edge=True)
+        observed = f"{subject} ends {gap:.2f} m away from the start position."
+        finding = failed(
+            observed, "Both lobes meet at the start position.", Cause("lobe-gap", where=where), near_edge=True
+        )
         speed = float(recording.frames.linear.max())
         return unless_starved(finding, recording, gap - params.closing_m, speed), near
     return None, near

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.causes.no_entry_point import FORM, line, no_entry_point
 from grader.checks.causes.syntax import unreadable_finding
 from grader.checks.kind import Kind, NoParams
@@ -33,7 +34,7 @@ def entry_point(evidence: Evidence, _: NoParams) -> Finding:
         return no_entry_point(evidence)
     if executable not in build.executables:
         folder = f"lib/{build.package or evidence.exercise.package}"
-        seen = f"{executable} was not installed in the folder of the package, {folder}."
+        observed = f"{executable} was not installed in the folder of the package, {folder}."
         expected = "setup.cfg says where to install executables, so that `ros2 run` finds them."
         cause = "Compare it with the setup.cfg in the lesson, letter by letter."
         if "setup.cfg" not in evidence.submission.files:
@@ -41,7 +42,7 @@ def entry_point(evidence: Evidence, _: NoParams) -> Finding:
         elif build.package not in (None, evidence.exercise.package):
             cause = "The folder name must be the package name in package.xml."
         where = Where("setup.cfg" if "setup.cfg" in evidence.submission.files else "setup.py")
-        return failed("setup-cfg", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("setup-cfg", cause, where))
     module, _colon, attribute = target.partition(":")
     return _resolve(evidence, module.strip(), attribute.split("[")[0].strip())
 
@@ -52,14 +53,12 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
     if file is None:
         return _no_module(evidence, module_name)
     if not _is_installed(evidence, file):
-        seen = f"{file} is not installed, so {module_name} cannot be imported."
+        observed = f"{file} is not installed, so {module_name} cannot be imported."
         cause = "The packages argument of setup() does not list its folder, or the folder has no __init__.py."
         return failed(
-            "module-not-installed",
-            seen,
+            observed,
             f"The entry point {evidence.trial.executable} needs this module.",
-            cause,
-            where=line(evidence),
+            Cause("module-not-installed", cause, line(evidence)),
         )
     module = read_module(file, files[file])
     if module.unreadable is not None:
@@ -70,20 +69,20 @@ def _resolve(evidence: Evidence, module_name: str, attribute: str) -> Finding:
 def _no_module(evidence: Evidence, module_name: str) -> Finding:
     files = evidence.submission.files
     executable = evidence.trial.executable
-    seen = f"The entry point {executable} names the module {shorten(module_name)}, which does not exist."
+    observed = f"The entry point {executable} names the module {shorten(module_name)}, which does not exist."
     modules = [
         import_path(path)[: -len(".py")].replace("/", ".") for path in files if path.endswith(".py") and "/" in path
     ]
     expected = "A module name has the form FOLDER.FILE."
     if module_name.endswith(".py"):
         cause = "Write the module name without the ending .py."
-        return failed("entry-point-py", seen, expected, cause, where=line(evidence))
+        return failed(observed, expected, Cause("entry-point-py", cause, line(evidence)))
     if module_name in evidence.exercise.package or "." not in module_name:
         cause = "Write the folder first, then a dot, then the file name without .py."
     else:
         guess = nearest(module_name, modules)
         cause = f"There is a module {shorten(guess)}." if guess else "Compare it with the names of your files."
-    return failed("entry-point-module", seen, expected, cause, where=line(evidence))
+    return failed(observed, expected, Cause("entry-point-module", cause, line(evidence)))
 
 
 def _is_installed(evidence: Evidence, file: str) -> bool:
@@ -97,20 +96,19 @@ def _attribute(evidence: Evidence, module: Module, attribute: str) -> Finding:
     executable = evidence.trial.executable
     name = attribute.partition(".")[0]
     if not name:
-        seen = f"The entry point {executable} names the module in {module.file}, but no function."
+        observed = f"The entry point {executable} names the module in {module.file}, but no function."
         cause = "After the module comes a colon, then the function name."
-        return failed("entry-point-no-function", seen, f"{FORM}.", cause, where=line(evidence))
+        return failed(observed, f"{FORM}.", Cause("entry-point-no-function", cause, line(evidence)))
     bound = list(_bindings(module, name))
     if not bound:
         return _no_function(evidence, module, name)
     last = bound[-1]
     if isinstance(last, ast.Assign | ast.AnnAssign) and isinstance(last.value, DATA):
-        seen = f"The entry point {executable} names {shorten(name)}, which is not a function."
+        observed = f"The entry point {executable} names {shorten(name)}, which is not a function."
         return failed(
-            "entry-point-not-callable",
-            seen,
+            observed,
             "It names a function that is defined with def.",
-            where=Where(module.file, last.lineno),
+            Cause("entry-point-not-callable", where=Where(module.file, last.lineno)),
         )
     return passed(f"The entry point {executable} names {shorten(name)} in {module.file}.")
 
@@ -120,21 +118,23 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
     if not module.nodes[1:]:
         expected = f"It contains the function {shorten(name)}, which the entry point names."
         where = Where(module.file)
-        return failed("empty-file", f"{module.file} contains no code.", expected, "Did you save the file?", where=where)
-    seen = f"The entry point {executable} names the function {shorten(name)}, which {module.file} does not have."
+        return failed(
+            f"{module.file} contains no code.", expected, Cause("empty-file", "Did you save the file?", where)
+        )
+    observed = f"The entry point {executable} names the function {shorten(name)}, which {module.file} does not have."
     expected = "The function is at the top level of the file."
     functions = [node for node in module.nodes if isinstance(node, ast.FunctionDef)]
     at_top = next((node for node in module.nodes if isinstance(node, ast.Call) and _is_top_level(module, node)), None)
     if at_top is not None and not any(node.name == name for node in functions):
         cause = "The program is at the top level of the file. Move it into a function with that name."
-        return failed("top-level-code", seen, expected, cause, where=Where(module.file, at_top.lineno))
+        return failed(observed, expected, Cause("top-level-code", cause, Where(module.file, at_top.lineno)))
     inside = next((node for node in functions if node.name == name and node.col_offset), None)
     if inside is not None:
         cause = f"{name} is indented, so it belongs to the class above it. Remove the indentation."
-        return failed("main-in-class", seen, expected, cause, where=Where(module.file, inside.lineno))
+        return failed(observed, expected, Cause("main-in-class", cause, Where(module.file, inside.lineno)))
     guess = nearest(name, [node.name for node in functions if node.col_offset == 0])
     cause = f"It has a function {shorten(guess)}." if guess else "Nothing at the top level of the file has that name."
-    return failed("entry-point-function", seen, expected, cause, where=line(evidence))
+    return failed(observed, expected, Cause("entry-point-function", cause, line(evidence)))
 
 
 def _is_top_level(module: Module, call: ast.Call) -> bool:

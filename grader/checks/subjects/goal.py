@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.requested import Requested
@@ -45,24 +46,24 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     close = Band.at_most(params.tolerance_m)
     near = close.near(end)
     if not close.holds(end):
-        seen = f"The turtle ends at x={track.x[-1]:.2f} y={track.y[-1]:.2f}, {end:.2f} m from the goal."
+        observed = f"The turtle ends at x={track.x[-1]:.2f} y={track.y[-1]:.2f}, {end:.2f} m from the goal."
         if close.holds(nearest):
-            seen += f" On the way it came within {nearest:.2f} m of the goal."
+            observed += f" On the way it came within {nearest:.2f} m of the goal."
             cause = "The turtle does not stop at the goal. Near the goal, publish a command with all values 0."
-            return failed("goes-on", seen, expected, cause, where=where, near_edge=near)
+            return failed(observed, expected, Cause("goes-on", cause, where), near_edge=near)
         if end >= away[0] - MOVED_M:
             cause = "The direction to the goal is atan2(goal_y - y, goal_x - x). The direction of the turtle is theta."
-            return failed("away-from-goal", seen, expected, cause, where=where, near_edge=near)
+            return failed(observed, expected, Cause("away-from-goal", cause, where), near_edge=near)
         cause = "The turtle may drive too slowly near the goal, or it may turn in the wrong direction."
         if track.wall.any():
             cause = "The turtle ran into a wall. Keep the angle between -pi and pi with atan2(sin(a), cos(a))."
-        return failed("not-there", seen, expected, cause, where=where, near_edge=near)
+        return failed(observed, expected, Cause("not-there", cause, where), near_edge=near)
     late = track.t_s >= track.t_s[-1] - REST_S
     drift = float(track.steps[late].sum())
     if not drift <= REST_M:
-        seen = f"The turtle is still moving at the end: {drift:.2f} m in the last {REST_S:g} s."
+        observed = f"The turtle is still moving at the end: {drift:.2f} m in the last {REST_S:g} s."
         cause = "Near the goal, publish a command with all values 0."
-        return failed("still-moving", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("still-moving", cause, where))
     start = math.dist((float(track.x[0]), float(track.y[0])), (params.x_m, params.y_m))
     return passed(f"The turtle drove to its goal, {start:.1f} m away, and stopped.", near_edge=near)
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks.causes.cause import Cause
-from grader.checks.causes.crash import crash_of, end_seen, ended_early
+from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_silent import why_nothing, why_qos
 from grader.checks.kind import Kind, number, string
@@ -41,41 +41,41 @@ def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
         return passed(expected)
     crash = crash_of(evidence)
     if crash is not None:
-        return crash_finding(evidence, crash, end_seen(evidence), expected)
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
     logged = [line.text for line in lines.students(evidence.recording)]
     qos = why_qos(evidence)
     if qos is not None:
-        seen = "No message reached the subscription, and nothing was logged."
-        return failed(qos.diagnosis, seen, expected, qos.text, where=qos.where)
+        observed = "No message reached the subscription, and nothing was logged."
+        return failed(observed, expected, qos)
     if logged:
         return _other_format(evidence, params, logged, expected)
     pattern = lines.Format(params.format).pattern()
     if any(pattern.search(line) for line in evidence.recording.stdout.text.splitlines()):
-        seen = "The lines are printed, not logged."
+        observed = "The lines are printed, not logged."
         cause = (
             "print only writes to the terminal. get_logger().info(...) also sends the line to ROS 2, "
             "with the time and the node name."
         )
-        return failed("print-instead", seen, expected, cause, where=evidence.place("print"))
+        return failed(observed, expected, Cause("print-instead", cause, evidence.place("print")))
     return _silent(evidence, expected)
 
 
 def _silent(evidence: Evidence, expected: str) -> Finding:
-    seen = f"The node logged nothing. {end_seen(evidence)}".rstrip()
+    observed = f"The node logged nothing. {end_observed(evidence)}".rstrip()
     code = evidence.code
     if not any(code.calls(level) for level in LEVELS):
         cause = "get_logger().info(...) is never called."
-        return failed("no-log", seen, expected, cause, where=code.start)
+        return failed(observed, expected, Cause("no-log", cause, code.start))
     why = why_nothing(evidence, LEVELS)
     if why is not None:
-        return failed(why.diagnosis, seen, expected, why.text, where=why.where)
+        return failed(observed, expected, why)
     cause = "create_timer is never called." if not code.calls("create_timer") else "The line is never reached."
-    return failed("never-logs", seen, expected, cause, where=evidence.place(*LEVELS))
+    return failed(observed, expected, Cause("never-logs", cause, evidence.place(*LEVELS)))
 
 
 def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expected: str) -> Finding:
     line = logged[-1]
-    seen = f'The last log line is "{shorten(line, 90)}".'
+    observed = f'The last log line is "{shorten(line, 90)}".'
     why = Cause("log-format", "Compare it letter by letter: capital letters, spaces and dots count.")
     pattern = lines.Format(params.format).pattern()
     if re.fullmatch(pattern.pattern, line, re.IGNORECASE | re.ASCII):
@@ -86,7 +86,7 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
         why = Cause("log-numbers", "The words are right, but the numbers are missing or have the wrong format.")
         if ":." in params.format:
             why = replace(why, text=why.text + " In an f-string, {value:.2f} writes two decimal places.")
-    return failed(why.diagnosis, seen, expected, why.text, where=evidence.place(*LEVELS))
+    return failed(observed, expected, why.at(evidence.place(*LEVELS)))
 
 
 def _same_words(line: str, format_: str) -> bool:
@@ -124,27 +124,27 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
     expected = f'"{form.example(params.first)}", then "{form.example(params.first + 1)}", and so on.'
     where = evidence.place(*LEVELS)
     if len(numbers) < 2:
-        seen = "There are fewer than two lines to compare."
-        return failed("too-few-log-lines", seen, expected, ended_early(evidence), where=where)
+        observed = "There are fewer than two lines to compare."
+        return failed(observed, expected, Cause("too-few-log-lines", ended_early(evidence), where))
     steps = [later - earlier for earlier, later in pairwise(numbers)]
     if not any(steps):
-        seen = f"The number is always {numbers[0]:.0f}."
+        observed = f"The number is always {numbers[0]:.0f}."
         cause = "Store the counter as an attribute of self and increase it in every call."
-        return failed("counter-stuck", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("counter-stuck", cause, where))
     if any(step != 1.0 for step in steps):
         at = next(index for index, step in enumerate(steps) if step != 1.0)
-        seen = f"The number after {numbers[at]:.0f} is {numbers[at + 1]:.0f}."
+        observed = f"The number after {numbers[at]:.0f} is {numbers[at + 1]:.0f}."
         return failed(
-            "counter-step", seen, expected, "Each number must be one more than the number before.", where=where
+            observed, expected, Cause("counter-step", "Each number must be one more than the number before.", where)
         )
     if numbers[0] != params.first:
-        seen = f"The first number is {numbers[0]:.0f}."
+        observed = f"The first number is {numbers[0]:.0f}."
         cause = (
             "Log the number first, then increase it."
             if numbers[0] == params.first + 1
             else f"Start with {params.first:.0f}."
         )
-        return failed("counter-start", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("counter-start", cause, where))
     return passed(f"The counter starts at {params.first:.0f} and increases by one per line.")
 
 

@@ -59,7 +59,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
         return passed("Each line shows where the turtle is.")
     line = wrong[0]
     x, y = _at(recording, line.t_s, frames.x), _at(recording, line.t_s, frames.y)
-    seen = (
+    observed = (
         f"At {line.t_s:.0f} s the line shows x={line.numbers['x']:.2f} y={line.numbers['y']:.2f}, "
         f"but the turtle was at x={x:.2f} y={y:.2f}."
     )
@@ -68,7 +68,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
         why = Cause("x-y-swapped", "x and y are swapped.")
     elif len({(each.numbers["x"], each.numbers["y"]) for each in logged}) == 1:
         why = Cause("stale-pose", "The numbers never change. Store x and y in self each time a message arrives.")
-    return failed(why.diagnosis, seen, expected, why.text, where=evidence.place("info", "create_subscription"))
+    return failed(observed, expected, why.at(evidence.place("info", "create_subscription")))
 
 
 def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
@@ -91,7 +91,7 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     if holds(driven, lambda line: line.numbers["distance"]):
         return passed("Each line shows how far the turtle has driven.")
     worst = max(logged, key=lambda line: abs(line.numbers["distance"] - _at(recording, line.t_s, driven)))
-    seen = (
+    observed = (
         f"At {worst.t_s:.0f} s the line shows distance={worst.numbers['distance']:.2f}, "
         f"but the turtle had driven {_at(recording, worst.t_s, driven):.2f} m."
     )
@@ -99,11 +99,9 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     numbers = [line.numbers["distance"] for line in logged]
     if not any(numbers):
         return failed(
-            "distance-zero",
-            seen,
+            observed,
             expected,
-            "The distance stays 0. Add a step to it each time a pose arrives.",
-            where=where,
+            Cause("distance-zero", "The distance stays 0. Add a step to it each time a pose arrives.", where),
         )
     if holds(
         np.hypot(frames.x - recording.start.x, frames.y - recording.start.y), lambda line: line.numbers["distance"]
@@ -111,25 +109,25 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         cause = (
             "This is the straight line back to the start. The distance is the sum of all small steps between two poses."
         )
-        return failed("distance-from-start", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("distance-from-start", cause, where))
     if holds(np.hypot(frames.x, frames.y), lambda line: line.numbers["distance"]) or _one_step_too_many(
         logged, driven, recording
     ):
         cause = (
             "There is no pose before the first one, so there is nothing to add yet, not even the distance from x=0 y=0."
         )
-        return failed("distance-from-zero", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("distance-from-zero", cause, where))
     if _is_chords(logged, numbers):
         cause = (
             "It adds one straight line per second, between the logged positions. On a curve the turtle drives further "
             "than that. Add a step each time a pose arrives."
         )
-        return failed("distance-by-chords", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("distance-by-chords", cause, where))
     cause = (
         "Between two poses the turtle moves by the square root of dx * dx + dy * dy. "
         "The distance is the sum of these steps."
     )
-    return failed("wrong-distance", seen, expected, cause, where=where)
+    return failed(observed, expected, Cause("wrong-distance", cause, where))
 
 
 def _trusted(recording: Recording, format_: str) -> list[Line]:
@@ -144,7 +142,7 @@ def _too_few(evidence: Evidence, text_: str) -> Finding:
         )
     expected = f"The log has at least {FEWEST} lines in this format."
     where = evidence.place("info")
-    return failed("too-few-log-lines", "There are too few lines to compare.", expected, where=where)
+    return failed("There are too few lines to compare.", expected, Cause("too-few-log-lines", where=where))
 
 
 def _window(recording: Recording, t_s: float, lag_s: float) -> slice:

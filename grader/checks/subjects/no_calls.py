@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.kind import Kind, string, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, shorten
@@ -30,9 +31,9 @@ def no_calls(evidence: Evidence, params: NoCalls) -> Finding:
     if uses:
         first = uses[0]
         alias = f", which is {first.name}" if first.written != first.name else ""
-        seen = f"The node calls {shorten(first.written)}{alias}."
+        observed = f"The node calls {shorten(first.written)}{alias}."
         expected = f"The node does not call {a_list(params.names, 'or')}."
-        return failed("forbidden-call", seen, expected, params.cause, where=first.where)
+        return failed(observed, expected, Cause("forbidden-call", params.cause, first.where))
     return passed(f"The node does not call {a_list(params.names, 'or')}.")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.causes.crash import crash_of
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended, why_no_node
@@ -24,10 +25,10 @@ def starts(evidence: Evidence, _: NoParams) -> Finding:
     if seen_in.ended_at_start(recording):
         crash = crash_of(evidence)
         if crash is not None:
-            return crash_finding(evidence, crash, f"{executable} crashed at startup: {crash.seen}.", expected)
+            return crash_finding(evidence, crash, f"{executable} crashed at startup: {crash.observed}.", expected)
         why = why_ended(evidence)
-        seen = f"{executable} ended by itself at startup."
-        return failed(why.diagnosis, seen, expected, why.text, where=why.where)
+        observed = f"{executable} ended by itself at startup."
+        return failed(observed, expected, why)
     if not seen_in.nodes(recording):
         return _no_node(evidence)
     return passed("The node starts.")
@@ -35,13 +36,13 @@ def starts(evidence: Evidence, _: NoParams) -> Finding:
 
 def _no_node(evidence: Evidence) -> Finding:
     crash = crash_of(evidence)
-    seen = f"{evidence.trial.executable} ran, but no node appeared in the ROS graph."
+    observed = f"{evidence.trial.executable} ran, but no node appeared in the ROS graph."
     expected = "The program creates a node and spins it."
     if crash is not None:
-        seen = f"{evidence.trial.executable} crashed before it created a node: {crash.seen}."
-        return crash_finding(evidence, crash, seen, expected)
+        observed = f"{evidence.trial.executable} crashed before it created a node: {crash.observed}."
+        return crash_finding(evidence, crash, observed, expected)
     why = why_no_node(evidence)
-    return failed(why.diagnosis, seen, expected, why.text, where=why.where)
+    return failed(observed, expected, why)
 
 
 def name(evidence: Evidence, _: NoParams) -> Finding:
@@ -51,17 +52,19 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     if wanted in names:
         return passed(f"The node is named {evidence.trial.node}.")
     if not names:
-        return failed("no-node", "No node appeared in the ROS graph.", f"A node named {evidence.trial.node} appears.")
+        return failed(
+            "No node appeared in the ROS graph.", f"A node named {evidence.trial.node} appears.", Cause("no-node")
+        )
     guess = nearest(wanted, names) or names[0]
-    seen = f"The node is named {shorten(guess)}."
+    observed = f"The node is named {shorten(guess)}."
     if len(names) > 1:
-        seen = f"The nodes are named {a_list([shorten(each) for each in names])}."
+        observed = f"The nodes are named {a_list([shorten(each) for each in names])}."
     expected = f"It is named {evidence.trial.node}."
     where = evidence.place("create_node", "__init__")
     if guess.endswith(wanted):
-        return failed("node-namespace", seen, expected, "The node is in a namespace.", where=where)
+        return failed(observed, expected, Cause("node-namespace", "The node is in a namespace.", where))
     cause = "The node name is the string that the class passes to super().__init__."
-    return failed("node-name", seen, expected, cause, where=where)
+    return failed(observed, expected, Cause("node-name", cause, where))
 
 
 STARTS = Kind(

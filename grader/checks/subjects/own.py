@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.kind import Kind, NoParams, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.path import CircleParams, circle, requested_circle
@@ -28,16 +29,18 @@ def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
         return found
     by = evidence.submission.student
     if by is not None and normal_id(found.student) != normal_id(by):
-        seen = f'The numbers in {FILE} were drawn for "{shorten(found.student)}", but "{shorten(by)}" submitted them.'
+        observed = (
+            f'The numbers in {FILE} were drawn for "{shorten(found.student)}", but "{shorten(by)}" submitted them.'
+        )
         expected = "Every student drives their own circle."
         cause = f"`grader start 07 --student {shorten(by)} --fresh` draws yours and keeps a copy of your work."
-        return failed("numbers-of-another", seen, expected, cause, where=Where(FILE))
+        return failed(observed, expected, Cause("numbers-of-another", cause, Where(FILE)))
     wanted = draw_numbers(found.student)
     if found != wanted:
-        seen = f"The numbers in {FILE} are not the ones that were drawn for this student."
+        observed = f"The numbers in {FILE} are not the ones that were drawn for this student."
         expected = f"Radius {wanted.radius_m} m, {wanted.sense}, {wanted.rate_hz} Hz."
         cause = "Do not change the file. Use its numbers in your node."
-        return failed("numbers-changed", seen, expected, cause, where=Where(FILE))
+        return failed(observed, expected, Cause("numbers-changed", cause, Where(FILE)))
     return passed(f"Radius {found.radius_m} m, {found.sense}, {found.rate_hz} commands per second.")
 
 
@@ -45,11 +48,11 @@ def _read(evidence: Evidence) -> OwnNumbers | Finding:
     data = evidence.submission.files.get(FILE)
     expected = f"{FILE} is next to package.xml, as `grader start` wrote it."
     if data is None:
-        return failed("no-numbers", f"There is no {FILE}.", expected)
+        return failed(f"There is no {FILE}.", expected, Cause("no-numbers"))
     try:
         return from_toml(data)
     except ValueError as error:
-        return failed("numbers-unreadable", f"{FILE}: {error}.", expected, where=Where(FILE))
+        return failed(f"{FILE}: {error}.", expected, Cause("numbers-unreadable", where=Where(FILE)))
 
 
 def _drawn(evidence: Evidence) -> OwnNumbers | Finding:

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.kind import Kind, NoParams, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
@@ -40,40 +41,34 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
     if manifest is None:
         cause = "setup.py alone makes a Python package. package.xml makes it a ROS 2 package."
         return failed(
-            "package-xml-missing",
             f"There is no {FILE} next to setup.py.",
             f"A package has {expected}.",
-            cause,
-            where=Where("setup.py"),
+            Cause("package-xml-missing", cause, Where("setup.py")),
         )
     if manifest.problem is not None:
         return _unreadable(evidence, manifest, f"The lesson shows {expected}.")
     if manifest.build_type != BUILD_TYPE and CATKIN in manifest.other_depends:
         cause = f"{CATKIN} is the build tool of ROS 1. Did you follow an old tutorial?"
         where = _line(evidence, CATKIN)
-        return failed("ros-1-package-xml", f"{FILE} asks for {CATKIN}.", EXPECTED_BUILD_TYPE, cause, where=where)
+        return failed(f"{FILE} asks for {CATKIN}.", EXPECTED_BUILD_TYPE, Cause("ros-1-package-xml", cause, where))
     if manifest.build_type != BUILD_TYPE:
-        seen = f"The build type is {shorten(manifest.build_type or 'missing')}."
+        observed = f"The build type is {shorten(manifest.build_type or 'missing')}."
         cause = (
             f"Without <build_type>{BUILD_TYPE}</build_type> in <export>, colcon does not treat it as a Python package."
         )
         return failed(
-            "build-type",
-            seen,
-            EXPECTED_BUILD_TYPE,
-            cause,
-            where=_line(evidence, "<build_type>", "<export>"),
+            observed, EXPECTED_BUILD_TYPE, Cause("build-type", cause, _line(evidence, "<build_type>", "<export>"))
         )
     return passed(f"{FILE} is valid.")
 
 
 def _unreadable(evidence: Evidence, manifest: Manifest, expected: str) -> Finding:
     problem = manifest.problem or ""
-    seen = f"{FILE} cannot be read: {problem}."
+    observed = f"{FILE} cannot be read: {problem}."
     tag = ROS_1_TAGS.search(problem)
     if tag is not None:
         cause = f"<{tag['tag']}> belongs to ROS 1. In format 3, use <depend> or <exec_depend>."
-        return failed("package-xml-old-tag", seen, expected, cause, where=_line(evidence, f"<{tag['tag']}"))
+        return failed(observed, expected, Cause("package-xml-old-tag", cause, _line(evidence, f"<{tag['tag']}")))
     if XML.search(problem):
         cause = "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag."
         line = manifest.line
@@ -82,9 +77,11 @@ def _unreadable(evidence: Evidence, manifest: Manifest, expected: str) -> Findin
             cause = f"<{shorten(tag_, 30)}> in line {line} has no closing tag </{shorten(tag_, 30)}>."
         elif "junk after" in problem:
             cause = "Nothing may follow the last tag, </package>."
-        return failed("xml-malformed", seen, expected, cause, where=Where(FILE, line))
+        return failed(observed, expected, Cause("xml-malformed", cause, Where(FILE, line)))
     return failed(
-        "package-xml-invalid", seen, expected, where=Where(FILE, manifest.line or _line(evidence, "<package").line)
+        observed,
+        expected,
+        Cause("package-xml-invalid", where=Where(FILE, manifest.line or _line(evidence, "<package").line)),
     )
 
 
@@ -100,7 +97,9 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
     manifest = evidence.manifest
     expected = f"{FILE} declares {a_list(params.packages)}."
     if manifest is None or manifest.problem is not None:
-        return failed("package-xml-invalid", f"{FILE} is missing or cannot be read.", expected, where=Where(FILE))
+        return failed(
+            f"{FILE} is missing or cannot be read.", expected, Cause("package-xml-invalid", where=Where(FILE))
+        )
     missing = [name for name in params.packages if name not in manifest.run_depends]
     if not missing:
         return passed(expected)
@@ -108,24 +107,24 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
     late = [name for name in missing if name in manifest.other_depends]
     if late:
         cause = "<build_depend> and <test_depend> do not count when the node runs. <depend> covers everything."
-        seen = f"{FILE} declares {a_list(late)} only for building or testing."
-        return failed("depend-kind", seen, expected, cause, where=where)
-    seen = f"{FILE} does not declare {a_list(missing)}."
+        observed = f"{FILE} declares {a_list(late)} only for building or testing."
+        return failed(observed, expected, Cause("depend-kind", cause, where))
+    observed = f"{FILE} does not declare {a_list(missing)}."
     guess = nearest(missing[0], set(manifest.run_depends) - set(params.packages))
     if guess is not None:
         cause = f'It declares "{shorten(guess)}". Is that a typing error?'
-        return failed("depend-misspelt", seen, expected, cause, where=_line(evidence, re.escape(guess)))
+        return failed(observed, expected, Cause("depend-misspelt", cause, _line(evidence, re.escape(guess))))
     comment = re.search(rf"<!--(?:(?!-->).)*\b{re.escape(missing[0])}\b", _text(evidence), re.DOTALL)
     if comment is not None:
         cause = "The line is inside a comment, between <!-- and -->, so it does not count."
         line = _text(evidence)[: comment.end()].count("\n") + 1
-        return failed("depend-commented-out", seen, expected, cause, where=Where(FILE, line))
+        return failed(observed, expected, Cause("depend-commented-out", cause, Where(FILE, line)))
     setup = evidence.setup_py
     if setup is not None and missing[0] in setup.required:
         cause = f"install_requires in setup.py is for pip packages. ROS 2 reads {FILE}."
-        return failed("depend-in-setup-py", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("depend-in-setup-py", cause, where))
     cause = "The node still runs here, because the package is installed. On another computer it may be missing."
-    return failed("missing-depend", seen, expected, cause, where=where)
+    return failed(observed, expected, Cause("missing-depend", cause, where))
 
 
 def _text(evidence: Evidence) -> str:
@@ -138,22 +137,20 @@ def name(evidence: Evidence, _: NoParams) -> Finding:
     manifest, setup = evidence.manifest, evidence.setup_py
     expected = f"package.xml, setup.py and the folder with the Python files have the name {wanted}."
     if manifest is not None and manifest.problem is None and manifest.name != wanted:
-        seen = f"package.xml names the package {shorten(manifest.name)}."
-        return failed("package-name", seen, expected, _dash(manifest.name), where=_line(evidence, "<name>"))
+        observed = f"package.xml names the package {shorten(manifest.name)}."
+        return failed(observed, expected, Cause("package-name", _dash(manifest.name), _line(evidence, "<name>")))
     if setup is not None and setup.name is not None and setup.name != wanted:
-        seen = f"setup.py names the package {shorten(setup.name)}."
-        return failed("package-name", seen, expected, _dash(setup.name), where=Where("setup.py", setup.name_line))
+        observed = f"setup.py names the package {shorten(setup.name)}."
+        return failed(observed, expected, Cause("package-name", _dash(setup.name), Where("setup.py", setup.name_line)))
     modules = [import_path(path) for path in evidence.submission.files if path.endswith(".py")]
     if not any(path.startswith(f"{wanted}/") for path in modules):
         folders = {path.partition("/")[0] for path in modules if path.count("/") == 1}
         guess = nearest(wanted, folders)
         cause = f"There is a folder {shorten(guess)}." if guess else ""
         return failed(
-            "package-folder",
             f"There is no folder {wanted} with Python files.",
             expected,
-            cause,
-            where=Where("setup.py"),
+            Cause("package-folder", cause, Where("setup.py")),
         )
     return passed(expected)
 

@@ -83,9 +83,9 @@ def moved_otherwise(evidence: Evidence, expected: str) -> Finding | None:
     means = next((each for each in evidence.recording.interventions if each in MEANS), None)
     if means is None:
         return None
-    seen = f"Something other than a velocity command moved the turtle: {shorten(means)}."
+    observed = f"Something other than a velocity command moved the turtle: {shorten(means)}."
     cause = "Drive the turtle only with velocity commands."
-    return failed("intervention", seen, expected, cause, where=evidence.place("create_client", "ActionClient"))
+    return failed(observed, expected, Cause("intervention", cause, evidence.place("create_client", "ActionClient")))
 
 
 def not_driven(evidence: Evidence, expected: str, where: Where | None) -> Finding | None:
@@ -93,28 +93,32 @@ def not_driven(evidence: Evidence, expected: str, where: Where | None) -> Findin
     moved = moved_otherwise(evidence, expected)
     if moved is not None or (evidence.track.finite and evidence.track.length_m > MOVED_M):
         return moved
-    return failed("not-moving", "The turtle did not drive.", expected, where=where)
+    return failed("The turtle did not drive.", expected, Cause("not-moving", where=where))
 
 
 def _no_circle(evidence: Evidence, track: Track, expected: str) -> Finding | None:
     """Return a failed finding if the trajectory is nothing like a circle, with the most helpful reason first."""
     if not track.finite:
-        seen = "The turtle's position became NaN (not a number)."
+        observed = "The turtle's position became NaN (not a number)."
         return failed(
-            "not-a-number", seen, expected, "A command contained a number that is not finite.", where=_line(evidence)
+            observed,
+            expected,
+            Cause("not-a-number", "A command contained a number that is not finite.", _line(evidence)),
         )
     if track.length_m <= MOVED_M:
         if track.turned_rad > TURNED_RAD:
             cause = "linear.x is the forward speed. Without it the turtle only turns."
-            return failed("turns-on-the-spot", "The turtle turned on the spot.", expected, cause, where=_line(evidence))
-        return failed("not-moving", "The turtle did not move.", expected, _all_zero(evidence), where=_line(evidence))
+            return failed(
+                "The turtle turned on the spot.", expected, Cause("turns-on-the-spot", cause, _line(evidence))
+            )
+        return failed("The turtle did not move.", expected, Cause("not-moving", _all_zero(evidence), _line(evidence)))
     if track.wall.any():
-        seen = f"The turtle ran into a wall after {_wall_s(track):.1f} s."
-        return failed("wall", seen, expected, _size(evidence), where=_line(evidence))
+        observed = f"The turtle ran into a wall after {_wall_s(track):.1f} s."
+        return failed(observed, expected, Cause("wall", _size(evidence), _line(evidence)))
     fitted = track.circle
     if fitted is None or fitted.radius > STRAIGHT_RADIUS_M:
         cause = "The turtle never turns. angular.z is the turning speed."
-        return failed("straight-line", "The turtle drove in a straight line.", expected, cause, where=_line(evidence))
+        return failed("The turtle drove in a straight line.", expected, Cause("straight-line", cause, _line(evidence)))
     return None
 
 
@@ -131,18 +135,18 @@ def _measured(evidence: Evidence, params: CircleParams, track: Track, expected: 
     if not forward > 0.0:
         direction = "clockwise" if turns < 0.0 else "counter-clockwise"
         cause = "The sign of angular.z sets the direction: a positive value turns left, which is counter-clockwise."
-        seen = f"The turtle drove the circle {direction}."
-        return failed("wrong-direction", seen, expected, cause, where=_line(evidence))
+        observed = f"The turtle drove the circle {direction}."
+        return failed(observed, expected, Cause("wrong-direction", cause, _line(evidence)))
     near = round_.near(fitted.rms) or size.near(fitted.radius) or place.near(centre) or long.near(forward)
     if not size.holds(fitted.radius):
-        seen = f"The radius of the circle is {shown(round(fitted.radius, 2))} m."
-        return failed("wrong-radius", seen, expected, _size(evidence), where=_line(evidence), near_edge=near)
+        observed = f"The radius of the circle is {shown(round(fitted.radius, 2))} m."
+        return failed(observed, expected, Cause("wrong-radius", _size(evidence), _line(evidence)), near_edge=near)
     if not place.holds(centre):
-        seen = f"The circle has the right size, but it is {centre:.2f} m away from where it should be."
+        observed = f"The circle has the right size, but it is {centre:.2f} m away from where it should be."
         cause = (
             "The first commands differ from the others, so the turtle left its start position before the circle began."
         )
-        return failed("wrong-centre", seen, expected, cause, where=_line(evidence), near_edge=near)
+        return failed(observed, expected, Cause("wrong-centre", cause, _line(evidence)), near_edge=near)
     if not long.holds(forward):
         return _too_short(evidence, track, forward, expected, near_edge=near)
     return passed(expected.replace("A circle", "The turtle drove a circle"), near_edge=near)
@@ -152,34 +156,41 @@ def _not_round(evidence: Evidence, track: Track, fitted: Circle, expected: str, 
     off = f"it deviates by {max(fitted.rms, 0.01):.2f} m (RMS) from the best-fitting circle"
     if track.straight_share > POLYGON_SHARE:
         if track.sides == 1:
-            return failed("straight-line", "The turtle drove in a straight line.", expected, "", where=_line(evidence))
-        seen = f"The trajectory has {track.sides} straight sides with corners; {off}."
+            return failed(
+                "The turtle drove in a straight line.", expected, Cause("straight-line", where=_line(evidence))
+            )
+        observed = f"The trajectory has {track.sides} straight sides with corners; {off}."
         cause = "To drive a circle, every command must move forward and turn at the same time."
-        return failed("polygon", seen, expected, cause, where=_line(evidence), near_edge=near_edge)
+        return failed(observed, expected, Cause("polygon", cause, _line(evidence)), near_edge=near_edge)
     changed = len({(command.linear, command.angular) for command in evidence.commands}) > 1
     cause = "The commands change. A circle needs the same command all the time." if changed else ended_early(evidence)
     return failed(
-        "not-round", f"The trajectory is not round: {off}.", expected, cause, where=_line(evidence), near_edge=near_edge
+        f"The trajectory is not round: {off}.",
+        expected,
+        Cause("not-round", cause, _line(evidence)),
+        near_edge=near_edge,
     )
 
 
 def _too_short(evidence: Evidence, track: Track, turns: float, expected: str, *, near_edge: bool) -> Finding:
-    seen = f"The turtle drove {turns:.2f} of a turn."
+    observed = f"The turtle drove {turns:.2f} of a turn."
     early = ended_early(evidence)
     if early:
-        return failed("ended-early", seen, expected, early, where=evidence.place("publish"), near_edge=near_edge)
+        return failed(observed, expected, Cause("ended-early", early, evidence.place("publish")), near_edge=near_edge)
     if track.rests:
-        seen = f"The turtle drove {turns:.2f} of a turn, with {count(track.rests, 'stop')} on the way."
+        observed = f"The turtle drove {turns:.2f} of a turn, with {count(track.rests, 'stop')} on the way."
         why = Cause("stops-and-goes", "The turtle stops when no command arrives for 1 s.")
     elif seen_in.end_s(evidence.recording) - evidence.commands[-1].t_s > LIVES_S:
-        seen = f"The turtle drove {turns:.2f} of a turn; the last command arrived at {evidence.commands[-1].t_s:.1f} s."
+        observed = (
+            f"The turtle drove {turns:.2f} of a turn; the last command arrived at {evidence.commands[-1].t_s:.1f} s."
+        )
         why = Cause("stopped-early", "The turtle stops when no command arrives for 1 s.")
     else:
         speed = _steady(evidence)
         turn_s = 2.0 * math.pi / abs(speed[1]) if speed and speed[1] else 0.0
         cause = f"With angular.z {shown(speed[1])} rad/s, one turn takes {turn_s:.1f} s." if speed and turn_s else ""
-        return failed("too-short", seen, expected, cause, where=_line(evidence), near_edge=near_edge)
-    return failed(why.diagnosis, seen, expected, why.text, where=evidence.place("publish"), near_edge=near_edge)
+        return failed(observed, expected, Cause("too-short", cause, _line(evidence)), near_edge=near_edge)
+    return failed(observed, expected, why.at(evidence.place("publish")), near_edge=near_edge)
 
 
 def _steady(evidence: Evidence) -> tuple[float, float] | None:
@@ -223,9 +234,9 @@ def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     if moved is not None:
         return moved
     if track.wall.any():
-        seen = f"The turtle ran into a wall after {_wall_s(track):.1f} s."
+        observed = f"The turtle ran into a wall after {_wall_s(track):.1f} s."
         expected = "The turtle never touches a wall."
-        return failed("wall", seen, expected, _size(evidence), where=_line(evidence))
+        return failed(observed, expected, Cause("wall", _size(evidence), _line(evidence)))
     if not (track.finite and track.length_m > MOVED_M):
         return Finding(Status.SKIPPED, "Not judged, because the turtle did not drive.")
     return passed("The turtle did not touch a wall.")

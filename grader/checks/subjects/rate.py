@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.causes.cause import Cause
-from grader.checks.causes.crash import crash_of, end_seen, ended_early
+from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_rate import why_often, why_timers_grow
@@ -96,7 +96,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
     worst = max(measured.intervals, key=lambda interval: abs(interval - period))
     if not all(each.holds(interval) for interval in measured.intervals):
         at = measured.begins[measured.intervals.index(worst)]
-        seen = (
+        observed = (
             f"{what.plural} arrived at uneven intervals: {worst:.2f} s passed between two of them, "
             f"{at:.1f} s after the start."
         )
@@ -107,13 +107,16 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
         cause = _uneven_cause(evidence, what)
         grow = why_timers_grow(evidence)
         if grow is not None:
-            return failed(grow.diagnosis, seen, wanted, grow.text, where=grow.where, near_edge=near)
-        return failed("uneven-rate", seen, wanted, cause, where=evidence.place(what.call), near_edge=near)
+            return failed(observed, wanted, grow, near_edge=near)
+        return failed(observed, wanted, Cause("uneven-rate", cause, evidence.place(what.call)), near_edge=near)
     if not first.holds(measured.first_s):
-        seen = f"The first {what.noun} arrived {measured.first_s:.1f} s after the start."
+        observed = f"The first {what.noun} arrived {measured.first_s:.1f} s after the start."
         wanted = f"It arrives within {params.first_within_s:.1f} s."
         return failed(
-            "late-start", seen, wanted, _late_cause(evidence), where=evidence.place("sleep", what.call), near_edge=near
+            observed,
+            wanted,
+            Cause("late-start", _late_cause(evidence), evidence.place("sleep", what.call)),
+            near_edge=near,
         )
     if not measured.rest_s <= params.max_interval_s:
         return _stopped(evidence, what, measured, expected, near_edge=near)
@@ -127,22 +130,20 @@ def _extremes(measured: Measured) -> tuple[float, float]:
 def _few(evidence: Evidence, what: Subject, measured: Measured, expected: str) -> Finding:
     amount = len(measured.arrivals)
     crash = crash_of(evidence)
-    seen = f"{count(amount, what.noun)} arrived in {seen_in.end_s(evidence.recording):.0f} s."
+    observed = f"{count(amount, what.noun)} arrived in {seen_in.end_s(evidence.recording):.0f} s."
     if crash is not None:
-        return crash_finding(evidence, crash, f"{seen} {end_seen(evidence)}", expected)
+        return crash_finding(evidence, crash, f"{observed} {end_observed(evidence)}", expected)
     where = evidence.place(what.call)
     if evidence.recording.end.by == "itself":
         why = why_ended(evidence)
-        return failed(why.diagnosis, f"{seen} {end_seen(evidence)}", expected, why.text, where=why.where)
+        return failed(f"{observed} {end_observed(evidence)}", expected, why)
     if amount == 1:
         cause = f"{what.call} is called only once. A timer calls a method again and again."
-        return failed("published-once" if what is COMMAND else "logged-once", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("published-once" if what is COMMAND else "logged-once", cause, where))
     return failed(
-        "too-few-commands" if what is COMMAND else "too-few-log-lines",
-        seen,
+        observed,
         expected,
-        ended_early(evidence),
-        where=where,
+        Cause("too-few-commands" if what is COMMAND else "too-few-log-lines", ended_early(evidence), where),
     )
 
 
@@ -152,16 +153,16 @@ def _wrong_mean(
     mean = measured.mean_s
     often = why_often(evidence, what.call, mean, 1.0 / params.rate_hz) or why_timers_grow(evidence)
     if mean < 0.01:
-        seen = f"{count(len(measured.arrivals), what.noun)} arrived, one every {1000.0 * mean:.2f} ms."
+        observed = f"{count(len(measured.arrivals), what.noun)} arrived, one every {1000.0 * mean:.2f} ms."
     else:
-        seen = f"{what.plural} arrived every {mean:.2f} s ({1.0 / mean:.1f} Hz)."
+        observed = f"{what.plural} arrived every {mean:.2f} s ({1.0 / mean:.1f} Hz)."
     if often is not None:
-        return failed(often.diagnosis, seen, expected, often.text, where=often.where, near_edge=near_edge)
+        return failed(observed, expected, often, near_edge=near_edge)
     why = _why_mean(evidence, what, mean)
     if why.diagnosis == "timer-period" and abs(mean - params.rate_hz) <= SAME * params.rate_hz:
         text = "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate."
         why = Cause("rate-for-period", text, why.where)
-    return failed(why.diagnosis, seen, expected, why.text, where=why.where, near_edge=near_edge)
+    return failed(observed, expected, why, near_edge=near_edge)
 
 
 def _why_mean(evidence: Evidence, what: Subject, mean: float) -> Cause:
@@ -210,13 +211,13 @@ def _late_cause(evidence: Evidence) -> str:
 
 
 def _stopped(evidence: Evidence, what: Subject, measured: Measured, expected: str, *, near_edge: bool) -> Finding:
-    seen = f"The last {what.noun} arrived at {measured.arrivals[-1]:.1f} s, {measured.rest_s:.1f} s before the end."
+    observed = f"The last {what.noun} arrived at {measured.arrivals[-1]:.1f} s, {measured.rest_s:.1f} s before the end."
     wanted = f"{expected[:-1]}, until Ctrl-C."
     crash = crash_of(evidence)
     if crash is not None:
-        return crash_finding(evidence, crash, f"{seen} {end_seen(evidence)}", wanted)
+        return crash_finding(evidence, crash, f"{observed} {end_observed(evidence)}", wanted)
     return failed(
-        "stopped-early", seen, wanted, ended_early(evidence), where=evidence.place(what.call), near_edge=near_edge
+        observed, wanted, Cause("stopped-early", ended_early(evidence), evidence.place(what.call)), near_edge=near_edge
     )
 
 

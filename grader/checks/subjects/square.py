@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from grader.checks.causes.cause import Cause
 from grader.checks.causes.too_soon import too_soon
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
@@ -79,19 +80,19 @@ def square(evidence: Evidence, params: Square) -> Finding:
     if still is not None:
         return still
     if track.wall.any():
-        return failed("wall", "The turtle ran into a wall.", expected, "A side is too long.", where=where)
+        return failed("The turtle ran into a wall.", expected, Cause("wall", "A side is too long.", where))
     sides = sides_of(track)
     if sides.curved_share > CURVED_SHARE:
-        seen = f"{100.0 * sides.curved_share:.0f} % of the trajectory is curved."
+        observed = f"{100.0 * sides.curved_share:.0f} % of the trajectory is curved."
         cause = "Drive with angular.z at 0, then turn with linear.x at 0. Never do both at once."
-        return failed("curves", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("curves", cause, where))
     if len(sides.lengths) < SIDES:
-        seen = f"The trajectory has {count(len(sides.lengths), 'side')}."
+        observed = f"The trajectory has {count(len(sides.lengths), 'side')}."
         cause = (
             "Four sides and the turns between them must fit into the time. "
             "The node must switch back from turning to driving each time."
         )
-        return failed("too-few-sides", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("too-few-sides", cause, where))
     return _measured(evidence, params, sides, expected)
 
 
@@ -103,32 +104,34 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
     sign = -1.0 if params.sense == "clockwise" or (params.sense == "either" and corners[0] < 0.0) else 1.0
     near = long.near(*sides.lengths[:SIDES]) or right.near(*(sign * corner for corner in corners))
     if all(sign * corner < 0.0 for corner in corners):
-        seen = "The turtle turns in the wrong direction at the corners."
-        return failed("wrong-direction", seen, f"The turtle drives the square {params.sense}.", where=where)
+        observed = "The turtle turns in the wrong direction at the corners."
+        return failed(observed, f"The turtle drives the square {params.sense}.", Cause("wrong-direction", where=where))
     for name, length in zip(ORDINALS, sides.lengths, strict=False):
         if not long.holds(length):
             more = length - params.side_m
-            seen = f"The {name} side is {length:.2f} m long: {abs(more):.2f} m too {'long' if more > 0 else 'short'}."
+            observed = (
+                f"The {name} side is {length:.2f} m long: {abs(more):.2f} m too {'long' if more > 0 else 'short'}."
+            )
             cause = "The length of a side is speed times time. The time is a number of timer calls."
-            finding = failed("side-length", seen, expected, cause, where=where, near_edge=near)
+            finding = failed(observed, expected, Cause("side-length", cause, where), near_edge=near)
             if name == ORDINALS[0] and more < 0.0 and all(map(long.holds, sides.lengths[1:SIDES])):
                 finding = too_soon(finding, evidence)
             return unless_starved(finding, recording, abs(more) - params.side_tolerance_m, float(speed.max()))
     for name, corner in zip(ORDINALS, corners, strict=False):
         if not right.holds(sign * corner):
-            seen = f"The {name} corner turns by {sign * corner:.0f} degrees."
+            observed = f"The {name} corner turns by {sign * corner:.0f} degrees."
             cause = "A quarter turn is pi / 2 rad, which is turning speed times time."
-            finding = failed("corner-angle", seen, expected, cause, where=where, near_edge=near)
+            finding = failed(observed, expected, Cause("corner-angle", cause, where), near_edge=near)
             off = abs(sign * corner - 90.0) - params.corner_tolerance_deg
             return unless_starved(finding, recording, off, math.degrees(float(np.abs(recording.frames.angular).max())))
     gap = math.dist(sides.ends[SIDES - 1], (evidence.recording.start.x, evidence.recording.start.y))
     closed = Band.at_most(params.closing_m)
     if not closed.holds(gap):
-        seen = f"The fourth side ends {gap:.2f} m away from the start position."
-        finding = failed("square-gap", seen, expected, where=where, near_edge=True)
+        observed = f"The fourth side ends {gap:.2f} m away from the start position."
+        finding = failed(observed, expected, Cause("square-gap", where=where), near_edge=True)
         return unless_starved(finding, recording, gap - params.closing_m, SIDES * float(speed.max()))
-    seen = f"The turtle drove a square with sides of {params.side_m:.1f} m."
-    return passed(seen, near_edge=near or closed.near(gap))
+    observed = f"The turtle drove a square with sides of {params.side_m:.1f} m."
+    return passed(observed, near_edge=near or closed.near(gap))
 
 
 def requested_square(evidence: Evidence, params: Square) -> Requested:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.crash import crash_of, end_seen
+from grader.checks.causes.cause import Cause
+from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.kind import Kind, number
@@ -34,21 +35,21 @@ def stop(evidence: Evidence, params: Stop) -> Finding:
     if end.by == "SIGINT" and limit.holds(took):
         return passed("The node stops on Ctrl-C.", near_edge=limit.near(took))
     if end.by == "SIGINT":
-        seen = f"The node stopped {took:.1f} s after Ctrl-C."
+        observed = f"The node stopped {took:.1f} s after Ctrl-C."
         cause = "The node may still be waiting for something after Ctrl-C: a sleep, a thread or a service response."
-        return failed("slow-stop", seen, expected, cause, where=evidence.place("spin"), near_edge=True)
+        return failed(observed, expected, Cause("slow-stop", cause, evidence.place("spin")), near_edge=True)
     force = "it had to be killed" if end.by == "SIGKILL" else "only SIGTERM ended it"
     cause = "A loop that never ends, or an except that catches everything, can hide Ctrl-C from the node."
     where = evidence.place("spin", "init")
-    return failed("ignores-ctrl-c", f"The node ignored Ctrl-C: {force}.", expected, cause, where=where, near_edge=True)
+    return failed(f"The node ignored Ctrl-C: {force}.", expected, Cause("ignores-ctrl-c", cause, where), near_edge=True)
 
 
 def _too_early(evidence: Evidence, expected: str) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
-        return crash_finding(evidence, crash, end_seen(evidence), expected)
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
     why = why_ended(evidence)
-    return failed(why.diagnosis, end_seen(evidence), expected, why.text, where=why.where)
+    return failed(end_observed(evidence), expected, why)
 
 
 STOP = Kind(

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.causes.cause import Cause
-from grader.checks.causes.crash import crash_of, end_seen
+from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_silent import why_nothing, why_qos
@@ -66,9 +66,9 @@ def _expected(params: Topic) -> str:
 
 def _wrong_type(evidence: Evidence, params: Topic, publishers: list[Endpoint]) -> Finding:
     types = a_list(sorted({shorten(publisher.type) for publisher in publishers}))
-    seen = f"{params.topic} receives messages of type {types}, which the turtle does not understand."
+    observed = f"{params.topic} receives messages of type {types}, which the turtle does not understand."
     cause = "The message type is the first argument of create_publisher."
-    return failed("wrong-type", seen, _expected(params), cause, where=_publisher_line(evidence, params.topic))
+    return failed(observed, _expected(params), Cause("wrong-type", cause, _publisher_line(evidence, params.topic)))
 
 
 def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, ...]) -> Finding:
@@ -76,9 +76,9 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     topics = sorted({publisher.topic for publisher in same_type or publishers})
     guess = nearest(params.topic, topics)
     shown = [guess] if guess is not None else topics
-    seen = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but no turtle subscribes to that."
+    observed = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but no turtle subscribes to that."
     why = _why_topic(params.topic, shown[0])
-    return failed(why.diagnosis, seen, _expected(params), why.text, where=_publisher_line(evidence, shown[0]))
+    return failed(observed, _expected(params), why.at(_publisher_line(evidence, shown[0])))
 
 
 def _why_topic(wanted: str, topic: str) -> Cause:
@@ -105,34 +105,34 @@ def _why_topic(wanted: str, topic: str) -> Cause:
 def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
-        return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
+        return crash_finding(evidence, crash, end_observed(evidence), _expected(params))
     subscribed = [each for each in seen_in.endpoints(evidence.recording, "subscription") if each.topic == params.topic]
     if subscribed:
         cause = "A subscription only receives messages. Use create_publisher to send them."
         where = evidence.place("create_subscription")
         return failed(
-            "subscription-instead", f"The node subscribes to {params.topic}.", _expected(params), cause, where=where
+            f"The node subscribes to {params.topic}.", _expected(params), Cause("subscription-instead", cause, where)
         )
-    seen = end_seen(evidence) or "The node has no publisher."
+    observed = end_observed(evidence) or "The node has no publisher."
     why = why_nothing(evidence, ("publish",)) if evidence.code.calls("create_publisher") else None
     if why is not None:
-        return failed(why.diagnosis, seen, _expected(params), why.text, where=why.where)
+        return failed(observed, _expected(params), why)
     cause = "" if evidence.code.calls("create_publisher") else "create_publisher is never called."
-    return failed("no-publisher", seen, _expected(params), cause, where=evidence.place("create_publisher"))
+    return failed(observed, _expected(params), Cause("no-publisher", cause, evidence.place("create_publisher")))
 
 
 def _silent(evidence: Evidence, params: Topic) -> Finding:
     """Return the finding about a publisher with the right topic and type that sent nothing."""
-    seen = f"There is a publisher on {params.topic}, but no message arrived after the start."
+    observed = f"There is a publisher on {params.topic}, but no message arrived after the start."
     crash = crash_of(evidence)
     if crash is not None:
-        return crash_finding(evidence, crash, end_seen(evidence), _expected(params))
+        return crash_finding(evidence, crash, end_observed(evidence), _expected(params))
     if evidence.recording.end.by == "itself":
         why = why_ended(evidence)
-        return failed(why.diagnosis, f"{seen} {end_seen(evidence)}", _expected(params), why.text, where=why.where)
+        return failed(f"{observed} {end_observed(evidence)}", _expected(params), why)
     why = _why_silent(evidence)
-    seen = f"{seen} {end_seen(evidence)}".rstrip()
-    return failed(why.diagnosis, seen, _expected(params), why.text, where=why.where)
+    observed = f"{observed} {end_observed(evidence)}".rstrip()
+    return failed(observed, _expected(params), why)
 
 
 def _why_silent(evidence: Evidence) -> Cause:
@@ -141,7 +141,7 @@ def _why_silent(evidence: Evidence) -> Cause:
         return Cause("no-publish", "publish is never called.", code.start)
     why = why_qos(evidence) or why_nothing(evidence, ("publish",))
     if why is not None:
-        return replace(why, where=why.where or code.start)
+        return why.at(code.start)
     text = "The line that publishes is never reached, or it runs only at the start, before a subscription is connected."
     return Cause("never-publishes", text, evidence.place("publish"))
 
@@ -164,9 +164,9 @@ def only_type(evidence: Evidence, params: Topic) -> Finding:
     types |= {message.type for message in evidence.recording.messages if message.topic == params.topic}
     others = sorted(types - {params.type})
     if others:
-        seen = f"{params.topic} also receives messages of type {a_list([shorten(other) for other in others])}."
+        observed = f"{params.topic} also receives messages of type {a_list([shorten(other) for other in others])}."
         cause = "A topic has one type. Two publishers with different types cannot use the same topic name."
-        return failed("second-type", seen, expected, cause, where=_publisher_line(evidence, params.topic))
+        return failed(observed, expected, Cause("second-type", cause, _publisher_line(evidence, params.topic)))
     return passed(expected)
 
 
@@ -179,18 +179,20 @@ def subscribes(evidence: Evidence, params: Topic) -> Finding:
         return passed(expected)
     on_topic = [each.type for each in found if each.topic == params.topic]
     if on_topic:
-        seen = f"The node subscribes to {params.topic} with the type {shorten(on_topic[0])}, so no message reaches it."
+        observed = (
+            f"The node subscribes to {params.topic} with the type {shorten(on_topic[0])}, so no message reaches it."
+        )
         cause = "The message type is the first argument of create_subscription."
-        return failed("wrong-type", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("wrong-type", cause, where))
     if found:
-        seen = f"The node subscribes to {a_list(sorted({shorten(each.topic) for each in found}))}."
+        observed = f"The node subscribes to {a_list(sorted({shorten(each.topic) for each in found}))}."
         cause = "The topic name is the second argument of create_subscription. Compare it letter by letter."
-        return failed("wrong-topic", seen, expected, cause, where=where)
+        return failed(observed, expected, Cause("wrong-topic", cause, where))
     crash = crash_of(evidence)
     if crash is not None:
-        return crash_finding(evidence, crash, end_seen(evidence), expected)
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
     cause = "" if evidence.code.calls("create_subscription") else "create_subscription is never called."
-    return failed("no-subscription", "The node has no subscription.", expected, cause, where=where)
+    return failed("The node has no subscription.", expected, Cause("no-subscription", cause, where))
 
 
 PUBLISHES = Kind(

@@ -62,7 +62,7 @@ def values(evidence: Evidence, params: Values) -> Finding:
     expected = _expected(params.wanted)
     wrong = [six for six in amounts if not _all_hold(bands, six)]
     if not amounts:
-        return failed("no-commands", "No command arrived.", expected)
+        return failed("No command arrived.", expected, Cause("no-commands"))
     if not wrong:
         return passed(f"Every command has {expected[0].lower()}{expected[1:]}", near_edge=near)
     first = wrong[0]
@@ -73,11 +73,11 @@ def values(evidence: Evidence, params: Values) -> Finding:
         f"All {total} commands were" if bad == total else f"{bad} of {total} commands {'was' if bad == 1 else 'were'}"
     )
     alike = len({str(six) for six in wrong}) == 1
-    seen = f"{amount} wrong: {actual}{'' if alike else ' in the first of them'}."
+    observed = f"{amount} wrong: {actual}{'' if alike else ' in the first of them'}."
     why, field = _why(first, params.wanted, off)
     if why.diagnosis == "wrong-value" and bad < total:
         why = Cause("values-change", "The other commands were right. Something changes the values while the node runs.")
-    return failed(why.diagnosis, seen, expected, why.text, where=_line(evidence, field), near_edge=near)
+    return failed(observed, expected, why.at(_line(evidence, field)), near_edge=near)
 
 
 def _expected(wanted: Six) -> str:

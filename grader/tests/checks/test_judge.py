@@ -60,7 +60,7 @@ def test_what_needs_a_failed_check_is_skipped_and_names_the_first_cause() -> Non
     assert {outcome.id for outcome in skipped} == {
         "installed", "entry-point", "start", "node-name", "topic", "type", "rate", "values", "circle", "wall", "stop",
     }  # fmt: skip
-    assert {outcome.finding.seen for outcome in skipped} == {
+    assert {outcome.finding.observed for outcome in skipped} == {
         'Not judged, because "colcon builds and installs the package" did not pass.'
     }
 
@@ -92,7 +92,7 @@ def test_advice_that_was_not_followed_fails_no_run() -> None:
 def test_a_fault_of_the_machine_takes_nothing_out_of_the_maximum(given: Evidence, broken: int, points: float) -> None:
     made = report(judge(given))
     errors = made.with_status(Status.ERROR)
-    assert (len(errors), {outcome.finding.seen for outcome in errors}) == (broken, {FULL_DISK})
+    assert (len(errors), {outcome.finding.observed for outcome in errors}) == (broken, {FULL_DISK})
     assert (made.points, made.max, made.exit_code) == (points, 100.0, 3)
     assert made.with_status(Status.SKIPPED) == ()
 
@@ -112,7 +112,7 @@ def test_what_breaks_a_check_could_not_be_read_and_the_others_are_judged(monkeyp
     outcomes = by_id(evidence(good()))
     assert outcomes["values"].status is Status.FAILED
     assert outcomes["values"].finding.diagnosis == "unreadable"
-    assert "could not be read: ZeroDivisionError" in outcomes["values"].finding.seen
+    assert "could not be read: ZeroDivisionError" in outcomes["values"].finding.observed
     assert [outcome.id for outcome in outcomes.values() if outcome.status is not Status.PASSED] == ["values"]
 
 
@@ -165,4 +165,4 @@ def test_a_node_that_brings_the_simulator_down_has_failed_and_is_no_error() -> N
     made = report(judge(given))
     assert (made.points, made.max, made.exit_code) == (0.0, 100.0, 1)
     (start,) = [outcome for outcome in made.outcomes if outcome.id == "start"]
-    assert (start.finding.diagnosis, "MemoryError" in start.finding.seen) == ("overwhelmed", True)
+    assert (start.finding.diagnosis, "MemoryError" in start.finding.observed) == ("overwhelmed", True)

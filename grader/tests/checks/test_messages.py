@@ -52,10 +52,10 @@ FAILURES = catalogue()
 def test_a_failure_says_what_was_seen_and_expected_in_few_words(name: str) -> None:
     finding = FAILURES[name].finding
     assert finding.diagnosis
-    assert finding.seen.endswith(".")
+    assert finding.observed.endswith(".")
     assert finding.expected.endswith(".")
     assert not finding.cause or finding.cause.endswith((".", "?"))
-    parts = (finding.seen, finding.expected, finding.cause, str(finding.where or ""))
+    parts = (finding.observed, finding.expected, finding.cause, str(finding.where or ""))
     text = " ".join(part for part in parts if part)
     assert len(text.split()) <= MOST_WORDS, text
     assert len(text) <= 600
@@ -65,7 +65,7 @@ def test_a_failure_says_what_was_seen_and_expected_in_few_words(name: str) -> No
 @pytest.mark.parametrize("name", sorted(FAILURES))
 def test_no_failure_tells_a_line_of_the_solution(name: str) -> None:
     finding = FAILURES[name].finding
-    text = f"{finding.seen} {finding.expected} {finding.cause}".replace("'", '"')
+    text = f"{finding.observed} {finding.expected} {finding.cause}".replace("'", '"')
     assert [line for line in SOLUTION if line in text] == []
 
 

@@ -81,7 +81,7 @@ def make_four(folder: Path) -> Path:
 def assert_set_aside(done: dict[str, Result]) -> None:
     aside = done["deadly"].report
     assert {outcome.status for outcome in aside.outcomes} == {Status.ERROR}
-    assert "lost twice" in aside.outcomes[0].finding.seen
+    assert "lost twice" in aside.outcomes[0].finding.observed
     assert (aside.points, aside.max) == (0.0, 100.0)
     assert (done["anna"].report.points, done["ben"].report.points) == (100.0, 0.0)
 
@@ -91,7 +91,7 @@ def test_what_kills_workers_is_set_aside_after_two_tries_and_the_others_go_on(tm
     order = order_of(make_four(tmp_path / "class"))
     done = graded(order, LocalEngine(2), tmp_path / "grades")
     assert_set_aside(done)
-    assert "SIGKILL" in done["deadly"].report.outcomes[0].finding.seen
+    assert "SIGKILL" in done["deadly"].report.outcomes[0].finding.observed
     # An error is no result to keep: the next run tries again.
     with opened(tmp_path / "grades") as results:
         kept, todo = sort_out(order, results)

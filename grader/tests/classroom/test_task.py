@@ -15,5 +15,5 @@ def test_what_holds_nothing_to_grade_has_no_points_and_the_reason(step: str, dia
     task = Task("anna", "anna", sources_of({step}, None)[step], reason, grader=grader_key(), trusted=True)
     report = perform(task).report
     first, *others = report.outcomes
-    assert (first.finding.diagnosis, first.finding.seen, report.points) == (diagnosis, reason, 0.0)
+    assert (first.finding.diagnosis, first.finding.observed, report.points) == (diagnosis, reason, 0.0)
     assert {outcome.status.value for outcome in others} == {"skipped"}

@@ -174,7 +174,7 @@ def test_a_failure_tells_what_was_seen() -> None:
     )
     failure = case.result[0]
     outcome = next(each for each in report("failed").outcomes if each.status is Status.FAILED)
-    assert (failure.message, failure.type) == (outcome.finding.seen, outcome.finding.diagnosis)
+    assert (failure.message, failure.type) == (outcome.finding.observed, outcome.finding.diagnosis)
     assert outcome.finding.expected in failure.text
 
 
@@ -293,7 +293,7 @@ def test_annotations_name_the_line_and_what_was_seen() -> None:
     assert [command.name for command in found] == ["error"] * len(failed)
     for command, outcome in zip(found, failed, strict=True):
         assert command.properties["title"] == f"anna: {outcome.title}"
-        assert outcome.finding.seen in command.message
+        assert outcome.finding.observed in command.message
         if outcome.finding.where and outcome.finding.where.line:
             assert command.properties["line"] == str(outcome.finding.where.line)
             assert command.properties["file"] == f"exercises/03/my_robot_controller/{outcome.finding.where.file}"
@@ -380,6 +380,6 @@ def test_of_a_hidden_check_students_see_whether_it_passed(status: Status) -> Non
     }
     assert [name for name, text in texts.items() if "secret" in text] == []
     said = {Status.PASSED: "passed", Status.ERROR: "could not be judged"}.get(status, "failed")
-    assert for_students(given).outcomes[-1].finding.seen == f"Hidden check: {said}."
+    assert for_students(given).outcomes[-1].finding.observed == f"Hidden check: {said}."
     assert for_students(given).points == given.points
     assert for_students(given).max == given.max

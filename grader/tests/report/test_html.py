@@ -136,7 +136,7 @@ def test_the_page_tells_the_checks_as_the_report_has_them() -> None:
     texts = [each for of in Tags(html_page(given, report)).texts.values() for each in of]
     for outcome in report.with_status(Status.FAILED):
         finding = outcome.finding
-        assert {outcome.title, finding.seen, finding.expected, finding.cause, str(finding.where)} <= {
+        assert {outcome.title, finding.observed, finding.expected, finding.cause, str(finding.where)} <= {
             each.strip() for each in texts
         }
 

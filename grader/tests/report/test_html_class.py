@@ -95,7 +95,9 @@ def test_a_hostile_name_adds_no_element_and_no_address(folder: Path) -> None:
     plain = {name for name, _ in Tags(class_page(read_class(folder))).elements}
     hostile = report("failed", submission=f"class/{ALL}/step")
     wicked = tuple(
-        replace(outcome, title=ALL, id=ALL, finding=replace(outcome.finding, seen=ALL, cause=ALL, diagnosis=SCRIPTS[0]))
+        replace(
+            outcome, title=ALL, id=ALL, finding=replace(outcome.finding, observed=ALL, cause=ALL, diagnosis=SCRIPTS[0])
+        )
         for outcome in hostile.outcomes
     )
     for name in ("javascript:pwned(1)", '" onmouseover=pwned(2) x="', "<script>pwned(3)<"):

@@ -42,7 +42,7 @@ TEXTS = st.text(max_size=30)
 FINDINGS = st.builds(
     Finding,
     status=st.sampled_from(Status),
-    seen=TEXTS,
+    observed=TEXTS,
     expected=TEXTS,
     cause=TEXTS,
     diagnosis=st.none() | TEXTS,

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
+from grader.checks.causes.cause import Cause
 from grader.checks.outcome import Status, failed, passed
 from grader.report.terminal import render
 from grader.report.verdict import UNCONFINED
@@ -73,7 +74,7 @@ def worth(points: float, *, others: tuple[float, ...] = (100.0,)) -> Report:
     """A report with one failed check that is worth so many points, beside passed ones."""
     first = report("passed").outcomes[0]
     good = [replace(first, id=str(place), points=each, max=each) for place, each in enumerate(others)]
-    bad = replace(first, id="bad", points=0.0, max=points, finding=failed("wrong-rate", "Too slow.", "Faster."))
+    bad = replace(first, id="bad", points=0.0, max=points, finding=failed("Too slow.", "Faster.", Cause("wrong-rate")))
     return report("passed", outcomes=(*good, bad))
 
 
@@ -156,7 +157,7 @@ def test_of_a_hidden_check_only_the_line_is_shown() -> None:
 
 def test_advice_is_told_apart_from_failures() -> None:
     made = report("passed")
-    advice = replace(made.outcomes[-1], finding=failed("no-timer", "The node does not use a timer.", "A timer."))
+    advice = replace(made.outcomes[-1], finding=failed("The node does not use a timer.", "A timer.", Cause("no-timer")))
     text = told(replace(made, outcomes=(*made.outcomes[:-1], advice)))
     assert "i The node uses a timer\n    seen: The node does not use a timer.\n" in text
     assert "Passed: 100 of 100 points." in text
@@ -173,7 +174,7 @@ HOSTILE = st.text(alphabet=st.sampled_from("ab\x1b[]{}/\\\n\r\t\u202e\x9b\x07:re
 @given(HOSTILE, st.sampled_from([20, 60, 120]), st.booleans())
 def test_nothing_of_a_students_acts_on_the_terminal(text: str, width: int, terminal: bool) -> None:
     made = report("passed")
-    finding = failed("crash", text, text, text, where=Where(text, 3))
+    finding = failed(text, text, Cause("crash", text, Where(text, 3)))
     outcomes = (replace(made.outcomes[0], title=text, finding=finding), replace(made.outcomes[1], finding=passed(text)))
     shown = told(replace(made, outcomes=outcomes, submission=text), width=width, terminal=terminal)
     for own in ("\x1b[0m", "\x1b[1m", "\x1b[2m", "\x1b[32m", "\x1b[36m", "\x1b[1;31m", "\x1b[1;32m", "\x1b[2;32m"):

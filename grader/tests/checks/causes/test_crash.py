@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.checks.causes.crash import START, Crash, crash_of, end_seen, ended_early, read_traceback
+from grader.checks.causes.crash import START, Crash, crash_of, end_observed, ended_early, read_traceback
 from grader.tests.checks.made import NODE_FILE, evidence, recording
 from grader.tests.checks.shapes import TRACEBACK
 from grader.trial.recording import Output, ProcessEnd
@@ -62,12 +62,12 @@ def traceback(error: str, line: int = 14, file: str = f"/ws/{NODE_FILE}") -> str
 )
 def test_an_end_is_told_in_words(given: Evidence, error: str | None, early: str, seen: str) -> None:
     crash = crash_of(given)
-    assert (crash and crash.error, ended_early(given), end_seen(given)) == (error, early, seen)
+    assert (crash and crash.error, ended_early(given), end_observed(given)) == (error, early, seen)
 
 
 def test_an_exception_is_told_with_its_words_if_it_has_any() -> None:
-    assert Crash("KeyError", "'x'").seen == "KeyError: 'x'"
-    assert Crash("KeyError", "").seen == "KeyError"
+    assert Crash("KeyError", "'x'").observed == "KeyError: 'x'"
+    assert Crash("KeyError", "").observed == "KeyError"
 
 
 @pytest.mark.parametrize(

@@ -107,7 +107,7 @@ def test_comments_that_are_no_entry_point_are_none() -> None:
 def test_an_executable_of_nearly_that_name_is_named(build: Build) -> None:
     got = found(setup_py(POINT.replace("draw_circle =", "draw_cirle =")), build)
     assert (got.diagnosis, str(got.where)) == ("entry-point-name", "setup.py:14")
-    assert got.seen == "There is no executable draw_circle, but there is draw_cirle."
+    assert got.observed == "There is no executable draw_circle, but there is draw_cirle."
 
 
 SCRIPT = replace(BUILD, entry_points={})
@@ -153,7 +153,7 @@ def test_a_script_is_no_entry_point(files: Files, diagnosis: str, where: str, wo
 def test_an_executable_in_another_folder_is_told(files: Files, package: str | None, where: str, cause: str) -> None:
     got = found(files, replace(BUILD, executables=(), package=package))
     assert (got.diagnosis, str(got.where), got.cause) == ("setup-cfg", where, cause)
-    assert f"lib/{package or 'my_robot_controller'}." in got.seen
+    assert f"lib/{package or 'my_robot_controller'}." in got.observed
 
 
 def leads_to(target: str) -> Build:
@@ -189,7 +189,7 @@ def test_an_entry_point_that_leads_nowhere_is_explained_by_the_files(target: str
     got = found({}, leads_to(target))
     assert (got.diagnosis, str(got.where)) == (diagnosis, "setup.py:14")
     assert got.cause.startswith(cause)
-    assert "draw_circle names" in got.seen
+    assert "draw_circle names" in got.observed
 
 
 def test_a_module_that_was_not_installed_is_none_unless_it_is_linked() -> None:
@@ -231,7 +231,7 @@ def test_what_may_be_called_is_enough(text: str) -> None:
 def test_a_file_that_is_too_large_to_be_read_fails() -> None:
     got = found({NODE_FILE: b"#" * 500_000}, BUILD)
     assert (got.status, got.diagnosis) == (Status.FAILED, "unreadable")
-    assert "too large to be read: more than 400 kB" in got.seen
+    assert "too large to be read: more than 400 kB" in got.observed
 
 
 @pytest.mark.parametrize(

@@ -33,9 +33,9 @@ def test_pythons_words_lead_to_the_mistake(words: str, diagnosis: str) -> None:
     found = unreadable_finding("a.py", Unreadable(words, 3), b"x = 1\n")
     assert (found.diagnosis, str(found.where)) == (diagnosis, "a.py:3")
     assert found.cause
-    assert found.seen.startswith(f"Python cannot read a.py: {words[:20]}")
-    assert found.seen[-1] in ".?!"
-    assert not found.seen.endswith("..")
+    assert found.observed.startswith(f"Python cannot read a.py: {words[:20]}")
+    assert found.observed[-1] in ".?!"
+    assert not found.observed.endswith("..")
 
 
 @pytest.mark.parametrize("mark", [b"<<<<<<< HEAD", b"=======", b">>>>>>> main"])

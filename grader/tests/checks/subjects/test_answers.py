@@ -57,7 +57,7 @@ def test_the_file_is_looked_at_before_its_answers(answers: str | None, diagnosis
     finding = found(ANSWERS, given(answers, exercise=exercise))
     assert (finding.status, finding.diagnosis) == (Status.FAILED, diagnosis)
     if diagnosis == "unknown-answer":
-        assert finding.seen == "answers.toml answers nade, but no question has that name."
+        assert finding.observed == "answers.toml answers nade, but no question has that name."
     line = {"unknown-answer": "answers.toml:3", "no-answers": "None"}.get(str(diagnosis), "answers.toml")
     assert str(finding.where) == line
 
@@ -69,7 +69,7 @@ def test_capitals_and_blanks_of_words_do_not_matter(answer: str) -> None:
 
 def test_other_words_are_shown_with_the_authors_reason_and_the_line() -> None:
     finding = judged(TEXT, '"right"', accepts=("left",), cause="Look at the sign.")
-    assert (finding.seen, finding.cause) == ('name is "right".', "Look at the sign.")
+    assert (finding.observed, finding.cause) == ('name is "right".', "Look at the sign.")
     assert str(finding.where) == "answers.toml:2"
     assert "left" not in finding.expected
 
@@ -89,7 +89,7 @@ def test_no_answer_and_one_of_another_form_are_told(kind: Kind[Any]) -> None:
     other = "1.5" if kind is not RATE else '"4"'
     finding = found(kind, given(f"name = {other}"), **values)
     assert (finding.diagnosis, str(finding.where)) == ("answer-form", "answers.toml:2")
-    assert finding.seen == f"name is {other}."
+    assert finding.observed == f"name is {other}."
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_a_list_is_compared_whatever_its_order(answer: str, told: str | None, di
     finding = judged(LIST, answer, items=("x", "y"))
     assert (finding.status is Status.PASSED, finding.diagnosis) == (told is None, diagnosis)
     if told:
-        assert (finding.seen, str(finding.where)) == (told, "answers.toml:2")
+        assert (finding.observed, str(finding.where)) == (told, "answers.toml:2")
 
 
 @pytest.mark.parametrize(
@@ -172,4 +172,4 @@ def test_without_messages_there_is_no_rate_to_compare_with() -> None:
 
 def test_an_answer_of_any_length_makes_a_short_message() -> None:
     finding = judged(TEXT, f'"{"x" * 5000}"', accepts=("left",))
-    assert len(finding.seen) < 200
+    assert len(finding.observed) < 200

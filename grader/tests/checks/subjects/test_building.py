@@ -77,13 +77,13 @@ def test_each_fault_of_the_build(files: Files, build: Build, diagnosis: str, whe
 
 def test_the_last_words_of_a_failed_build_are_shown() -> None:
     found = of("build", build=replace(NOTHING, exit_code=1, log="warning: x\nerror: no such option\nfailed\n"))
-    assert found.seen == "`colcon build` failed: error: no such option."
+    assert found.observed == "`colcon build` failed: error: no such option."
 
 
 def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
     no_marker = tuple(path for path in BUILD.installed if "resource_index" not in path)
     found = of("installed", build=replace(BUILD, installed=no_marker))
-    assert (found.diagnosis, found.seen) == (
+    assert (found.diagnosis, found.observed) == (
         "resource-marker",
         "Not installed: the marker file resource/my_robot_controller.",
     )
@@ -93,7 +93,7 @@ def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
     assert (found.diagnosis, str(found.where)) == ("package-xml-not-installed", "setup.py:5")
     nothing = of("installed", {"setup.py": None}, replace(BUILD, installed=()))
     assert (nothing.diagnosis, str(nothing.where)) == ("resource-marker", "setup.py")
-    assert nothing.seen == "Not installed: the marker file resource/my_robot_controller and package.xml."
+    assert nothing.observed == "Not installed: the marker file resource/my_robot_controller and package.xml."
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
 )
 def test_the_package_is_looked_for_by_the_name_that_colcon_knows(files: Files, package: str | None, name: str) -> None:
     found = of("installed", files, replace(BUILD, package=package, installed=()))
-    assert found.seen == f"Not installed: the marker file resource/{name} and package.xml."
+    assert found.observed == f"Not installed: the marker file resource/{name} and package.xml."
     both = (f"share/ament_index/resource_index/packages/{name}", f"share/{name}/package.xml")
     assert of("installed", files, replace(BUILD, package=package, installed=both)).status is Status.PASSED
 
@@ -128,7 +128,7 @@ OTHER_TYPE = "colcon reads the build type from package.xml, and it is not ament_
 )
 def test_colcon_may_take_the_package_for_one_of_another_kind(files: Files, cause: str) -> None:
     failed = of("build", files, replace(NOTHING, exit_code=1))
-    assert (failed.diagnosis, failed.cause, failed.seen) == (
+    assert (failed.diagnosis, failed.cause, failed.observed) == (
         "build-failed",
         cause,
         "`colcon build` failed (exit code 1).",

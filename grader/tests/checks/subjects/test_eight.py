@@ -24,7 +24,7 @@ def eight(*parts: tuple[int, float, float], start: Pose | None = None, **values:
 
 def test_an_eight_is_one_wherever_it_begins_and_however_it_is_turned() -> None:
     for start in (None, Pose(4.0, 6.5, 2.2)):
-        assert eight(lobe(1), lobe(-1), start=start).seen == "The turtle drove a figure eight with radius 1.0 m."
+        assert eight(lobe(1), lobe(-1), start=start).observed == "The turtle drove a figure eight with radius 1.0 m."
 
 
 @pytest.mark.parametrize(
@@ -99,7 +99,7 @@ def test_each_other_way_is_told_with_its_lobe_and_by_how_much(
     parts: tuple[tuple[int, float, float], ...], diagnosis: str, seen: str
 ) -> None:
     finding = eight(*parts, first="left")
-    assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
+    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, seen)
     assert str(finding.where) == f"{NODE_FILE}:{10 if diagnosis == 'lobe-angle' else 15}"
 
 

@@ -79,7 +79,7 @@ def leads_to(target: str) -> Build:
 )
 def test_each_fault_of_the_entry_point(files: Files, build: Build, diagnosis: str, where: str) -> None:
     found = of("entry-point", files, build)
-    assert (found.status, found.diagnosis) == (Status.FAILED, diagnosis), found.seen
+    assert (found.status, found.diagnosis) == (Status.FAILED, diagnosis), found.observed
     assert str(found.where).startswith(where)
 
 

@@ -26,7 +26,7 @@ def goal(*parts: Leg, start: Pose = START) -> Finding:
 @pytest.mark.parametrize("way_m", [4.0, 3.95, 4.05])
 def test_whoever_stops_near_enough_has_arrived(way_m: float) -> None:
     finding = goal(ahead(way_m))
-    assert (finding.status, finding.seen) == (
+    assert (finding.status, finding.observed) == (
         Status.PASSED,
         "The turtle drove to its goal, 4.0 m away, and stopped.",
     )
@@ -57,7 +57,7 @@ def test_whoever_stops_near_enough_has_arrived(way_m: float) -> None:
 )
 def test_whoever_is_not_there_is_told_where_they_are(parts: tuple[Leg, ...], diagnosis: str, seen: str) -> None:
     finding = goal(*parts)
-    assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
+    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, seen)
     assert str(finding.where) == f"{NODE_FILE}:16"
 
 

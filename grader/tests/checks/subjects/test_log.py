@@ -31,7 +31,7 @@ def in_format(log: tuple[LogLine, ...], format_: str = HELLO, node: str = LOGS, 
 
 
 def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
-    assert in_format(lines("I begin", "Hello 0", "Hello 1")).seen == 'The log contains lines such as "Hello 0".'
+    assert in_format(lines("I begin", "Hello 0", "Hello 1")).observed == 'The log contains lines such as "Hello 0".'
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
 )
 def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: str, seen: str, cause: str) -> None:
     finding = in_format(lines(log), format_)
-    assert (finding.status, finding.seen, finding.cause) == (Status.FAILED, seen, cause)
+    assert (finding.status, finding.observed, finding.cause) == (Status.FAILED, seen, cause)
     assert finding.diagnosis in ("log-capitals", "log-more", "log-numbers", "log-format")
 
 
@@ -90,7 +90,7 @@ def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: 
 def test_a_silent_log_is_explained_by_the_source(node: str, stdout: str, diagnosis: str) -> None:
     finding = in_format((), node=node, stdout=stdout)
     assert (finding.diagnosis, finding.where is not None) == (diagnosis, True)
-    assert finding.seen == ("The lines are printed, not logged." if stdout else "The node logged nothing.")
+    assert finding.observed == ("The lines are printed, not logged." if stdout else "The node logged nothing.")
 
 
 def test_a_crash_explains_a_silent_log() -> None:
@@ -121,7 +121,7 @@ def test_only_what_the_node_logged_before_ctrl_c_counts(forged: str) -> None:
 def test_the_counter(numbers: tuple[int, ...], diagnosis: str | None, seen: str) -> None:
     trial = recording([], log=hello(*numbers))
     finding = found(LOG_COUNTER, evidence(trial), format=HELLO, counts="counter")
-    assert (finding.diagnosis, finding.seen) == (diagnosis, seen)
+    assert (finding.diagnosis, finding.observed) == (diagnosis, seen)
     assert str(finding.where) == ("None" if diagnosis is None else NODE_FILE)
     assert ("Log the number first, then increase it." in finding.cause) == (numbers[0] == 1)
 
@@ -142,7 +142,7 @@ def test_the_rate_is_that_of_the_lines_in_the_format(every_s: float, status: str
     trial = recording([], log=tuple(sorted((*said, *noise), key=lambda line: line.t_s)))
     finding = found(LOG_RATE, evidence(trial), format=HELLO, **RATE)
     assert finding.status.value == status
-    assert "log line" in finding.seen.lower()
+    assert "log line" in finding.observed.lower()
 
 
 def test_a_submission_is_read_and_never_run() -> None:

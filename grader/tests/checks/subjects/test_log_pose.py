@@ -59,8 +59,8 @@ def distance(said: Said) -> Finding:
 
 @pytest.mark.parametrize("lag_s", [0.0, 0.016, 0.1])
 def test_the_truth_is_right_also_when_it_is_a_little_old(lag_s: float) -> None:
-    assert position(truth(lag_s)).seen == "Each line shows where the turtle is."
-    assert distance(truth(lag_s)).seen == "Each line shows how far the turtle has driven."
+    assert position(truth(lag_s)).observed == "Each line shows where the turtle is."
+    assert distance(truth(lag_s)).observed == "Each line shows how far the turtle has driven."
 
 
 def test_what_is_a_second_old_or_half_a_second_ahead_is_wrong() -> None:
@@ -119,11 +119,11 @@ def test_each_other_number_fails_for_its_own_reason(name: str) -> None:
 def test_says_what_the_line_said_and_what_was_so() -> None:
     x, y, way = truth()
     finding = position((x + 1.0, y, way))
-    assert finding.seen == (
+    assert finding.observed == (
         f"At 1 s the line shows x={x[0] + 1.0:.2f} y={y[0]:.2f}, but the turtle was at x={x[0]:.2f} y={y[0]:.2f}."
     )
     finding = distance((x, y, way + np.arange(9.0)))
-    assert finding.seen == (
+    assert finding.observed == (
         f"At 9 s the line shows distance={way[-1] + 8.0:.2f}, but the turtle had driven {way[-1]:.2f} m."
     )
 
@@ -167,7 +167,7 @@ def test_the_worst_line_is_shown() -> None:
     off = way.copy()
     off[3] -= 0.5
     off[6] += 0.4
-    assert distance((x, y, off)).seen.startswith("At 4 s the line shows")
+    assert distance((x, y, off)).observed.startswith("At 4 s the line shows")
 
 
 def test_a_line_before_the_first_frame_speaks_of_the_start() -> None:
@@ -175,10 +175,10 @@ def test_a_line_before_the_first_frame_speaks_of_the_start() -> None:
     trial = recording(WAY, log=(early, *logged(truth()).log))
     start = trial.frames
     finding = found(LOG_POSITION, evidence(trial), format=FORMAT)
-    assert finding.seen.endswith(f"the turtle was at x={start.x[0]:.2f} y={start.y[0]:.2f}.")
+    assert finding.observed.endswith(f"the turtle was at x={start.x[0]:.2f} y={start.y[0]:.2f}.")
     late = LogLine(99.0, "INFO", "pose_subscriber", "x=9.00 y=9.00 distance=9.00")
     after = found(LOG_POSITION, evidence(recording(WAY, log=(*logged(truth()).log, late))), format=FORMAT)
-    assert (after.status, "At 99 s" in after.seen) in ((Status.FAILED, True), (Status.PASSED, False))
+    assert (after.status, "At 99 s" in after.observed) in ((Status.FAILED, True), (Status.PASSED, False))
 
 
 def test_lines_that_a_stall_delayed_do_not_count_and_without_others_nobody_is_blamed() -> None:

@@ -23,7 +23,7 @@ NAMES = ("teleport", "create_client")
 def test_a_forbidden_call_is_shown_where_it_stands(last: str, seen: str) -> None:
     given = evidence(package=submission({NODE_FILE: f"{NODE}\n{last}\n"}))
     finding = found(NO_CALLS, given, names=NAMES, cause="Drive there.")
-    assert (finding.diagnosis, finding.seen, str(finding.where)) == ("forbidden-call", seen, f"{NODE_FILE}:23")
+    assert (finding.diagnosis, finding.observed, str(finding.where)) == ("forbidden-call", seen, f"{NODE_FILE}:23")
 
 
 SLEEP = ("sleep", "sleep_for", "create_rate")
@@ -34,7 +34,7 @@ def used(text: str, **files: str) -> tuple[Status, str]:
     beside = {f"my_robot_controller/{name}.py": code for name, code in files.items()}
     package = submission({NODE_FILE: f"import time\n{NODE}\n{text}\n", **beside})
     finding = found(NO_CALLS, evidence(package=package), names=SLEEP, cause="Count.")
-    return finding.status, finding.seen
+    return finding.status, finding.observed
 
 
 @pytest.mark.parametrize(
@@ -144,4 +144,4 @@ def test_no_advice_is_given_on_a_file_that_is_not_there_or_cannot_be_read(text: 
     package = submission({NODE_FILE: text, "setup.py": "setup()\n"})
     finding = found(USES_TIMER, evidence(package=package, build=None))
     assert finding.status is Status.SKIPPED
-    assert words in finding.seen
+    assert words in finding.observed

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.checks.causes.crash import end_seen
+from grader.checks.causes.crash import end_observed
 from grader.checks.outcome import Status
 from grader.tests.checks.made import (
     NODE_FILE,
@@ -68,7 +68,7 @@ def test_each_fault_has_its_diagnosis_and_place(check: str, shape: str, diagnosi
 
 def test_a_crash_is_told_with_its_meaning() -> None:
     found = finding("start", of("crash at the start"))
-    assert found.seen == "draw_circle crashed at startup: ZeroDivisionError: division by zero."
+    assert found.observed == "draw_circle crashed at startup: ZeroDivisionError: division by zero."
     assert found.cause == "A number was divided by zero."
 
 
@@ -76,7 +76,7 @@ def test_a_program_that_crashed_while_its_node_was_waited_for_is_told_to_have_ma
     late = replace(SHAPES["crash at the start"](), end=crashed(5.0), graphs=(graph((), topic=None),))
     found = finding("start", evidence(late))
     assert found.diagnosis == "crash"
-    assert found.seen == "draw_circle crashed before it created a node: ZeroDivisionError: division by zero."
+    assert found.observed == "draw_circle crashed before it created a node: ZeroDivisionError: division by zero."
 
 
 def test_a_node_that_crashed_while_it_ran_did_start() -> None:
@@ -99,7 +99,7 @@ def test_by_the_walls_clock_an_end_in_the_first_moment_is_one_at_the_start(
     end = ProcessEnd(by="itself", exit_code=0, t_s=t_s, stop_s=None)
     seen = evidence(recording([], clock=clock, end=end))
     assert finding("start", seen).diagnosis == diagnosis
-    assert end_seen(seen).endswith("at startup." if diagnosis else f"after {t_s:.1f} s.")
+    assert end_observed(seen).endswith("at startup." if diagnosis else f"after {t_s:.1f} s.")
 
 
 def test_a_missing_spin_is_told_where_the_node_ends_at_once() -> None:
@@ -117,7 +117,7 @@ def test_a_missing_spin_is_told_where_the_node_ends_at_once() -> None:
 )
 def test_another_name_is_shown(names: tuple[str, ...], seen: str) -> None:
     found = finding("node-name", evidence(recording([], graphs=(graph(names),))))
-    assert found.seen == seen
+    assert found.observed == seen
 
 
 def test_a_namespace_is_told_as_such() -> None:
@@ -127,7 +127,7 @@ def test_a_namespace_is_told_as_such() -> None:
 
 def test_a_node_that_took_the_simulators_name_is_the_submissions() -> None:
     found = finding("node-name", evidence(recording([], graphs=(graph(("/turtlesim",)),))))
-    assert found.seen == "The node is named /turtlesim."
+    assert found.observed == "The node is named /turtlesim."
 
 
 def test_a_node_seen_once_counts() -> None:
@@ -136,7 +136,7 @@ def test_a_node_seen_once_counts() -> None:
 
 
 def test_the_topic_in_use_is_named() -> None:
-    assert finding("topic", of("other topic")).seen.startswith("The node publishes on /turtle1/cmd_val,")
+    assert finding("topic", of("other topic")).observed.startswith("The node publishes on /turtle1/cmd_val,")
 
 
 @pytest.mark.parametrize(
@@ -209,8 +209,8 @@ def test_a_node_that_did_not_stop_is_for_wall_time_to_judge() -> None:
 def test_what_it_took_to_stop_a_node_is_told() -> None:
     killed = SHAPES["ignores Ctrl-C"]()
     terminated = replace(killed, end=replace(killed.end, by="SIGTERM"))
-    assert finding("stop", evidence(killed)).seen == "The node ignored Ctrl-C: it had to be killed."
-    assert finding("stop", evidence(terminated)).seen == "The node ignored Ctrl-C: only SIGTERM ended it."
+    assert finding("stop", evidence(killed)).observed == "The node ignored Ctrl-C: it had to be killed."
+    assert finding("stop", evidence(terminated)).observed == "The node ignored Ctrl-C: only SIGTERM ended it."
 
 
 def test_a_missing_spin_is_told_where_the_node_ends_early() -> None:
@@ -221,7 +221,7 @@ def test_a_missing_spin_is_told_where_the_node_ends_early() -> None:
 
 def test_a_signal_is_named() -> None:
     end = replace(crashed(3.0), exit_code=-11)
-    assert "SIGSEGV" in finding("stop", evidence(recording([], end=end))).seen
+    assert "SIGSEGV" in finding("stop", evidence(recording([], end=end))).observed
 
 
 def test_no_timer_is_advice() -> None:

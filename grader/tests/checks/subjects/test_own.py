@@ -65,7 +65,7 @@ def test_other_numbers_are_told_from_the_own(
     numbers: OwnNumbers | str | None, by: str, diagnosis: str, seen: str
 ) -> None:
     finding = found(NUMBERS, given(numbers, by))
-    assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
+    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, seen)
     assert str(finding.where) == ("None" if numbers is None else FILE)
 
 

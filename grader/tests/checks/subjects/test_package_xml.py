@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 @pytest.mark.parametrize("build", [BUILD, LINKED], ids=["copied", "linked"])
 def test_a_good_package_passes(check: str, build: Build) -> None:
     found = of(check, build=build)
-    assert (found.status, found.diagnosis) == (Status.PASSED, None), found.seen
+    assert (found.status, found.diagnosis) == (Status.PASSED, None), found.observed
 
 
 @pytest.mark.parametrize(
@@ -60,7 +60,7 @@ def test_format_2_is_valid_and_a_byte_order_mark_does_no_harm() -> None:
 
 def test_a_misspelt_dependency_is_shown() -> None:
     found = of("dependencies", xml("geometry_msgs", "geometry_msg"))
-    assert found.seen == "package.xml does not declare geometry_msgs."
+    assert found.observed == "package.xml does not declare geometry_msgs."
     assert found.cause == 'It declares "geometry_msg". Is that a typing error?'
 
 
@@ -75,7 +75,7 @@ def test_a_misspelt_dependency_is_shown() -> None:
 def test_what_was_left_out_of_the_submission_is_told(more: tuple[str, ...], seen: str) -> None:
     given = evidence(package=submission(rejected=("data: a link that leaves the package.", *more)))
     found = finding("files", given)
-    assert (found.diagnosis, found.seen) == ("rejected-file", seen)
+    assert (found.diagnosis, found.observed) == ("rejected-file", seen)
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ def circle(shape: str) -> Finding:
 def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
     found = circle(shape)
     assert (found.status, found.diagnosis) == (Status.PASSED, None)
-    assert found.seen == "The turtle drove a circle of radius 2.0 m, counter-clockwise, at least 1 turn."
+    assert found.observed == "The turtle drove a circle of radius 2.0 m, counter-clockwise, at least 1 turn."
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
 )
 def test_each_other_way_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:
     found = circle(shape)
-    assert (found.status, found.diagnosis, found.seen) == (Status.FAILED, diagnosis, seen)
+    assert (found.status, found.diagnosis, found.observed) == (Status.FAILED, diagnosis, seen)
     publishes = diagnosis in ("stopped-early", "stops-and-goes", "ended-early")
     line = "" if diagnosis == "intervention" else ":16" if publishes else ":15"
     assert str(found.where) == f"{NODE_FILE}{line}"
@@ -97,7 +97,7 @@ def test_a_way_that_is_not_round_is_explained_by_the_commands_or_by_the_end() ->
 
 def test_two_turns_may_be_asked_for() -> None:
     short = found_by(CIRCLE, evidence(SHAPES["good"]()), radius_m=2.0, turns=2.0)
-    assert (short.diagnosis, short.seen) == ("too-short", "The turtle drove 1.51 of a turn.")
+    assert (short.diagnosis, short.observed) == ("too-short", "The turtle drove 1.51 of a turn.")
     assert short.expected == "A circle of radius 2.0 m, counter-clockwise, at least 2 turns."
 
 

@@ -43,26 +43,26 @@ def rate(shape: str, *changes: tuple[str, str]) -> Finding:
 )
 def test_each_wrong_rhythm_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:
     found = rate(shape)
-    assert (found.status, found.diagnosis, found.seen) == (Status.FAILED, diagnosis, seen)
+    assert (found.status, found.diagnosis, found.observed) == (Status.FAILED, diagnosis, seen)
     lines = {"wrong-rate": 10, "crash": 14}
     assert str(found.where) == f"{NODE_FILE}:{lines.get(diagnosis, 16)}"
 
 
 def test_the_right_rate_is_told_as_the_nominal_one() -> None:
     found = rate("good")
-    assert (found.status, found.seen) == (Status.PASSED, "Commands arrive every 0.50 s (2.0 Hz).")
+    assert (found.status, found.observed) == (Status.PASSED, "Commands arrive every 0.50 s (2.0 Hz).")
     assert not found.near_edge
 
 
 def test_an_uneven_rhythm_names_the_worst_interval() -> None:
     found = rate("uneven")
     assert found.diagnosis == "uneven-rate"
-    assert found.seen.startswith("Commands arrived at uneven intervals: 0.71 s passed between two of them")
+    assert found.observed.startswith("Commands arrived at uneven intervals: 0.71 s passed between two of them")
 
 
 def test_three_commands_are_a_rate() -> None:
     three = finding("rate", evidence(recording(every(0.5, 2.0, 1.0, until_s=1.7))))
-    assert (three.diagnosis, three.seen) == (
+    assert (three.diagnosis, three.observed) == (
         "stopped-early",
         "The last command arrived at 1.5 s, 8.5 s before the end.",
     )
@@ -70,7 +70,7 @@ def test_three_commands_are_a_rate() -> None:
 
 def test_commands_that_all_come_at_once_have_no_rate() -> None:
     found = finding("rate", evidence(recording([(0.5, 2.0, 1.0)] * 4)))
-    assert (found.status, found.seen) == (Status.FAILED, "4 commands arrived, one every 0.00 ms.")
+    assert (found.status, found.observed) == (Status.FAILED, "4 commands arrived, one every 0.00 ms.")
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_each_interval_has_limits_of_its_own(moved_s: float, diagnosis: str | No
     found = found_by(RATE, evidence(made), **limits)
     assert found.diagnosis == diagnosis
     if diagnosis:
-        assert found.seen == (
+        assert found.observed == (
             f"Commands arrived at uneven intervals: {0.5 + moved_s:.2f} s passed between two of them, "
             "4.5 s after the start."
         )
@@ -92,7 +92,7 @@ def test_each_interval_has_limits_of_its_own(moved_s: float, diagnosis: str | No
 def test_the_interval_that_is_worst_either_way_is_shown() -> None:
     times = [0.5, 1.0, 1.1, 1.6, 2.1, 2.9, *(3.4 + 0.5 * index for index in range(13))]
     found = finding("rate", evidence(recording([(t_s, 2.0, 1.0) for t_s in times])))
-    assert (found.diagnosis, found.seen.split(":")[1].split(" s ")[0]) == ("uneven-rate", " 0.10")
+    assert (found.diagnosis, found.observed.split(":")[1].split(" s ")[0]) == ("uneven-rate", " 0.10")
 
 
 @pytest.mark.parametrize(
@@ -222,7 +222,7 @@ def test_a_loop_without_a_pause_is_told_with_its_line() -> None:
 )
 def test_too_few_commands_are_explained_by_the_end(shape: str, diagnosis: str, seen: str) -> None:
     found = rate(shape)
-    assert (found.diagnosis, found.seen) == (diagnosis, seen)
+    assert (found.diagnosis, found.observed) == (diagnosis, seen)
 
 
 def test_log_lines_have_names_of_their_own() -> None:

@@ -45,7 +45,7 @@ def square(parts: list[Leg], start: Pose | None = None, **values: str) -> Findin
 )
 @pytest.mark.parametrize("start", [None, Pose(6.0, 5.0, 1.2)])
 def test_a_square_is_one(parts: list[Leg], start: Pose | None) -> None:
-    assert square(parts, start).seen == "The turtle drove a square with sides of 2.0 m."
+    assert square(parts, start).observed == "The turtle drove a square with sides of 2.0 m."
 
 
 @pytest.mark.parametrize(
@@ -79,7 +79,7 @@ def test_each_other_way_is_told_with_its_side_or_corner_and_by_how_much(
     parts: list[Leg], diagnosis: str, seen: str
 ) -> None:
     finding = square(parts, Pose(4.0, 4.0, 0.0))
-    assert (finding.status, finding.diagnosis, finding.seen) == (Status.FAILED, diagnosis, seen)
+    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, seen)
     assert str(finding.where) == f"{NODE_FILE}:16"
 
 

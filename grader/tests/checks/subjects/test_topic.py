@@ -75,18 +75,18 @@ def test_on_the_turtles_topic_what_the_simulator_saw_counts() -> None:
 def test_another_topic_is_explained_by_the_two_names(topic: str, diagnosis: str) -> None:
     finding = publishes(seen(("publisher", topic, TWIST)))
     assert told(finding) == (diagnosis, ":9")
-    assert finding.seen == f"The node publishes on {topic}, but no turtle subscribes to that."
+    assert finding.observed == f"The node publishes on {topic}, but no turtle subscribes to that."
 
 
 def test_of_several_topics_those_of_the_type_and_the_nearest_are_named() -> None:
     both = seen(("publisher", "/turtle1/cmd_vol", TEXT), ("publisher", "/quaff", TWIST))
-    assert publishes(both).seen == "The node publishes on /quaff, but no turtle subscribes to that."
+    assert publishes(both).observed == "The node publishes on /quaff, but no turtle subscribes to that."
     near = seen(("publisher", "/a", TWIST), ("publisher", "/turtle1/cmd_val", TWIST))
-    assert publishes(near).seen == "The node publishes on /turtle1/cmd_val, but no turtle subscribes to that."
+    assert publishes(near).observed == "The node publishes on /turtle1/cmd_val, but no turtle subscribes to that."
     far = seen(("publisher", "/quaff", TWIST), ("publisher", "/a", TWIST))
-    assert publishes(far).seen == "The node publishes on /a and /quaff, but no turtle subscribes to that."
+    assert publishes(far).observed == "The node publishes on /a and /quaff, but no turtle subscribes to that."
     other = seen(("publisher", "/a", TEXT), ("publisher", "/quaff", COLOR))
-    assert publishes(other).seen == "The node publishes on /a and /quaff, but no turtle subscribes to that."
+    assert publishes(other).observed == "The node publishes on /a and /quaff, but no turtle subscribes to that."
 
 
 @pytest.mark.parametrize(
@@ -134,7 +134,7 @@ def test_a_node_without_a_publisher_is_explained(
     more = {"end": end} if end is not None else {}
     finding = publishes(seen(stderr=Output(stderr), **more), *changes)
     assert told(finding) == (diagnosis, line)
-    assert finding.seen.startswith(words)
+    assert finding.observed.startswith(words)
     if diagnosis == "no-publisher":
         assert finding.cause == ("create_publisher is never called." if changes else "")
 
@@ -158,9 +158,9 @@ def test_a_silent_publisher_is_explained(
     finding = publishes(seen(("publisher", TOPIC, TWIST), stderr=Output(stderr), **more), *changes)
     assert told(finding) == (diagnosis, line)
     if end is None:
-        assert finding.seen == f"There is a publisher on {TOPIC}, but no message arrived after the start."
+        assert finding.observed == f"There is a publisher on {TOPIC}, but no message arrived after the start."
     elif diagnosis != "crash":
-        assert finding.seen.endswith("no message arrived after the start. The node ended by itself after 3.0 s.")
+        assert finding.observed.endswith("no message arrived after the start. The node ended by itself after 3.0 s.")
 
 
 def test_a_second_type_is_told_whoever_shows_it() -> None:
@@ -170,7 +170,7 @@ def test_a_second_type_is_told_whoever_shows_it() -> None:
     for trial in (by_graph, by_message):
         finding = found(ONLY_TYPE, evidence(trial), topic=TOPIC, type=TWIST)
         assert told(finding) == ("second-type", ":9")
-        assert finding.seen == f"{TOPIC} also receives messages of type {TEXT}."
+        assert finding.observed == f"{TOPIC} also receives messages of type {TEXT}."
     one = seen(("publisher", TOPIC, TWIST), ("publisher", "/other", COLOR))
     assert found(ONLY_TYPE, evidence(one), topic=TOPIC, type=TWIST).status is Status.PASSED
 
@@ -200,7 +200,7 @@ def test_a_subscription_is_looked_for(trial: Recording, diagnosis: str | None, l
     )
     finding = found(SUBSCRIBES, evidence(trial, package), topic=POSE, type=TEXT)
     assert told(finding) == (diagnosis, line)
-    assert finding.seen.startswith(words)
+    assert finding.observed.startswith(words)
     if diagnosis == "no-subscription":
         assert finding.cause == ""
         nowhere = found(SUBSCRIBES, evidence(trial), topic=POSE, type=TEXT)

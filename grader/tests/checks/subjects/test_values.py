@@ -16,7 +16,7 @@ def values(shape: str) -> Finding:
 
 
 def test_the_right_values_pass_and_what_comes_after_ctrl_c_does_not_count() -> None:
-    assert values("good").seen == "Every command has linear.x 2.0 m/s and angular.z 1.0 rad/s, all other fields 0."
+    assert values("good").observed == "Every command has linear.x 2.0 m/s and angular.z 1.0 rad/s, all other fields 0."
     assert values("more after Ctrl-C").status is Status.PASSED
 
 
@@ -38,13 +38,13 @@ def test_the_right_values_pass_and_what_comes_after_ctrl_c_does_not_count() -> N
 )
 def test_each_wrong_value_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str, line: int) -> None:
     found = values(shape)
-    assert (found.status, found.diagnosis, found.seen) == (Status.FAILED, diagnosis, seen)
+    assert (found.status, found.diagnosis, found.observed) == (Status.FAILED, diagnosis, seen)
     assert str(found.where) == f"{NODE_FILE}:{line}"
 
 
 def test_where_nothing_arrives_no_value_is_called_wrong() -> None:
     found = values("no messages")
-    assert (found.diagnosis, found.seen) == ("no-commands", "No command arrived.")
+    assert (found.diagnosis, found.observed) == ("no-commands", "No command arrived.")
     assert found.expected == "linear.x 2.0 m/s and angular.z 1.0 rad/s, all other fields 0."
 
 
@@ -84,7 +84,7 @@ def test_where_turning_is_as_fast_as_driving_nothing_can_be_swapped() -> None:
 
 def test_a_turtle_that_should_stand_still_and_drives_is_wrong() -> None:
     still = found_by(VALUES, evidence(recording(every(0.5, 0.0, 0.0))))
-    assert (still.status, still.seen) == (Status.PASSED, "Every command has all fields 0.")
+    assert (still.status, still.observed) == (Status.PASSED, "Every command has all fields 0.")
     moving = found_by(VALUES, evidence(recording(every(0.5, 1.0, 0.0))))
     assert (moving.diagnosis, moving.expected) == ("wrong-value", "All fields 0.")
 
@@ -97,10 +97,10 @@ def test_a_field_in_the_wrong_place_is_told_with_what_it_does() -> None:
 def test_some_wrong_commands_of_a_known_kind_keep_their_name() -> None:
     some = [*every(0.5, 2.0, 1.0)[:-1], (9.504, 2.0, -1.0)]
     found = finding("values", evidence(recording(some)))
-    assert (found.diagnosis, found.seen) == ("wrong-sign", "1 of 19 commands was wrong: angular.z -1.0 rad/s.")
+    assert (found.diagnosis, found.observed) == ("wrong-sign", "1 of 19 commands was wrong: angular.z -1.0 rad/s.")
     two = [*every(0.5, 2.0, 1.0)[:-2], (9.0, 2.0, 1.5), (9.504, 2.0, 1.25)]
     found = finding("values", evidence(recording(two)))
-    assert (found.diagnosis, found.seen) == (
+    assert (found.diagnosis, found.observed) == (
         "values-change",
         "2 of 19 commands were wrong: angular.z 1.5 rad/s in the first of them.",
     )
@@ -113,12 +113,12 @@ def test_every_field_counts(field: int, wrong: float) -> None:
     six[field] += wrong
     found = finding("values", evidence(fields((six[0], six[1], six[2]), (six[3], six[4], six[5]))))
     assert found.status is Status.FAILED
-    assert ("linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z")[field] in found.seen
+    assert ("linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z")[field] in found.observed
 
 
 def test_rounding_never_hides_the_difference() -> None:
     found = finding("values", evidence(recording(every(0.5, 2.00001, 1.0))))
-    assert "linear.x 2.00001 m/s" in found.seen
+    assert "linear.x 2.00001 m/s" in found.observed
 
 
 @pytest.mark.parametrize(
