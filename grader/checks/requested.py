@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.common.lazy import np
-from grader.evidence.track import RESTS_M
+from grader.evidence.trajectory import RESTS_M
 from grader.trial.recording import Pose
 
 if TYPE_CHECKING:
@@ -44,11 +44,13 @@ class Requested:
 
 def first_heading(evidence: Evidence) -> Pose:
     """Where the turtle starts, looking in the direction in which it first drives: it may have turned before."""
-    start, track = evidence.recording.start, evidence.track
-    if not track.finite:
+    start, trajectory = evidence.recording.start, evidence.trajectory
+    if not trajectory.finite:
         return start
-    moving = np.flatnonzero(track.steps > RESTS_M)
+    moving = np.flatnonzero(trajectory.steps > RESTS_M)
     if not len(moving):
         return start
     at = moving[0]
-    return Pose(start.x, start.y, math.atan2(track.y[at + 1] - track.y[at], track.x[at + 1] - track.x[at]))
+    return Pose(
+        start.x, start.y, math.atan2(trajectory.y[at + 1] - trajectory.y[at], trajectory.x[at + 1] - trajectory.x[at])
+    )

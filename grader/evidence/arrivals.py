@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from grader.evidence import observed
+from grader.evidence import activity
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -34,12 +34,12 @@ class Measured:
 def measure_arrivals(recording: Recording, times_s: Iterable[float]) -> Measured:
     """Measure arrivals before SIGINT; the mean is 0 when there are fewer than two."""
     arrivals = tuple(times_s)
-    until = observed.end_s(recording)
+    until = activity.end_s(recording)
     if not arrivals:
         return Measured((), (), (), 1.0, 0.0, until, until)
     every = list(pairwise(arrivals))
     # What was sent before the clock started came when the two sides had found each other, and not when it was sent.
-    pairs = [pair for pair in every if pair[0] > observed.START_S] or every
+    pairs = [pair for pair in every if pair[0] > activity.START_S] or every
     trusted = [pair for pair in pairs if not any(recording.stalled(t_s) for t_s in pair)]
     intervals = tuple(later - earlier for earlier, later in trusted)
     mean = sum(intervals) / len(intervals) if intervals else 0.0

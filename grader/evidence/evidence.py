@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from grader.evidence import observed
-from grader.evidence.track import Track, track_of
+from grader.evidence import activity
+from grader.evidence.trajectory import Trajectory, trajectory_of
 from grader.submission.answers import Answers, read_answers
 from grader.submission.code import Code, module_file, read_code
 from grader.submission.package_xml import Manifest, read_manifest
@@ -127,12 +127,12 @@ class Evidence:
     @cached_property
     def commands(self) -> tuple[Command, ...]:
         """The commands that arrived before SIGINT."""
-        return observed.commands(self.recording)
+        return activity.commands(self.recording)
 
     @cached_property
-    def track(self) -> Track:
-        """The turtle's way until SIGINT."""
-        return track_of(self.recording)
+    def trajectory(self) -> Trajectory:
+        """The trajectory of the turtle until SIGINT."""
+        return trajectory_of(self.recording)
 
     def entry_point(self) -> str | None:
         """Return "module:attribute" of the exercise's executable: as installed, else as setup.py says."""

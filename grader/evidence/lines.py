@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.evidence import observed
+from grader.evidence import activity
 
 if TYPE_CHECKING:
     from grader.trial.recording import LogLine, Recording
@@ -46,7 +46,7 @@ class Line:
 
 def students(recording: Recording) -> tuple[LogLine, ...]:
     """What the submission logged before SIGINT, by arrival."""
-    until = observed.end_s(recording)
+    until = activity.end_s(recording)
     return tuple(line for line in recording.log if line.logger not in OUR_LOGGERS and line.t_s < until)
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from grader.checks.subjects.rate import measure
 from grader.checks.subjects.values import FIELDS
 from grader.common.words import number
-from grader.evidence import observed
+from grader.evidence import activity
 from grader.report.requested import requested_interval, requested_values
 from grader.report.svg import coordinate, picture, points, tag, words
 
@@ -190,7 +190,7 @@ def six(command: Command) -> tuple[float, ...]:
 
 
 def _end_s(evidence: Evidence) -> float:
-    return max(observed.end_s(evidence.recording), 0.1)
+    return max(activity.end_s(evidence.recording), 0.1)
 
 
 def _steps(series: Series, wanted: float | None, label: str, end_s: float, where: tuple[float, int]) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from grader.common.words import a_list, count
-from grader.evidence import observed
+from grader.evidence import activity
 from grader.report import charts
 from grader.report.graph_drawing import GraphDrawing, draw_graph
 from grader.report.requested import must_drive
@@ -132,7 +132,7 @@ def _rows(evidence: Evidence) -> list[tuple[str, ...]]:
 def _data(evidence: Evidence, among: int) -> dict[str, object]:
     """What the player needs: the turtle (m, rad) at times (s), the commands; null for what is no finite number."""
     recording = evidence.recording
-    end_s = observed.end_s(recording)
+    end_s = activity.end_s(recording)
     frames = recording.frames
     count = int((frames.t_s <= end_s).sum())
     every = count * among // MOST_FRAMES + 1

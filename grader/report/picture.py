@@ -148,13 +148,13 @@ def _legend(draw: ImageDraw.ImageDraw, scene: Scene, panel: Panel) -> None:
 def _sign(draw: ImageDraw.ImageDraw, role: Role, at: tuple[int, int]) -> None:
     x, y = at
     color = LOOKS[role].color
-    if role == "way":
+    if role == "trajectory":
         draw.line([(x + 5, y), (x + 41, y)], fill=color, width=4)
     elif role in ("expected", "fitted"):
         for begin in (6, 19, 32):
             draw.line([(x + begin, y), (x + begin + 8, y)], fill=color, width=3)
     elif role == "tick":
-        draw.line([(x + 5, y), (x + 41, y)], fill=LOOKS["way"].color, width=4)
+        draw.line([(x + 5, y), (x + 41, y)], fill=LOOKS["trajectory"].color, width=4)
         draw.line([(x + 23, y - 7), (x + 23, y + 7)], fill=color, width=2)
     elif role == "start":
         draw.polygon([(x + 34, y), (x + 14, y + 8), (x + 19, y), (x + 14, y - 8)], fill=color)

@@ -9,13 +9,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.evidence import observed
+from grader.evidence import activity
 from grader.report.requested import requested_path, shapes_of
 from grader.report.shapes import SIDE_M, Arrow, Line, Point, Ring, Role
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
-    from grader.evidence.track import Track
+    from grader.evidence.trajectory import Trajectory
 
 MOST_TICKS = 150
 TICK_M = 0.11
@@ -26,7 +26,7 @@ TICK_M = 0.11
 class Scene:
     """`shapes` from the lowest to the highest; `legend` what each role means; `facts` the numbers, one a line.
 
-    `notice` is what to say where there is no way to draw, else empty.
+    `notice` says why there is no trajectory to draw; it is empty if there is one.
     """
 
     shapes: tuple[Line | Ring | Arrow, ...] = ()
@@ -40,47 +40,49 @@ def scene_of(evidence: Evidence) -> Scene:
     recording = evidence.run.recording
     if recording is None:
         return Scene(notice="The node was not run.")
-    track = evidence.track
+    trajectory = evidence.trajectory
     shapes: list[Line | Ring | Arrow] = []
     legend: list[tuple[Role, str]] = []
-    facts = [f"{len(evidence.commands)} commands in {observed.end_s(recording):.1f} s"]
-    points = finite_way(track)
-    moved = track.finite and len(track.points[0]) > 1
+    facts = [f"{len(evidence.commands)} commands in {activity.end_s(recording):.1f} s"]
+    points = finite_points(trajectory)
+    moved = trajectory.finite and len(trajectory.points[0]) > 1
     if len(points) > 1:
-        shapes.append(Line("way", tuple(points)))
-        legend.append(("way", "the turtle's way"))
+        shapes.append(Line("trajectory", tuple(points)))
+        legend.append(("trajectory", "the turtle's trajectory"))
     path = requested_path(evidence)
     if path is not None:
         shapes += shapes_of(path)
         legend.append(("expected", f"asked for: {path.path}"))
-    fitted = track.circle if moved and path is not None and path.fits else None
+    fitted = trajectory.circle if moved and path is not None and path.fits else None
     if fitted is not None and fitted.radius <= SIDE_M:
         shapes.append(Ring("fitted", (fitted.x, fitted.y), fitted.radius))
         legend.append(("fitted", f"best fit: radius {fitted.radius:.2f} m"))
         facts.append(f"centre ({fitted.x:.2f}, {fitted.y:.2f}) m")
         facts.append(f"off the circle {fitted.rms:.3f} m RMS")
-        facts.append(f"{abs(track.turns):.2f} turns {'counter-clockwise' if track.turns > 0 else 'clockwise'}")
+        facts.append(
+            f"{abs(trajectory.turns):.2f} turns {'counter-clockwise' if trajectory.turns > 0 else 'clockwise'}"
+        )
     times = [command.t_s for command in evidence.commands]
-    ticks = _ticks(track, times[:: len(times) // MOST_TICKS + 1]) if moved else []
+    ticks = _ticks(trajectory, times[:: len(times) // MOST_TICKS + 1]) if moved else []
     if ticks:
         shapes += ticks
         legend.append(("tick", "a command arrives"))
-    cross = _cross(track) if track.wall.any() else []
+    cross = _cross(trajectory) if trajectory.wall.any() else []
     if cross:
         shapes += cross
         legend.append(("wall", "touches a wall"))
     shapes.append(Arrow("start", (recording.start.x, recording.start.y), recording.start.theta))
     legend.append(("start", "start"))
     notice = "" if moved else "The turtle did not move."
-    if not track.finite:
+    if not trajectory.finite:
         notice = "The turtle's position became NaN (not a number)."
     return Scene(tuple(shapes), tuple(legend), tuple(facts), notice)
 
 
-def finite_way(track: Track) -> list[Point]:
-    """The way as points (m) up to the first that is no number, rests left out."""
+def finite_points(trajectory: Trajectory) -> list[Point]:
+    """Return the points of the trajectory (m) up to the first that is not finite, without those at rest."""
     points: list[Point] = []
-    for x, y in zip(track.x.tolist(), track.y.tolist(), strict=True):
+    for x, y in zip(trajectory.x.tolist(), trajectory.y.tolist(), strict=True):
         if not (math.isfinite(x) and math.isfinite(y)):
             break
         if not points or points[-1] != (x, y):
@@ -88,17 +90,17 @@ def finite_way(track: Track) -> list[Point]:
     return points
 
 
-def _ticks(track: Track, times: list[float]) -> list[Line]:
-    """A short stroke across the way where the turtle was at each of these times (s)."""
+def _ticks(trajectory: Trajectory, times: list[float]) -> list[Line]:
+    """Return a short stroke across the trajectory for each of these times (s)."""
     strokes: list[Line] = []
-    if not len(track.t_s):
+    if not len(trajectory.t_s):
         return strokes
-    for index in track.t_s.searchsorted(times).tolist():
-        at = min(index, len(track.t_s) - 1)
-        x, y = float(track.x[at]), float(track.y[at])
-        ahead = min(at + 1, len(track.x) - 1)
+    for index in trajectory.t_s.searchsorted(times).tolist():
+        at = min(index, len(trajectory.t_s) - 1)
+        x, y = float(trajectory.x[at]), float(trajectory.y[at])
+        ahead = min(at + 1, len(trajectory.x) - 1)
         behind = max(ahead - 2, 0)
-        dx, dy = float(track.x[ahead] - track.x[behind]), float(track.y[ahead] - track.y[behind])
+        dx, dy = float(trajectory.x[ahead] - trajectory.x[behind]), float(trajectory.y[ahead] - trajectory.y[behind])
         length = math.hypot(dx, dy)
         if length > 0.0:
             nx, ny = -dy / length * TICK_M, dx / length * TICK_M
@@ -106,10 +108,10 @@ def _ticks(track: Track, times: list[float]) -> list[Line]:
     return strokes
 
 
-def _cross(track: Track) -> list[Line]:
+def _cross(trajectory: Trajectory) -> list[Line]:
     """Two strokes where the turtle first was at a wall."""
-    at = int(track.wall.argmax()) + 1
-    x, y = float(track.x[at]), float(track.y[at])
+    at = int(trajectory.wall.argmax()) + 1
+    x, y = float(trajectory.x[at]), float(trajectory.y[at])
     if not (math.isfinite(x) and math.isfinite(y)):
         return []
     x, y = min(max(x, 0.2), SIDE_M - 0.2), min(max(y, 0.2), SIDE_M - 0.2)

@@ -8,7 +8,7 @@ from typing import Literal
 
 Point = tuple[float, float]
 Rgb = tuple[int, int, int]
-Role = Literal["way", "expected", "fitted", "tick", "wall", "start"]
+Role = Literal["trajectory", "expected", "fitted", "tick", "wall", "start"]
 
 SIDE_M = 499 / 45
 """turtlesim's canvas: 500 pixels, 45 a metre."""
@@ -26,7 +26,7 @@ class Look:
 
 
 LOOKS: dict[Role, Look] = {
-    "way": Look((179, 184, 255), 3 / 45),
+    "trajectory": Look((179, 184, 255), 3 / 45),
     "expected": Look((255, 214, 92), 0.045, 0.28),
     "fitted": Look((255, 255, 255), 0.028, 0.14),
     "tick": Look(DEEP, 0.035),

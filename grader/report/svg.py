@@ -108,7 +108,7 @@ def scene_svg(scene: Scene, *, turtle: bool = False, name: str = "canvas") -> st
         notice,
         width=LEFT + SIDE + RIGHT,
         height=TOP + SIDE + BOTTOM,
-        title="The turtle's way on its canvas, 11 m by 11 m",
+        title="The trajectory of the turtle on its canvas, 11 m by 11 m",
         about=". ".join([*([scene.notice] if scene.notice else []), *(text for _, text in scene.legend), *scene.facts]),
         key="canvas",
         name=name,
@@ -194,10 +194,10 @@ def sign(role: Role) -> str:
     """What stands for a role in the legend: how it looks on the canvas."""
     color, water = rgb(LOOKS[role].color), tag("rect", width=46, height=26, rx=3, fill=rgb(SEA))
     stroke: dict[str, Attribute] = {"stroke": color, "stroke_width": 4, "fill": "none"}
-    way = tag("path", d="M5 13H41", **{**stroke, "stroke": rgb(LOOKS["way"].color)})
+    trajectory = tag("path", d="M5 13H41", **{**stroke, "stroke": rgb(LOOKS["trajectory"].color)})
     drawn = {
-        "way": way,
-        "tick": way + tag("path", d="M23 5V21", **{**stroke, "stroke_width": 2.5}),
+        "trajectory": trajectory,
+        "tick": trajectory + tag("path", d="M23 5V21", **{**stroke, "stroke_width": 2.5}),
         "start": tag("polygon", points="34,13 14,21 19,13 14,5", fill=color),
         "wall": tag("path", d="M16 6L30 20M16 20L30 6", **stroke),
     }.get(role, tag("path", d="M6 13h8m5 0h8m5 0h8", **{**stroke, "stroke_width": 3}))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from grader.common.words import shorten
-from grader.evidence.observed import ended_at_start
+from grader.evidence.activity import ended_at_start
 from grader.submission.where import Where
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.causes.cause import Cause
-from grader.evidence.observed import ended_at_start
+from grader.evidence.activity import ended_at_start
 from grader.submission.constants import dotted
 from grader.submission.where import Where
 

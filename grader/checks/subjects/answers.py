@@ -12,7 +12,7 @@ from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band
 from grader.common.words import a_list, shorten
 from grader.errors import MachineError
-from grader.evidence import observed as seen_in
+from grader.evidence import activity
 from grader.submission.answers import FILE, Answer
 from grader.submission.where import Where
 
@@ -140,7 +140,7 @@ def _all(recording: Recording, find: str) -> set[str]:
 
 def _counts(end: Endpoint, params: GraphQuestion) -> bool:
     return (
-        (params.find == "node" or end.topic not in seen_in.ROS_TOPICS)
+        (params.find == "node" or end.topic not in activity.ROS_TOPICS)
         and params.among in (end.kind, "all")
         and params.node in (end.node, "")
         and end.type.startswith(params.type_starts)

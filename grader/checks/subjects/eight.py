@@ -15,11 +15,11 @@ from grader.checks.subjects.path import CircleParams, expected_centre, not_drive
 from grader.checks.tolerance import Band, unless_starved
 from grader.common.lazy import np
 from grader.evidence.circle_fit import Circle, fit_circle
-from grader.evidence.track import RESTS_M, STRAIGHT_RAD
+from grader.evidence.trajectory import RESTS_M, STRAIGHT_RAD
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
-    from grader.evidence.track import Track
+    from grader.evidence.trajectory import Trajectory
 
 NAMES = ("first", "second")
 SMALL_RAD = 0.3
@@ -54,17 +54,19 @@ class Lobe:
         return "left" if self.turned_rad > 0.0 else "right"
 
 
-def lobes_of(track: Track) -> list[Lobe]:
+def lobes_of(trajectory: Trajectory) -> list[Lobe]:
     """Split the trajectory where it changes from left turns to right turns or back."""
-    side = np.where(track.steps > RESTS_M, np.sign(np.where(np.abs(track.turn) > STRAIGHT_RAD, track.turn, 0.0)), 0.0)
+    side = np.where(
+        trajectory.steps > RESTS_M, np.sign(np.where(np.abs(trajectory.turn) > STRAIGHT_RAD, trajectory.turn, 0.0)), 0.0
+    )
     bends = np.flatnonzero(side)
     found: list[Lobe] = []
     for piece in np.split(bends, np.flatnonzero(np.diff(side[bends])) + 1):
-        turned = float(track.turn[piece].sum())
+        turned = float(trajectory.turn[piece].sum())
         if len(piece) and abs(turned) > SMALL_RAD:
             points = np.append(piece[0], piece + 1)
-            fitted = fit_circle(track.x[points], track.y[points])
-            found.append(Lobe(turned, fitted, (float(track.x[points[-1]]), float(track.y[points[-1]]))))
+            fitted = fit_circle(trajectory.x[points], trajectory.y[points])
+            found.append(Lobe(turned, fitted, (float(trajectory.x[points[-1]]), float(trajectory.y[points[-1]]))))
     return found
 
 
@@ -72,13 +74,13 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
     """The turtle drives a figure eight."""
     expected = f"A figure eight: a full circle of radius {params.radius_m:.1f} m to one side, then one to the other."
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
-    track = evidence.track
+    trajectory = evidence.trajectory
     still = not_driven(evidence, expected, where)
     if still is not None:
         return still
-    if track.wall.any():
+    if trajectory.wall.any():
         return failed("The turtle ran into a wall.", expected, Cause("wall", "The lobes are too large.", where))
-    lobes = lobes_of(track)
+    lobes = lobes_of(trajectory)
     if len(lobes) < 2:
         what = f"only one lobe, to the {lobes[0].side}" if lobes else "no lobe"
         cause = "When the first lobe is closed, the sign of angular.z must change for the second one."

@@ -40,13 +40,13 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     still = not_driven(evidence, expected, where)
     if still is not None:
         return still
-    track = evidence.track
-    away = np.hypot(track.x - params.x_m, track.y - params.y_m)
+    trajectory = evidence.trajectory
+    away = np.hypot(trajectory.x - params.x_m, trajectory.y - params.y_m)
     end, nearest = float(away[-1]), float(away.min())
     close = Band.at_most(params.tolerance_m)
     near = close.near(end)
     if not close.holds(end):
-        observed = f"The turtle ends at x={track.x[-1]:.2f} y={track.y[-1]:.2f}, {end:.2f} m from the goal."
+        observed = f"The turtle ends at x={trajectory.x[-1]:.2f} y={trajectory.y[-1]:.2f}, {end:.2f} m from the goal."
         if close.holds(nearest):
             observed += f" On the way it came within {nearest:.2f} m of the goal."
             cause = "The turtle does not stop at the goal. Near the goal, publish a command with all values 0."
@@ -55,16 +55,16 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
             cause = "The direction to the goal is atan2(goal_y - y, goal_x - x). The direction of the turtle is theta."
             return failed(observed, expected, Cause("away-from-goal", cause, where), near_edge=near)
         cause = "The turtle may drive too slowly near the goal, or it may turn in the wrong direction."
-        if track.wall.any():
+        if trajectory.wall.any():
             cause = "The turtle ran into a wall. Keep the angle between -pi and pi with atan2(sin(a), cos(a))."
         return failed(observed, expected, Cause("not-there", cause, where), near_edge=near)
-    late = track.t_s >= track.t_s[-1] - REST_S
-    drift = float(track.steps[late].sum())
+    late = trajectory.t_s >= trajectory.t_s[-1] - REST_S
+    drift = float(trajectory.steps[late].sum())
     if not drift <= REST_M:
         observed = f"The turtle is still moving at the end: {drift:.2f} m in the last {REST_S:g} s."
         cause = "Near the goal, publish a command with all values 0."
         return failed(observed, expected, Cause("still-moving", cause, where))
-    start = math.dist((float(track.x[0]), float(track.y[0])), (params.x_m, params.y_m))
+    start = math.dist((float(trajectory.x[0]), float(trajectory.y[0])), (params.x_m, params.y_m))
     return passed(f"The turtle drove to its goal, {start:.1f} m away, and stopped.", near_edge=near)
 
 

@@ -11,7 +11,7 @@ from grader.checks.causes.why_ended import why_ended, why_no_node
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
-from grader.evidence import observed as seen_in
+from grader.evidence import activity
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -22,14 +22,14 @@ def starts(evidence: Evidence, _: NoParams) -> Finding:
     recording = evidence.recording
     executable = evidence.trial.executable
     expected = "The node starts and runs until Ctrl-C."
-    if seen_in.ended_at_start(recording):
+    if activity.ended_at_start(recording):
         crash = crash_of(evidence)
         if crash is not None:
             return crash_finding(evidence, crash, f"{executable} crashed at startup: {crash.observed}.", expected)
         why = why_ended(evidence)
         observed = f"{executable} ended by itself at startup."
         return failed(observed, expected, why)
-    if not seen_in.nodes(recording):
+    if not activity.nodes(recording):
         return _no_node(evidence)
     return passed("The node starts.")
 
@@ -48,7 +48,7 @@ def _no_node(evidence: Evidence) -> Finding:
 def name(evidence: Evidence, _: NoParams) -> Finding:
     """A node of the submission has the name that the exercise asks for."""
     wanted = f"/{evidence.trial.node}"
-    names = seen_in.nodes(evidence.recording)
+    names = activity.nodes(evidence.recording)
     if wanted in names:
         return passed(f"The node is named {evidence.trial.node}.")
     if not names:

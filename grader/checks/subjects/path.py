@@ -14,12 +14,12 @@ from grader.checks.requested import Requested
 from grader.checks.tolerance import Band
 from grader.common.words import count, shorten
 from grader.common.words import number as shown
-from grader.evidence import observed as seen_in
+from grader.evidence import activity
 
 if TYPE_CHECKING:
     from grader.evidence.circle_fit import Circle
     from grader.evidence.evidence import Evidence
-    from grader.evidence.track import Track
+    from grader.evidence.trajectory import Trajectory
     from grader.submission.where import Where
     from grader.trial.recording import Pose
 
@@ -74,8 +74,8 @@ def circle(evidence: Evidence, params: CircleParams) -> Finding:
     moved = moved_otherwise(evidence, expected)
     if moved is not None:
         return moved
-    track = evidence.track
-    return _no_circle(evidence, track, expected) or _measured(evidence, params, track, expected)
+    trajectory = evidence.trajectory
+    return _no_circle(evidence, trajectory, expected) or _measured(evidence, params, trajectory, expected)
 
 
 def moved_otherwise(evidence: Evidence, expected: str) -> Finding | None:
@@ -91,46 +91,46 @@ def moved_otherwise(evidence: Evidence, expected: str) -> Finding | None:
 def not_driven(evidence: Evidence, expected: str, where: Where | None) -> Finding | None:
     """Return a failed finding if the turtle did not drive, or if something other than commands moved it, else None."""
     moved = moved_otherwise(evidence, expected)
-    if moved is not None or (evidence.track.finite and evidence.track.length_m > MOVED_M):
+    if moved is not None or (evidence.trajectory.finite and evidence.trajectory.length_m > MOVED_M):
         return moved
     return failed("The turtle did not drive.", expected, Cause("not-moving", where=where))
 
 
-def _no_circle(evidence: Evidence, track: Track, expected: str) -> Finding | None:
+def _no_circle(evidence: Evidence, trajectory: Trajectory, expected: str) -> Finding | None:
     """Return a failed finding if the trajectory is nothing like a circle, with the most helpful reason first."""
-    if not track.finite:
+    if not trajectory.finite:
         observed = "The turtle's position became NaN (not a number)."
         return failed(
             observed,
             expected,
             Cause("not-a-number", "A command contained a number that is not finite.", _line(evidence)),
         )
-    if track.length_m <= MOVED_M:
-        if track.turned_rad > TURNED_RAD:
+    if trajectory.length_m <= MOVED_M:
+        if trajectory.turned_rad > TURNED_RAD:
             cause = "linear.x is the forward speed. Without it the turtle only turns."
             return failed(
                 "The turtle turned on the spot.", expected, Cause("turns-on-the-spot", cause, _line(evidence))
             )
         return failed("The turtle did not move.", expected, Cause("not-moving", _all_zero(evidence), _line(evidence)))
-    if track.wall.any():
-        observed = f"The turtle ran into a wall after {_wall_s(track):.1f} s."
+    if trajectory.wall.any():
+        observed = f"The turtle ran into a wall after {_wall_s(trajectory):.1f} s."
         return failed(observed, expected, Cause("wall", _size(evidence), _line(evidence)))
-    fitted = track.circle
+    fitted = trajectory.circle
     if fitted is None or fitted.radius > STRAIGHT_RADIUS_M:
         cause = "The turtle never turns. angular.z is the turning speed."
         return failed("The turtle drove in a straight line.", expected, Cause("straight-line", cause, _line(evidence)))
     return None
 
 
-def _measured(evidence: Evidence, params: CircleParams, track: Track, expected: str) -> Finding:
-    fitted = track.circle
+def _measured(evidence: Evidence, params: CircleParams, trajectory: Trajectory, expected: str) -> Finding:
+    fitted = trajectory.circle
     assert fitted is not None
-    turns = track.turns
+    turns = trajectory.turns
     centre = math.dist((fitted.x, fitted.y), expected_centre(evidence.recording.start, params))
     round_, size = Band.at_most(params.residual_m), Band.around(params.radius_m, params.radius_tolerance_m)
     place, long = Band.at_most(params.centre_tolerance_m), Band.at_least(params.turns)
     if not round_.holds(fitted.rms):
-        return _not_round(evidence, track, fitted, expected, near_edge=round_.near(fitted.rms))
+        return _not_round(evidence, trajectory, fitted, expected, near_edge=round_.near(fitted.rms))
     forward = turns if params.sense == "counter-clockwise" else -turns
     if not forward > 0.0:
         direction = "clockwise" if turns < 0.0 else "counter-clockwise"
@@ -148,18 +148,20 @@ def _measured(evidence: Evidence, params: CircleParams, track: Track, expected: 
         )
         return failed(observed, expected, Cause("wrong-centre", cause, _line(evidence)), near_edge=near)
     if not long.holds(forward):
-        return _too_short(evidence, track, forward, expected, near_edge=near)
+        return _too_short(evidence, trajectory, forward, expected, near_edge=near)
     return passed(expected.replace("A circle", "The turtle drove a circle"), near_edge=near)
 
 
-def _not_round(evidence: Evidence, track: Track, fitted: Circle, expected: str, *, near_edge: bool) -> Finding:
+def _not_round(
+    evidence: Evidence, trajectory: Trajectory, fitted: Circle, expected: str, *, near_edge: bool
+) -> Finding:
     off = f"it deviates by {max(fitted.rms, 0.01):.2f} m (RMS) from the best-fitting circle"
-    if track.straight_share > POLYGON_SHARE:
-        if track.sides == 1:
+    if trajectory.straight_share > POLYGON_SHARE:
+        if trajectory.sides == 1:
             return failed(
                 "The turtle drove in a straight line.", expected, Cause("straight-line", where=_line(evidence))
             )
-        observed = f"The trajectory has {track.sides} straight sides with corners; {off}."
+        observed = f"The trajectory has {trajectory.sides} straight sides with corners; {off}."
         cause = "To drive a circle, every command must move forward and turn at the same time."
         return failed(observed, expected, Cause("polygon", cause, _line(evidence)), near_edge=near_edge)
     changed = len({(command.linear, command.angular) for command in evidence.commands}) > 1
@@ -172,15 +174,15 @@ def _not_round(evidence: Evidence, track: Track, fitted: Circle, expected: str, 
     )
 
 
-def _too_short(evidence: Evidence, track: Track, turns: float, expected: str, *, near_edge: bool) -> Finding:
+def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expected: str, *, near_edge: bool) -> Finding:
     observed = f"The turtle drove {turns:.2f} of a turn."
     early = ended_early(evidence)
     if early:
         return failed(observed, expected, Cause("ended-early", early, evidence.place("publish")), near_edge=near_edge)
-    if track.rests:
-        observed = f"The turtle drove {turns:.2f} of a turn, with {count(track.rests, 'stop')} on the way."
+    if trajectory.rests:
+        observed = f"The turtle drove {turns:.2f} of a turn, with {count(trajectory.rests, 'stop')} on the way."
         why = Cause("stops-and-goes", "The turtle stops when no command arrives for 1 s.")
-    elif seen_in.end_s(evidence.recording) - evidence.commands[-1].t_s > LIVES_S:
+    elif activity.end_s(evidence.recording) - evidence.commands[-1].t_s > LIVES_S:
         observed = (
             f"The turtle drove {turns:.2f} of a turn; the last command arrived at {evidence.commands[-1].t_s:.1f} s."
         )
@@ -221,23 +223,23 @@ def _line(evidence: Evidence) -> Where | None:
     return code.assigned("angular", "z") or code.assigned("linear", "x") or evidence.place("Twist", "publish")
 
 
-def _wall_s(track: Track) -> float:
+def _wall_s(trajectory: Trajectory) -> float:
     """Return when the turtle first touched a wall (s)."""
-    return float(track.t_s[int(track.wall.argmax())])
+    return float(trajectory.t_s[int(trajectory.wall.argmax())])
 
 
 def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     """No frame was clamped to the canvas. The check is skipped for a turtle that never moved."""
-    track = evidence.track
+    trajectory = evidence.trajectory
     # A turtle that is teleported back in time would never touch a wall.
     moved = moved_otherwise(evidence, "The turtle never touches a wall.")
     if moved is not None:
         return moved
-    if track.wall.any():
-        observed = f"The turtle ran into a wall after {_wall_s(track):.1f} s."
+    if trajectory.wall.any():
+        observed = f"The turtle ran into a wall after {_wall_s(trajectory):.1f} s."
         expected = "The turtle never touches a wall."
         return failed(observed, expected, Cause("wall", _size(evidence), _line(evidence)))
-    if not (track.finite and track.length_m > MOVED_M):
+    if not (trajectory.finite and trajectory.length_m > MOVED_M):
         return Finding(Status.SKIPPED, "Not judged, because the turtle did not drive.")
     return passed("The turtle did not touch a wall.")
 

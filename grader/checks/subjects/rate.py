@@ -15,7 +15,7 @@ from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.requested import Interval, Requested
 from grader.checks.tolerance import Band
 from grader.common.words import count
-from grader.evidence import observed as seen_in
+from grader.evidence import activity
 from grader.evidence.arrivals import Measured, measure_arrivals
 from grader.submission.constants import number as constant
 
@@ -130,7 +130,7 @@ def _extremes(measured: Measured) -> tuple[float, float]:
 def _few(evidence: Evidence, what: Subject, measured: Measured, expected: str) -> Finding:
     amount = len(measured.arrivals)
     crash = crash_of(evidence)
-    observed = f"{count(amount, what.noun)} arrived in {seen_in.end_s(evidence.recording):.0f} s."
+    observed = f"{count(amount, what.noun)} arrived in {activity.end_s(evidence.recording):.0f} s."
     if crash is not None:
         return crash_finding(evidence, crash, f"{observed} {end_observed(evidence)}", expected)
     where = evidence.place(what.call)

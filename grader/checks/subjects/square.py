@@ -16,11 +16,11 @@ from grader.checks.subjects.path import not_driven
 from grader.checks.tolerance import Band, unless_starved
 from grader.common.lazy import np
 from grader.common.words import count
-from grader.evidence.track import RESTS_M, STRAIGHT_RAD
+from grader.evidence.trajectory import RESTS_M, STRAIGHT_RAD
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
-    from grader.evidence.track import Track
+    from grader.evidence.trajectory import Trajectory
 
 SIDES = 4
 ORDINALS = ("first", "second", "third", "fourth")
@@ -53,21 +53,21 @@ class Sides:
     curved_share: float
 
 
-def sides_of(track: Track) -> Sides:
+def sides_of(trajectory: Trajectory) -> Sides:
     """Split the trajectory at its corners."""
-    moves = track.steps > RESTS_M
-    straight = moves & (np.abs(track.turn) <= STRAIGHT_RAD_M * track.steps)
+    moves = trajectory.steps > RESTS_M
+    straight = moves & (np.abs(trajectory.turn) <= STRAIGHT_RAD_M * trajectory.steps)
     curved = moves & ~straight
     frames = np.flatnonzero(straight)
-    turned = np.cumsum(track.turn)
+    turned = np.cumsum(trajectory.turn)
     # A side ends where the heading changes by more than noise before the next straight frame.
     breaks = np.flatnonzero(np.abs(np.diff(turned[frames])) > math.radians(10.0)) + 1
-    pieces = [piece for piece in np.split(frames, breaks) if track.steps[piece].sum() > SHORT_M]
+    pieces = [piece for piece in np.split(frames, breaks) if trajectory.steps[piece].sum() > SHORT_M]
     return Sides(
-        lengths=tuple(float(track.steps[piece].sum()) for piece in pieces),
+        lengths=tuple(float(trajectory.steps[piece].sum()) for piece in pieces),
         corners=tuple(float(turned[after[0]] - turned[before[-1]]) for before, after in pairwise(pieces)),
-        ends=tuple((float(track.x[piece[-1] + 1]), float(track.y[piece[-1] + 1])) for piece in pieces),
-        curved_share=float(track.steps[curved].sum()) / track.length_m if track.length_m else 0.0,
+        ends=tuple((float(trajectory.x[piece[-1] + 1]), float(trajectory.y[piece[-1] + 1])) for piece in pieces),
+        curved_share=float(trajectory.steps[curved].sum()) / trajectory.length_m if trajectory.length_m else 0.0,
     )
 
 
@@ -75,13 +75,13 @@ def square(evidence: Evidence, params: Square) -> Finding:
     """The turtle drives a square."""
     expected = f"Four straight sides of {params.side_m:.1f} m, with a turn of 90 degrees on the spot after each side."
     where = evidence.place("publish")
-    track = evidence.track
+    trajectory = evidence.trajectory
     still = not_driven(evidence, expected, where)
     if still is not None:
         return still
-    if track.wall.any():
+    if trajectory.wall.any():
         return failed("The turtle ran into a wall.", expected, Cause("wall", "A side is too long.", where))
-    sides = sides_of(track)
+    sides = sides_of(trajectory)
     if sides.curved_share > CURVED_SHARE:
         observed = f"{100.0 * sides.curved_share:.0f} % of the trajectory is curved."
         cause = "Drive with angular.z at 0, then turn with linear.x at 0. Never do both at once."
@@ -137,7 +137,7 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
 def requested_square(evidence: Evidence, params: Square) -> Requested:
     """The corners, the first one again at the end; the side that is free is the one that the turtle took."""
     begin = first_heading(evidence)
-    turn = evidence.track.turn[np.abs(evidence.track.turn) > STRAIGHT_RAD]
+    turn = evidence.trajectory.turn[np.abs(evidence.trajectory.turn) > STRAIGHT_RAD]
     taken = -1.0 if len(turn) and turn[-1] < 0.0 else 1.0
     side = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(params.sense, taken)
     x, y, corners = begin.x, begin.y, [(begin.x, begin.y)]

@@ -13,7 +13,7 @@ from grader.checks.causes.why_silent import why_nothing, why_qos
 from grader.checks.kind import Kind, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
-from grader.evidence import observed as seen_in
+from grader.evidence import activity
 from grader.submission.constants import evaluate
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def publishes(evidence: Evidence, params: Topic) -> Finding:
     recording = evidence.recording
     if _arrived(evidence, params):
         return passed(_expected(params))
-    publishers = seen_in.endpoints(recording, "publisher")
+    publishers = activity.endpoints(recording, "publisher")
     on_topic = [publisher for publisher in publishers if publisher.topic == params.topic]
     if any(publisher.type == params.type for publisher in on_topic):
         return _silent(evidence, params)
@@ -52,7 +52,7 @@ def publishes(evidence: Evidence, params: Topic) -> Finding:
 
 def _arrived(evidence: Evidence, params: Topic) -> bool:
     recording = evidence.recording
-    until = seen_in.end_s(recording)
+    until = activity.end_s(recording)
     if params.topic == COMMANDS.topic and params.type == COMMANDS.type:
         return bool(evidence.commands)
     return any(
@@ -106,7 +106,7 @@ def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), _expected(params))
-    subscribed = [each for each in seen_in.endpoints(evidence.recording, "subscription") if each.topic == params.topic]
+    subscribed = [each for each in activity.endpoints(evidence.recording, "subscription") if each.topic == params.topic]
     if subscribed:
         cause = "A subscription only receives messages. Use create_publisher to send them."
         where = evidence.place("create_subscription")
@@ -159,7 +159,7 @@ def _publisher_line(evidence: Evidence, topic: str) -> Where | None:
 def only_type(evidence: Evidence, params: Topic) -> Finding:
     """The submission publishes no other message type on the topic."""
     expected = f"Only {params.type} messages are published on {params.topic}."
-    found = seen_in.endpoints(evidence.recording, "publisher")
+    found = activity.endpoints(evidence.recording, "publisher")
     types = {publisher.type for publisher in found if publisher.topic == params.topic}
     types |= {message.type for message in evidence.recording.messages if message.topic == params.topic}
     others = sorted(types - {params.type})
@@ -172,7 +172,7 @@ def only_type(evidence: Evidence, params: Topic) -> Finding:
 
 def subscribes(evidence: Evidence, params: Topic) -> Finding:
     """The submission subscribes to the topic with the right message type."""
-    found = seen_in.endpoints(evidence.recording, "subscription")
+    found = activity.endpoints(evidence.recording, "subscription")
     expected = f"The node subscribes to {params.topic} with the type {params.type}."
     where = evidence.place("create_subscription")
     if any((each.topic, each.type) == (params.topic, params.type) for each in found):

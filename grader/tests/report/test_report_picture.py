@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from grader.evidence.evidence import Evidence
 
-EXPECTED, FITTED, PEN, TICK, WALL = (LOOKS[role].color for role in ("expected", "fitted", "way", "tick", "wall"))
+EXPECTED, FITTED, PEN, TICK, WALL = (LOOKS[role].color for role in ("expected", "fitted", "trajectory", "tick", "wall"))
 Pixels = npt.NDArray[np.int16]
 
 

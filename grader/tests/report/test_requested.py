@@ -23,9 +23,9 @@ NORTH = Pose(4.0, 5.0, math.pi / 2)
 AHEAD = legs((20, 1.0, 0.0))
 
 
-def in_challenge(trial: str, way: list[Timed], start: Pose = NORTH) -> Evidence:
+def in_challenge(trial: str, commands: list[Timed], start: Pose = NORTH) -> Evidence:
     """What a learner drove in one of the trials of step 07."""
-    return evidence(recording(way, start), exercise=find_exercise("07-challenges"), trial_id=trial)
+    return evidence(recording(commands, start), exercise=find_exercise("07-challenges"), trial_id=trial)
 
 
 def asked_shapes(given: Evidence) -> tuple[tuple[Line | Ring, ...], str]:
@@ -66,9 +66,9 @@ def test_a_goal_is_a_ring_as_large_as_its_tolerance() -> None:
 
 
 @pytest.mark.parametrize("trial", ["eight", "square", "goal"])
-@pytest.mark.parametrize("way", [[], every(0.5, math.nan, 1.0)], ids=["none", "nan"])
-def test_a_way_that_leads_nowhere_changes_nothing(trial: str, way: list[Timed]) -> None:
-    assert asked_shapes(in_challenge(trial, way))[0]
+@pytest.mark.parametrize("commands", [[], every(0.5, math.nan, 1.0)], ids=["none", "nan"])
+def test_a_trajectory_that_leads_nowhere_changes_nothing(trial: str, commands: list[Timed]) -> None:
+    assert asked_shapes(in_challenge(trial, commands))[0]
 
 
 def test_nothing_is_drawn_of_a_hidden_check() -> None:

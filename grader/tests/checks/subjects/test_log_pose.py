@@ -37,8 +37,8 @@ def truth(lag_s: float = 0.0) -> Said:
     frames, start = DRIVE.frames, DRIVE.start
     at = np.searchsorted(frames.t_s, TIMES - lag_s) - 1
     x, y = np.append(start.x, frames.x), np.append(start.y, frames.y)
-    way = np.cumsum(np.hypot(np.diff(x), np.diff(y)))
-    return frames.x[at], frames.y[at], way[at]
+    driven_m = np.cumsum(np.hypot(np.diff(x), np.diff(y)))
+    return frames.x[at], frames.y[at], driven_m[at]
 
 
 def logged(said: Said, stalls: tuple[tuple[float, float], ...] = ()) -> Recording:
@@ -117,21 +117,21 @@ def test_each_other_number_fails_for_its_own_reason(name: str) -> None:
 
 
 def test_says_what_the_line_said_and_what_was_so() -> None:
-    x, y, way = truth()
-    finding = position((x + 1.0, y, way))
+    x, y, driven_m = truth()
+    finding = position((x + 1.0, y, driven_m))
     assert finding.observed == (
         f"At 1 s the line shows x={x[0] + 1.0:.2f} y={y[0]:.2f}, but the turtle was at x={x[0]:.2f} y={y[0]:.2f}."
     )
-    finding = distance((x, y, way + np.arange(9.0)))
+    finding = distance((x, y, driven_m + np.arange(9.0)))
     assert finding.observed == (
-        f"At 9 s the line shows distance={way[-1] + 8.0:.2f}, but the turtle had driven {way[-1]:.2f} m."
+        f"At 9 s the line shows distance={driven_m[-1] + 8.0:.2f}, but the turtle had driven {driven_m[-1]:.2f} m."
     )
 
 
 def test_one_wrong_line_is_enough() -> None:
-    x, y, way = truth()
+    x, y, driven_m = truth()
     x[4] += 0.5
-    assert position((x, y, way)).diagnosis == "wrong-position"
+    assert position((x, y, driven_m)).diagnosis == "wrong-position"
 
 
 def test_too_few_lines_are_not_compared() -> None:
@@ -144,27 +144,27 @@ def test_too_few_lines_are_not_compared() -> None:
 
 
 def test_what_is_off_by_less_than_the_tolerance_is_right() -> None:
-    x, y, way = truth()
-    assert position((x + 0.01, y, way)).status is Status.PASSED
-    assert position((x + 0.08, y, way)).status is Status.FAILED
-    assert distance((x, y, way + 0.03)).status is Status.PASSED
-    assert distance((x, y, way + 0.12)).status is Status.FAILED
+    x, y, driven_m = truth()
+    assert position((x + 0.01, y, driven_m)).status is Status.PASSED
+    assert position((x + 0.08, y, driven_m)).status is Status.FAILED
+    assert distance((x, y, driven_m + 0.03)).status is Status.PASSED
+    assert distance((x, y, driven_m + 0.12)).status is Status.FAILED
 
 
 def test_a_way_that_is_nearly_another_one_is_only_wrong() -> None:
-    x, y, way = truth()
+    x, y, driven_m = truth()
     chords = np.cumsum(np.hypot(np.diff(x, prepend=DRIVE.start.x), np.diff(y, prepend=DRIVE.start.y)))
     assert distance((x, y, chords * 1.2)).diagnosis == "wrong-distance"
     assert (
-        distance((x, y, way + np.hypot(DRIVE.start.x, DRIVE.start.y) + np.linspace(0.7, 1.3, 9))).diagnosis
+        distance((x, y, driven_m + np.hypot(DRIVE.start.x, DRIVE.start.y) + np.linspace(0.7, 1.3, 9))).diagnosis
         == "wrong-distance"
     )
-    assert distance((x, y, np.minimum(way, way[2]))).diagnosis == "wrong-distance"
+    assert distance((x, y, np.minimum(driven_m, driven_m[2]))).diagnosis == "wrong-distance"
 
 
 def test_the_worst_line_is_shown() -> None:
-    x, y, way = truth()
-    off = way.copy()
+    x, y, driven_m = truth()
+    off = driven_m.copy()
     off[3] -= 0.5
     off[6] += 0.4
     assert distance((x, y, off)).observed.startswith("At 4 s the line shows")
@@ -182,11 +182,11 @@ def test_a_line_before_the_first_frame_speaks_of_the_start() -> None:
 
 
 def test_lines_that_a_stall_delayed_do_not_count_and_without_others_nobody_is_blamed() -> None:
-    x, y, way = truth()
+    x, y, driven_m = truth()
     x[4] += 0.5
-    stalled = logged((x, y, way), stalls=((4.9, 5.1),))
+    stalled = logged((x, y, driven_m), stalls=((4.9, 5.1),))
     assert found(LOG_POSITION, evidence(stalled), format=FORMAT).status is Status.PASSED
-    all_of_it = logged((x, y, way), stalls=((0.0, 10.0),))
+    all_of_it = logged((x, y, driven_m), stalls=((0.0, 10.0),))
     assert found(LOG_POSITION, evidence(all_of_it), format=FORMAT).status is Status.ERROR
     silent = replace(all_of_it, log=())
     assert found(LOG_POSITION, evidence(silent), format=FORMAT).status is Status.FAILED

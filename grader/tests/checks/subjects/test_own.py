@@ -23,9 +23,9 @@ SIDE = {"counter-clockwise": 1.0, "clockwise": -1.0}
 
 def given(numbers: OwnNumbers | str | None, by: str | None = "alice") -> Evidence:
     """A circle driven by the numbers drawn for alice, with these in the file."""
-    way = every(1.0 / ALICE.rate_hz, ALICE.radius_m, SIDE[ALICE.sense])
+    commands = every(1.0 / ALICE.rate_hz, ALICE.radius_m, SIDE[ALICE.sense])
     text = numbers if numbers is None or isinstance(numbers, str) else to_toml(numbers)
-    return evidence(recording(way), replace(submission({FILE: text}), student=by))
+    return evidence(recording(commands), replace(submission({FILE: text}), student=by))
 
 
 @pytest.mark.parametrize("by", ["alice", " Alice", None])
@@ -74,10 +74,10 @@ def test_the_way_is_judged_by_the_numbers_drawn_whatever_the_file_says() -> None
     assert [found(kind, changed).status for kind in (CIRCLE, RATE)] == [Status.PASSED] * 2
 
 
-@pytest.mark.parametrize(("student", "way"), [("bob", "wrong-direction"), ("carol", "wrong-radius")])
-def test_a_way_by_somebody_elses_numbers_is_wrong(student: str, way: str) -> None:
+@pytest.mark.parametrize(("student", "diagnosis"), [("bob", "wrong-direction"), ("carol", "wrong-radius")])
+def test_a_trajectory_by_somebody_elses_numbers_is_wrong(student: str, diagnosis: str) -> None:
     other = given(draw_numbers(student), by=None)
-    assert [found(kind, other).diagnosis for kind in (CIRCLE, RATE)] == [way, "wrong-rate"]
+    assert [found(kind, other).diagnosis for kind in (CIRCLE, RATE)] == [diagnosis, "wrong-rate"]
 
 
 @pytest.mark.parametrize(
@@ -85,15 +85,15 @@ def test_a_way_by_somebody_elses_numbers_is_wrong(student: str, way: str) -> Non
 )
 def test_one_interval_may_be_a_little_longer_or_shorter_than_the_own_period(share: float, status: Status) -> None:
     period_s = 1.0 / ALICE.rate_hz
-    way = every(period_s, ALICE.radius_m, 1.0)
-    moved = [(t_s + (share - 1.0) * period_s * (index >= 20), v, w) for index, (t_s, v, w) in enumerate(way)]
+    commands = every(period_s, ALICE.radius_m, 1.0)
+    moved = [(t_s + (share - 1.0) * period_s * (index >= 20), v, w) for index, (t_s, v, w) in enumerate(commands)]
     assert found(RATE, given(ALICE).with_run(Run(recording(moved)))).status is status
 
 
 @pytest.mark.parametrize(("first_s", "diagnosis"), [(2.9, None), (3.5, "late-start")])
 def test_the_first_command_may_come_three_seconds_late(first_s: float, diagnosis: str | None) -> None:
-    way = every(1.0 / ALICE.rate_hz, ALICE.radius_m, 1.0, first_s=first_s)
-    assert found(RATE, given(ALICE).with_run(Run(recording(way)))).diagnosis == diagnosis
+    commands = every(1.0 / ALICE.rate_hz, ALICE.radius_m, 1.0, first_s=first_s)
+    assert found(RATE, given(ALICE).with_run(Run(recording(commands)))).diagnosis == diagnosis
 
 
 def test_without_numbers_there_is_nothing_to_judge_the_way_by() -> None:

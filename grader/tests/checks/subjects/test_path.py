@@ -74,15 +74,15 @@ def test_each_other_way_fails_for_its_own_reason(shape: str, diagnosis: str, see
 
 
 @pytest.mark.parametrize(
-    ("way", "diagnosis"),
+    ("commands", "diagnosis"),
     [
         (legs((60, 0.6, 0.0), (15, 0.6, 2.0)), "straight-line"),
         (legs((20, 0.6, 0.0), (55, 0.6, 0.6)), "not-round"),
         (legs((30, 0.6, 0.0), (8, 0.0, 2.0), (30, 0.6, 0.0)), "polygon"),
     ],
 )
-def test_a_way_with_straight_parts_is_told_by_their_number(way: list[Timed], diagnosis: str) -> None:
-    found = finding("circle", evidence(recording(way)))
+def test_a_trajectory_with_straight_parts_is_told_by_their_number(commands: list[Timed], diagnosis: str) -> None:
+    found = finding("circle", evidence(recording(commands)))
     assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:15")
 
 
@@ -102,8 +102,8 @@ def test_two_turns_may_be_asked_for() -> None:
 
 
 def test_commands_that_differ_ask_for_no_size() -> None:
-    way = [(t_s, 5.0 + t_s, 1.0) for t_s, _, _ in every(0.5, 0.0, 0.0)]
-    found = finding("circle", evidence(recording(way)))
+    commands = [(t_s, 5.0 + t_s, 1.0) for t_s, _, _ in every(0.5, 0.0, 0.0)]
+    found = finding("circle", evidence(recording(commands)))
     assert (found.diagnosis, found.cause) == ("wall", "")
     unsteady = [(t_s, 1.0, 0.5 + 0.0001 * t_s) for t_s, _, _ in every(0.5, 0.0, 0.0)]
     short = finding("circle", evidence(recording(unsteady)))

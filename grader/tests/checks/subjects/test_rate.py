@@ -316,8 +316,8 @@ def test_a_machine_that_stalls_all_the_time_judges_no_rate() -> None:
 
 
 def test_half_of_the_intervals_are_enough_to_judge() -> None:
-    way = every(0.5, 2.0, 1.0, until_s=2.6)
-    found = finding("rate", evidence(recording(way, clock="wall", stalls=((0.95, 1.02),))))
+    commands = every(0.5, 2.0, 1.0, until_s=2.6)
+    found = finding("rate", evidence(recording(commands, clock="wall", stalls=((0.95, 1.02),))))
     assert found.diagnosis == "stopped-early"
 
 
