@@ -19,16 +19,16 @@ else:
 FILE = "my_numbers.toml"
 RADII_M = (0.8, 1.0, 1.2, 1.4, 1.6, 1.8)
 RATES_HZ = (2.0, 2.5, 4.0, 5.0)
-SENSES = ("counter-clockwise", "clockwise")
+DIRECTIONS = ("counter-clockwise", "clockwise")
 
 
 @dataclass(frozen=True)
 class OwnNumbers:
-    """A circle of `radius_m`, driven `sense`, by `rate_hz` commands a second."""
+    """A circle of `radius_m` in this `direction`, with `rate_hz` commands per second."""
 
     student: str
     radius_m: float
-    sense: str
+    direction: str
     rate_hz: float
 
 
@@ -48,7 +48,7 @@ def draw_numbers(student: str) -> OwnNumbers:
     return OwnNumbers(
         student,
         RADII_M[drawn[0] % len(RADII_M)],
-        SENSES[drawn[1] % len(SENSES)],
+        DIRECTIONS[drawn[1] % len(DIRECTIONS)],
         RATES_HZ[drawn[2] % len(RATES_HZ)],
     )
 
@@ -62,7 +62,7 @@ def to_toml(numbers: OwnNumbers) -> str:
         "# Your own circle, drawn from your id: leave this file as it is, and write the numbers into your node.\n"
         f'student = "{escaped}"\n'
         f"radius_m = {numbers.radius_m}\n"
-        f'sense = "{numbers.sense}"\n'
+        f'direction = "{numbers.direction}"\n'
         f"rate_hz = {numbers.rate_hz}\n"
     )
 
@@ -74,12 +74,12 @@ def from_toml(data: bytes) -> OwnNumbers:
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         message = f"it cannot be read ({error})"
         raise ValueError(message) from error
-    student, sense = table.get("student"), table.get("sense")
+    student, direction = table.get("student"), table.get("direction")
     radius, rate = table.get("radius_m"), table.get("rate_hz")
-    if not (isinstance(student, str) and isinstance(sense, str)):
-        message = "student or sense is missing, or no text"
+    if not (isinstance(student, str) and isinstance(direction, str)):
+        message = "student or direction is missing, or no text"
         raise ValueError(message)  # noqa: TRY004
     if not (isinstance(radius, int | float) and isinstance(rate, int | float)):
         message = "radius_m or rate_hz is missing, or no number"
         raise ValueError(message)  # noqa: TRY004
-    return OwnNumbers(student, float(radius), sense, float(rate))
+    return OwnNumbers(student, float(radius), direction, float(rate))

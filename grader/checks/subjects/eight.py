@@ -153,8 +153,8 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
 def requested_eight(evidence: Evidence, params: Eight) -> Requested:
     """A circle on either side of where the turtle first drives."""
     begin = first_heading(evidence)
-    senses = ("counter-clockwise", "clockwise")
-    sides = [CircleParams(radius_m=params.radius_m, sense=sense) for sense in senses]
+    directions = ("counter-clockwise", "clockwise")
+    sides = [CircleParams(radius_m=params.radius_m, direction=direction) for direction in directions]
     circles = tuple((expected_centre(begin, side), params.radius_m) for side in sides)
     return Requested(f"two lobes of {params.radius_m:.2f} m", circles)
 

@@ -38,10 +38,10 @@ def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
     wanted = draw_numbers(found.student)
     if found != wanted:
         observed = f"The numbers in {FILE} are not the ones that were drawn for this student."
-        expected = f"Radius {wanted.radius_m} m, {wanted.sense}, {wanted.rate_hz} Hz."
+        expected = f"Radius {wanted.radius_m} m, {wanted.direction}, {wanted.rate_hz} Hz."
         cause = "Do not change the file. Use its numbers in your node."
         return failed(observed, expected, Cause("numbers-changed", cause, Where(FILE)))
-    return passed(f"Radius {found.radius_m} m, {found.sense}, {found.rate_hz} commands per second.")
+    return passed(f"Radius {found.radius_m} m, {found.direction}, {found.rate_hz} commands per second.")
 
 
 def _read(evidence: Evidence) -> OwnNumbers | Finding:
@@ -89,7 +89,7 @@ def own_circle_params(evidence: Evidence, params: OwnCircle) -> CircleParams | F
         centre_tolerance_m=params.centre_tolerance_m,
         residual_m=params.residual_m,
         turns=params.turns,
-        sense=own.sense,
+        direction=own.direction,
     )
 
 

@@ -55,12 +55,12 @@ class CircleParams:
         0.02, above=0, about="How far the trajectory may deviate from the fitted circle (root mean square)."
     )
     turns: float = number(1.0, above=0, about="How many turns the turtle must drive at least.")
-    sense: str = choice("counter-clockwise", "clockwise", about="The direction of the turn.")
+    direction: str = choice("counter-clockwise", "clockwise", about="The direction of the turn.")
 
 
 def expected_centre(start: Pose, params: CircleParams) -> tuple[float, float]:
     """Return the centre (m) of the right circle for a turtle with this start pose."""
-    side = 1.0 if params.sense == "counter-clockwise" else -1.0
+    side = 1.0 if params.direction == "counter-clockwise" else -1.0
     return (
         start.x - side * params.radius_m * math.sin(start.theta),
         start.y + side * params.radius_m * math.cos(start.theta),
@@ -70,7 +70,7 @@ def expected_centre(start: Pose, params: CircleParams) -> tuple[float, float]:
 def circle(evidence: Evidence, params: CircleParams) -> Finding:
     """The turtle drives the circle: round, in the right direction, size and place, and for enough turns."""
     turns = "1 turn" if params.turns == 1.0 else f"{params.turns:g} turns"
-    expected = f"A circle of radius {params.radius_m:.1f} m, {params.sense}, at least {turns}."
+    expected = f"A circle of radius {params.radius_m:.1f} m, {params.direction}, at least {turns}."
     moved = moved_otherwise(evidence, expected)
     if moved is not None:
         return moved
@@ -131,7 +131,7 @@ def _measured(evidence: Evidence, params: CircleParams, trajectory: Trajectory, 
     place, long = Band.at_most(params.centre_tolerance_m), Band.at_least(params.turns)
     if not round_.holds(fitted.rms):
         return _not_round(evidence, trajectory, fitted, expected, near_edge=round_.near(fitted.rms))
-    forward = turns if params.sense == "counter-clockwise" else -turns
+    forward = turns if params.direction == "counter-clockwise" else -turns
     if not forward > 0.0:
         direction = "clockwise" if turns < 0.0 else "counter-clockwise"
         cause = "The sign of angular.z sets the direction: a positive value turns left, which is counter-clockwise."

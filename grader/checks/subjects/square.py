@@ -40,7 +40,7 @@ class Square:
     side_tolerance_m: float = number(0.15, above=0, about="How far a side may be off.")
     corner_tolerance_deg: float = number(7.0, above=0, about="How far a corner may be from 90 degrees.")
     closing_m: float = number(0.4, above=0, about="How far from the start the fourth side may end.")
-    sense: str = choice("counter-clockwise", "clockwise", "either", about="The direction of the turn.")
+    direction: str = choice("counter-clockwise", "clockwise", "either", about="The direction of the turn.")
 
 
 @dataclass(frozen=True)
@@ -101,11 +101,13 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
     speed = recording.frames.linear
     long, right = Band.around(params.side_m, params.side_tolerance_m), Band.around(90.0, params.corner_tolerance_deg)
     corners = [math.degrees(corner) for corner in sides.corners[: SIDES - 1]]
-    sign = -1.0 if params.sense == "clockwise" or (params.sense == "either" and corners[0] < 0.0) else 1.0
+    sign = -1.0 if params.direction == "clockwise" or (params.direction == "either" and corners[0] < 0.0) else 1.0
     near = long.near(*sides.lengths[:SIDES]) or right.near(*(sign * corner for corner in corners))
     if all(sign * corner < 0.0 for corner in corners):
         observed = "The turtle turns in the wrong direction at the corners."
-        return failed(observed, f"The turtle drives the square {params.sense}.", Cause("wrong-direction", where=where))
+        return failed(
+            observed, f"The turtle drives the square {params.direction}.", Cause("wrong-direction", where=where)
+        )
     for name, length in zip(ORDINALS, sides.lengths, strict=False):
         if not long.holds(length):
             more = length - params.side_m
@@ -139,7 +141,7 @@ def requested_square(evidence: Evidence, params: Square) -> Requested:
     begin = first_heading(evidence)
     turn = evidence.trajectory.turn[np.abs(evidence.trajectory.turn) > STRAIGHT_RAD]
     taken = -1.0 if len(turn) and turn[-1] < 0.0 else 1.0
-    side = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(params.sense, taken)
+    side = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(params.direction, taken)
     x, y, corners = begin.x, begin.y, [(begin.x, begin.y)]
     for number_ in range(SIDES):
         theta = begin.theta + side * number_ * math.pi / 2.0

@@ -87,6 +87,6 @@ def test_no_circle_through(x: list[float], y: list[float]) -> None:
 
 
 @given(st.floats(-20.0, 20.0))
-def test_turns_count_both_senses_and_more_than_one(turns: float) -> None:
+def test_turns_count_both_directions_and_more_than_one(turns: float) -> None:
     px, py = arc(3.0, -1.0, 2.0, turns * 2.0 * math.pi, points=400)
     assert turns_about(px, py, 3.0, -1.0) == pytest.approx(turns, abs=1e-9)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.exercise.own_numbers import RADII_M, RATES_HZ, SENSES, draw_numbers, from_toml, normal_id, to_toml
+from grader.exercise.own_numbers import DIRECTIONS, RADII_M, RATES_HZ, draw_numbers, from_toml, normal_id, to_toml
 
 
 def test_the_same_student_gets_the_same_numbers() -> None:
@@ -17,7 +17,7 @@ def test_students_get_different_numbers() -> None:
     drawn = [draw_numbers(f"student {number}") for number in range(200)]
     assert {each.radius_m for each in drawn} == set(RADII_M)
     assert {each.rate_hz for each in drawn} == set(RATES_HZ)
-    assert {each.sense for each in drawn} == set(SENSES)
+    assert {each.direction for each in drawn} == set(DIRECTIONS)
 
 
 SPELLINGS = [
@@ -57,7 +57,7 @@ def test_any_id_survives_the_file(student: str) -> None:
     ("text", "why"),
     [
         ("radius_m = ", "cannot be read"),
-        ("radius_m = 1.0", "student or sense"),
+        ("radius_m = 1.0", "student or direction"),
         ('student = "a"\nsense = "b"', "radius_m"),
     ],
 )

@@ -75,7 +75,7 @@ class Learner:
 
 def with_numbers(text: str, own: OwnNumbers) -> str:
     """Our own circle with a learner's numbers, at 1 rad/s."""
-    turn = 1.0 if own.sense == "counter-clockwise" else -1.0
+    turn = 1.0 if own.direction == "counter-clockwise" else -1.0
     for old, new in (("1.0 / 4.0", f"1.0 / {own.rate_hz}"), ("0.8", str(own.radius_m)), ("-1.0", str(turn))):
         assert old in text
         text = text.replace(old, new)

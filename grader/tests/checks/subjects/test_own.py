@@ -23,7 +23,7 @@ SIDE = {"counter-clockwise": 1.0, "clockwise": -1.0}
 
 def given(numbers: OwnNumbers | str | None, by: str | None = "alice") -> Evidence:
     """A circle driven by the numbers drawn for alice, with these in the file."""
-    commands = every(1.0 / ALICE.rate_hz, ALICE.radius_m, SIDE[ALICE.sense])
+    commands = every(1.0 / ALICE.rate_hz, ALICE.radius_m, SIDE[ALICE.direction])
     text = numbers if numbers is None or isinstance(numbers, str) else to_toml(numbers)
     return evidence(recording(commands), replace(submission({FILE: text}), student=by))
 
@@ -58,7 +58,7 @@ def test_no_spelling_of_the_own_id_makes_a_friends_circle_pass() -> None:
             f"The numbers in {FILE} are not the ones that were drawn for this student.",
         ),
         (None, "alice", "no-numbers", f"There is no {FILE}."),
-        ("student = 3", "alice", "numbers-unreadable", f"{FILE}: student or sense is missing, or no text."),
+        ("student = 3", "alice", "numbers-unreadable", f"{FILE}: student or direction is missing, or no text."),
     ],
 )
 def test_other_numbers_are_told_from_the_own(

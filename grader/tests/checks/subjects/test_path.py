@@ -199,7 +199,7 @@ def test_a_way_that_is_just_long_enough_is_for_wall_time_to_judge(until_s: float
 def test_the_centre_lies_to_the_left_of_the_start_and_clockwise_to_the_right() -> None:
     start = Pose(3.0, 4.0, math.pi / 2)
     assert expected_centre(start, CircleParams(radius_m=2.0)) == pytest.approx((1.0, 4.0))
-    assert expected_centre(start, CircleParams(radius_m=2.0, sense="clockwise")) == pytest.approx((5.0, 4.0))
+    assert expected_centre(start, CircleParams(radius_m=2.0, direction="clockwise")) == pytest.approx((5.0, 4.0))
 
 
 def test_driving_backwards_round_the_same_centre_is_clockwise() -> None:

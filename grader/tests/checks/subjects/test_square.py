@@ -91,9 +91,9 @@ def test_a_corner_may_be_off_by_seven_degrees_and_a_square_small() -> None:
 
 def test_clockwise_is_right_where_the_exercise_allows_it() -> None:
     left, right = round_(), round_(corners=(-90.0,) * 4)
-    assert square(right, sense="either").status is Status.PASSED
-    assert square(right, sense="clockwise").status is Status.PASSED
-    assert square(left, sense="clockwise").diagnosis == "wrong-direction"
+    assert square(right, direction="either").status is Status.PASSED
+    assert square(right, direction="clockwise").status is Status.PASSED
+    assert square(left, direction="clockwise").diagnosis == "wrong-direction"
 
 
 def test_a_way_that_was_driven_by_other_means_is_none() -> None:

@@ -46,7 +46,7 @@ class OwnCircle(Driver):
         lines = (share / "my_numbers.toml").read_text(encoding="utf-8").splitlines()
         numbers = dict(line.split(" = ") for line in lines if " = " in line)
         self.radius = float(numbers["radius_m"])
-        self.turn = 1.0 if numbers["sense"] == '"counter-clockwise"' else -1.0
+        self.turn = 1.0 if numbers["direction"] == '"counter-clockwise"' else -1.0
         super().__init__("own_circle", rate=float(numbers["rate_hz"]))
 
     def command(self):
