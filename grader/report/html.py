@@ -48,8 +48,8 @@ class ShownCheck:
         return "Hidden check" if self.outcome.hidden else self.outcome.title
 
     @property
-    def seen(self) -> str:
-        """What was seen; empty where that is hidden or only repeats the title."""
+    def observed(self) -> str:
+        """What was observed; empty if it is hidden or only repeats the title."""
         text = self.outcome.finding.observed
         return "" if self.outcome.hidden or text.rstrip(".") == self.outcome.title else text
 

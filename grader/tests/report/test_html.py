@@ -195,7 +195,7 @@ def test_logs_with_errors_come_first_and_their_errors_before_the_rest() -> None:
     assert "hello" not in errors
 
 
-def test_the_player_gets_the_way_without_what_is_no_number() -> None:
+def test_the_player_gets_the_trajectory_without_what_is_no_number() -> None:
     given = evidence(recording(every(0.5, 2.0, float("nan"))))
     page = page_of(given)
     data = json.loads(re.findall(r'id="data">(.*?)</script>', page)[0])[0]
