@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from grader.benchmarks.measure import Cost, cost
 from grader.common.interpreter import interpreter
-from grader.ros import underlay
 from grader.ros.installation import environment, find_ros
+from grader.ros.underlay import with_turtlesim
 from grader.submission.package import open_submission, write_copy
 
 if TYPE_CHECKING:
@@ -19,11 +19,11 @@ _COLCON = "import sys; from colcon_core.command import main; sys.exit(main())"
 
 def bare_costs(submission: Path, folder: Path) -> dict[str, Cost]:
     """The two costs, measured in a folder that is empty so far; F is the sum of their wall times."""
-    here = find_ros()
-    env = environment(here, home=folder, underlay=underlay.ensure(here))
+    ros = with_turtlesim(find_ros())
+    env = environment(ros, home=folder)
     opened = open_submission(submission)
     write_copy(opened, folder / "ws" / "src" / opened.package_dir.name)
-    python = str(here.python)
+    python = str(ros.python)
     colcon = interpreter(*("-c", _COLCON, "build", "--base-paths", "src"), python=python, env=env, searches=True)
     node = interpreter("-c", _NODE, python=python, env=env, searches=True)
     return {

@@ -33,15 +33,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=40, help="repetitions (40)")
     times = parser.parse_args().times
-    here = installation.find_ros()
+    ros = underlay.with_turtlesim(installation.find_ros())
     with tempfile.TemporaryDirectory() as home:
         user = {"HOME": home, "PATH": os.environ.get("PATH", "/usr/bin:/bin")}
         # A domain that no user has by default.
-        env = installation.users_environment(here, underlay.ensure(here), user, domain=0)
+        env = installation.users_environment(ros, user, domain=0)
         commands = {
             "topic list": [_ROS2, "topic", "list"],
             "interface show": [_ROS2, "interface", "show", "geometry_msgs/msg/Twist"],
-            "bare rclpy node": interpreter("-c", _NODE, python=str(here.python), searches=True).argv,
+            "bare rclpy node": interpreter("-c", _NODE, python=str(ros.python), searches=True).argv,
         }
         with subprocess.Popen(
             [_ROS2, "run", "turtlesim", "turtlesim_node"], env=env, stderr=subprocess.PIPE, text=True

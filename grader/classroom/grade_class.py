@@ -122,14 +122,14 @@ def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
 def _ros(*, local: bool, tell: Callable[[str], None]) -> str:
     """The ROS 2 that a result follows from; with Dask it is the workers' business, and theirs must be one."""
     try:
-        here = find_ros()
+        ros = find_ros()
         if local:
-            underlay.ensure(here, tell)  # once, and not by all workers at the same time
+            underlay.ensure(ros, tell)  # once, and not by all workers at the same time
     except MachineError:
         if local:
             raise
         return "of the workers"
-    return here.name
+    return ros.name
 
 
 def _engine(asked: Asked, *, local: bool) -> Engine:

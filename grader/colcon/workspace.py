@@ -76,22 +76,20 @@ class Built:
     tree: bytes
 
 
-def build(
-    submission: Submission, here: installation.Ros, underlay: Path | None, *, in_cell: bool, tell: Callable[[str], None]
-) -> Built:
-    """Build the submission's package; `underlay` is the prefix of the turtlesim interfaces; `tell` hears of it.
+def build(submission: Submission, ros: installation.Ros, *, in_cell: bool, tell: Callable[[str], None]) -> Built:
+    """Build the submission's package with this ROS 2. `tell` gets a line about it.
 
     Raises:
         MachineError: the sandbox or colcon itself does not work here.
     """
     tell("Building with colcon")
     with _workspace(in_cell=in_cell) as (workspace, home):
-        env = installation.environment(here, home=home, underlay=underlay)
+        env = installation.environment(ros, home=home)
         env["WS"] = str(workspace)
-        colcon = interpreter("-c", _COLCON, python=str(here.python), env=env, searches=True)
+        colcon = interpreter("-c", _COLCON, python=str(ros.python), env=env, searches=True)
         argv = ["sh", "-c", _SCRIPT, "sh", *colcon.argv]
         if in_cell:
-            view = bubblewrap.ros_view(here, *([underlay] if underlay else []))
+            view = bubblewrap.ros_view(ros)
             with call_filter() as filter_fd, control_group(LIMITS) as group:
                 command = bubblewrap.lone_cell(argv, view, env=env, limits=LIMITS, filter_fd=filter_fd)
                 done = _run(group.joined(command), env, submission, () if filter_fd is None else (filter_fd,))

@@ -24,8 +24,8 @@ from traitlets import Bool, Instance, Integer, Unicode
 from grader.common.interpreter import interpreter
 from grader.exercise.model import course_folder
 from grader.notebook.mode import CONFINED
-from grader.ros import underlay
 from grader.ros.installation import environment, find_ros
+from grader.ros.underlay import with_turtlesim
 from grader.sandbox import bubblewrap
 from grader.sandbox.bubblewrap import HOME, Limits, View, lone_cell, ros_view
 from grader.sandbox.system_calls import call_filter
@@ -205,21 +205,19 @@ def _copy(folder: Path, copy: Path) -> None:
 
 
 def _environment(*folders: Path) -> tuple[dict[str, str], View]:
-    here = find_ros()
-    turtlesim = underlay.ensure(here)
+    ros = with_turtlesim(find_ros())
     course = course_folder()
     package = Path(__file__).resolve().parent.parent
     exercises = course.parent / "exercises"
-    seen = [package, course, exercises, *([turtlesim] if turtlesim else []), folders[0]]
-    ros = ros_view(here, *(path for path in seen if path.exists()))
+    shown = ros_view(ros, *(path for path in (package, course, exercises, folders[0]) if path.exists()))
     # Solutions stand in the grader's tests too, and beside the course where it is installed.
-    hidden = [path for path in ros.hidden if path.name == "solutions"]
+    hidden = [path for path in shown.hidden if path.name == "solutions"]
     hidden += [path for path in (package / "tests",) if path.is_dir()]
-    view = View(ros.read_only, tuple(hidden), (folders[1],))
-    env = environment(here, home=HOME, underlay=turtlesim)
+    view = View(shown.read_only, tuple(hidden), (folders[1],))
+    env = environment(ros, home=HOME)
     env |= {CONFINED: "1", "NBGRADER_EXECUTION": "autograde", "IPYTHONDIR": str(HOME / "ipython")}
-    if turtlesim:
-        env["XDG_CACHE_HOME"] = str(turtlesim.parent.parent)
+    if ros.underlay:
+        env["XDG_CACHE_HOME"] = str(ros.underlay.parent.parent)
     return env, view
 
 

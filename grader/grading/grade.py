@@ -144,23 +144,23 @@ class _Grading:
             certain = judge_early(evidence)
         self.early(certain.failed)
         try:
-            here = find_ros()
-            ros_name = here.name
+            ros = find_ros()
+            ros_name = ros.name
             with self._timed("interfaces"):
-                extra = underlay.ensure(here, self.tell)
-            prefixes = (*here.prefixes, *([extra] if extra else []))
+                ros = underlay.with_turtlesim(ros, self.tell)
+            prefixes = ros.all_prefixes
             if not self.exercise.package:
                 stage = "trial"
-                evidence = self._simulator_alone(evidence, here, extra)
+                evidence = self._simulator_alone(evidence, ros)
             else:
                 with self.ahead:
-                    self._start_trials(evidence, certain, here, extra)
-                    evidence = self._build(evidence, here, extra)
+                    self._start_trials(evidence, certain, ros)
+                    evidence = self._build(evidence, ros)
                     stage = "trial"
                     self._run_ahead(evidence)
                     for spec in self.exercise.trials:
                         if wants_trial(evidence.from_trial(spec.id)):
-                            evidence = self._run_trial(evidence.from_trial(spec.id), here, extra)
+                            evidence = self._run_trial(evidence.from_trial(spec.id), ros)
                     evidence = evidence.from_trial(self.exercise.trials[0].id)
         except MachineError as error:
             evidence = dataclasses.replace(evidence, fault=Fault(stage, str(error)))
@@ -176,19 +176,19 @@ class _Grading:
         report = report_of(evidence, outcomes, ros_name, self.seconds, confined=confined)
         return Graded(report, evidence, prefixes)
 
-    def _simulator_alone(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
+    def _simulator_alone(self, evidence: Evidence, ros: Ros) -> Evidence:
         self.tell("Asking a running simulator")
-        with self._timed("trial"), self._trial(evidence, "simulated", here, extra) as trial:
+        with self._timed("trial"), self._trial(evidence, "simulated", ros) as trial:
             recording = trial.run_alone()
         why = "the simulator ran by itself, and says the same at any pace"
         return evidence.with_run(Run(dataclasses.replace(recording, why=why)))
 
-    def _start_trials(self, evidence: Evidence, certain: Early, here: Ros, extra: Path | None) -> None:
+    def _start_trials(self, evidence: Evidence, certain: Early, ros: Ros) -> None:
         """Start simulators and launchers beside the build, of all trials or one; none for a node that cannot run."""
         for seen in _longest_first(evidence) if self.options.trials_at_once > 1 else (evidence,):
             if certain.may_run(seen):
                 clock, _ = self._first_clock(seen)
-                self.ahead.start(seen.trial.id, self._trial(seen, clock, here, extra))
+                self.ahead.start(seen.trial.id, self._trial(seen, clock, ros))
 
     def _run_ahead(self, evidence: Evidence) -> None:
         """Let the nodes begin whose trials pass in simulated time."""
@@ -197,12 +197,12 @@ class _Grading:
             if self.ahead.trial(name) and self._first_clock(seen)[0] == "simulated" and wants_trial(seen):
                 self.ahead.run(name, _package(seen), seen.trial.executable, self.tree)
 
-    def _run_trial(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
+    def _run_trial(self, evidence: Evidence, ros: Ros) -> Evidence:
         """The evidence with what this trial showed, which ends here."""
         clock, why = self._first_clock(evidence)
         begun = self.ahead.trial(evidence.trial.id)
-        with nullcontext(begun) if begun else self._trial(evidence, clock, here, extra) as trial:
-            return self._try_twice(evidence, trial, clock, why, here, extra)
+        with nullcontext(begun) if begun else self._trial(evidence, clock, ros) as trial:
+            return self._try_twice(evidence, trial, clock, why, ros)
 
     def _first_clock(self, evidence: Evidence) -> tuple[ClockName, str]:
         if self.options.clock != "auto":
@@ -217,34 +217,30 @@ class _Grading:
             return "wall", f"{first.name} at {first.file}:{first.line} may follow the wall's clock"
         return "simulated", "the node waits only for ROS time and messages, so its seconds need not be waited for"
 
-    def _build(self, evidence: Evidence, here: Ros, extra: Path | None) -> Evidence:
+    def _build(self, evidence: Evidence, ros: Ros) -> Evidence:
         with self._timed("build"):
-            built = self.builder(self.submission, here, extra, in_cell=self.options.in_cell, tell=self.tell)
+            built = self.builder(self.submission, ros, in_cell=self.options.in_cell, tell=self.tell)
         self.tree = built.tree
         return dataclasses.replace(evidence, build=built.build)
 
-    def _try_twice(
-        self, evidence: Evidence, trial: Runs, clock: ClockName, why: str, here: Ros, extra: Path | None
-    ) -> Evidence:
+    def _try_twice(self, evidence: Evidence, trial: Runs, clock: ClockName, why: str, ros: Ros) -> Evidence:
         """A node that brings the simulator down once may have met a fault of the machine; twice, it is the node.
 
         One that kept it busy for minutes gets no second try: a class would wait too long.
         """
         try:
-            return self._try(evidence, trial, clock, why, here, extra)
+            return self._try(evidence, trial, clock, why, ros)
         except OverwhelmedError as error:
             if error.hung:
                 return evidence.with_run(Run(overwhelmed=str(error)))
             self.tell(f"The simulator was brought down ({printable(str(error))}): once more")
         try:
-            with self._trial(evidence, clock, here, extra) as again:
-                return self._try(evidence, again, clock, why, here, extra)
+            with self._trial(evidence, clock, ros) as again:
+                return self._try(evidence, again, clock, why, ros)
         except OverwhelmedError as error:
             return evidence.with_run(Run(overwhelmed=str(error)))
 
-    def _try(
-        self, evidence: Evidence, trial: Runs, clock: ClockName, why: str, here: Ros, extra: Path | None
-    ) -> Evidence:
+    def _try(self, evidence: Evidence, trial: Runs, clock: ClockName, why: str, ros: Ros) -> Evidence:
         """Run the trial under the first clock, and under the wall's when that one must judge."""
         if clock == "simulated":
             try:
@@ -255,13 +251,13 @@ class _Grading:
                 if self.options.clock == "simulated" or not near_edge(of_this_trial(evidence)):
                     return evidence
                 why = "a measured value lies near the edge of what is allowed, where only the wall's clock decides"
-            with self._trial(evidence, "wall", here, extra) as again:
+            with self._trial(evidence, "wall", ros) as again:
                 evidence = self._run(evidence, again, "wall", why)
         else:
             evidence = self._run(evidence, trial, "wall", why)
-        return self._not_starved(evidence, why, here, extra)
+        return self._not_starved(evidence, why, ros)
 
-    def _not_starved(self, evidence: Evidence, why: str, here: Ros, extra: Path | None) -> Evidence:
+    def _not_starved(self, evidence: Evidence, why: str, ros: Ros) -> Evidence:
         """Repeat a wall-clock trial that failed while others used the machine, now without other gradings beside it.
 
         A busy machine makes a right node look wrong, never a wrong one right: the first trial that passes counts, else
@@ -270,7 +266,7 @@ class _Grading:
         tried = [evidence]
         while len(tried) < WALL_TRIALS and _disturbed(tried[-1]) and not _passed(tried[-1]):
             self.tell("The machine was too busy for wall time: once more")
-            with self.turns.alone(), self._trial(evidence, "wall", here, extra) as trial:
+            with self.turns.alone(), self._trial(evidence, "wall", ros) as trial:
                 tried.append(self._run(evidence, trial, "wall", why))
         return tried[-1] if _passed(tried[-1]) else min(tried, key=_disturbance)
 
@@ -290,7 +286,7 @@ class _Grading:
             if part != "start":
                 self.seconds[part] = self.seconds.get(part, 0.0) + seconds
 
-    def _trial(self, evidence: Evidence, clock: ClockName, here: Ros, extra: Path | None) -> Trial:
+    def _trial(self, evidence: Evidence, clock: ClockName, ros: Ros) -> Trial:
         exercise, scenario = self.exercise, evidence.trial.scenario
         checks = [check for check in exercise.checks if check.trial == evidence.trial.id]
         radii = [KINDS[check.kind].radius(check.params) for check in checks]
@@ -307,7 +303,7 @@ class _Grading:
             stop_at_doubt=self.options.clock == "auto",
             judged=_topics(checks),
         )
-        return self.trials(plan, here, extra, in_cell=self.options.in_cell)
+        return self.trials(plan, ros, in_cell=self.options.in_cell)
 
     @contextmanager
     def _timed(self, stage: str) -> Iterator[None]:

@@ -16,7 +16,6 @@ from grader.colcon import workspace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from grader.ros.installation import Ros
     from grader.submission.package import Submission
@@ -32,8 +31,7 @@ class Rebuild:
     def __call__(
         self,
         submission: Submission,
-        here: Ros,
-        underlay: Path | None,
+        ros: Ros,
         *,
         in_cell: bool,
         tell: Callable[[str], None],
@@ -44,7 +42,7 @@ class Rebuild:
             tell("Taking the last build, with the modules as they are now")
         else:
             self.runs += 1
-            built = workspace.build(submission, here, underlay, in_cell=in_cell, tell=tell)
+            built = workspace.build(submission, ros, in_cell=in_cell, tell=tell)
         self._last = (submission, built)
         return built
 

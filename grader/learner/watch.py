@@ -134,7 +134,7 @@ class Watched:
         self.rebuild = Rebuild()
         self._options = options
         self._warm: tuple[Plan, Trial] | None = None
-        self._wanted: tuple[Plan, Ros, Path | None] | None = None
+        self._wanted: tuple[Plan, Ros] | None = None
         self._judged = ""
         """The digest of the last submission, or why there was none."""
 
@@ -172,19 +172,19 @@ class Watched:
     def _open(self) -> Submission:
         return open_submission(self.folder) if self.exercise.package else open_answers(self.folder)
 
-    def _next_trial(self, plan: Plan, here: Ros, underlay: Path | None, *, in_cell: bool) -> Trial:
+    def _next_trial(self, plan: Plan, ros: Ros, *, in_cell: bool) -> Trial:
         # The first trial of a grading is the one that the next grading begins with.
         if self._wanted is None and plan.clock == "simulated":
-            self._wanted = (plan, here, underlay)
+            self._wanted = (plan, ros)
         if self._warm is not None and self._warm[0] == plan:
             trial = self._warm[1]
             self._warm = None
             return trial
-        return Trial(plan, here, underlay, in_cell=in_cell)
+        return Trial(plan, ros, in_cell=in_cell)
 
     def _warm_up(self) -> None:
         if self._warm is None and self._wanted is not None:
-            plan, here, underlay = self._wanted
-            trial = Trial(plan, here, underlay, in_cell=self._options.in_cell)
+            plan, ros = self._wanted
+            trial = Trial(plan, ros, in_cell=self._options.in_cell)
             trial.start()
             self._warm = (plan, trial)

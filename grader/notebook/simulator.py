@@ -185,8 +185,7 @@ def _command(executable: str) -> tuple[list[str], Path]:
 
 def environment() -> dict[str, str]:
     """The kernel's environment with ROS 2 in it: the course's kernel has it already, others get it here."""
-    from grader.ros import underlay
     from grader.ros.installation import find_ros, users_environment
+    from grader.ros.underlay import with_turtlesim
 
-    here = find_ros()
-    return users_environment(here, underlay.ensure(here), os.environ)
+    return users_environment(with_turtlesim(find_ros()), os.environ)

@@ -50,11 +50,18 @@ class Ros:
     python: Path
     python_path: tuple[Path, ...]
     library_path: tuple[Path, ...]
+    underlay: Path | None = None
+    """The prefix of the turtlesim interfaces that grader.ros.underlay built; None if the installation has its own."""
 
     @property
     def name(self) -> str:
-        """As a report tells it; nothing of the machine's paths beyond what `source` names."""
+        """The name in a report. It has none of this machine's paths."""
         return f"Jazzy (rclpy {self.version}, {'sourced' if self.kind == 'sourced' else 'wheels'})"
+
+    @property
+    def all_prefixes(self) -> tuple[Path, ...]:
+        """The ament prefixes, and the underlay if there is one."""
+        return (*self.prefixes, *([self.underlay] if self.underlay else []))
 
 
 def find_ros(env: Mapping[str, str] = os.environ) -> Ros:
@@ -94,16 +101,13 @@ def _made_for(prefix: Path) -> str | None:
     return ros if isinstance(ros, str) and ros.startswith("/") else None
 
 
-def environment(
-    ros: Ros, *, home: Path, underlay: Path | None = None, overlays: Sequence[Path] = (), domain: int | None = 0
-) -> dict[str, str]:
+def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: int | None = 0) -> dict[str, str]:
     """The whole environment of a child process: nothing of the caller's leaks in.
 
-    `underlay` is the prefix of the turtlesim interfaces, `overlays` are install folders of packages
-    (install/<package>), searched first. `home` must be writable: HOME, ROS_LOG_DIR and TMPDIR lie there. `domain` is
-    None in a room (grader.sandbox), whose network is its own.
+    `overlays` are install folders of packages (install/<package>), searched first. `home` must be writable: HOME,
+    ROS_LOG_DIR and TMPDIR lie there. `domain` is None in a room (grader.sandbox), which has a network of its own.
     """
-    local = [*overlays, *([underlay] if underlay else [])]
+    local = [*overlays, *([ros.underlay] if ros.underlay else [])]
     env = {
         "PATH": os.pathsep.join([str(ros.python.parent), "/usr/local/bin", "/usr/bin", "/bin"]),
         "HOME": str(home),
@@ -148,16 +152,14 @@ def domain_of(uid: int) -> int:
     return 1 + uid % 101
 
 
-def users_environment(
-    ros: Ros, underlay: Path | None, env: Mapping[str, str] = os.environ, domain: int | None = None
-) -> dict[str, str]:
+def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int | None = None) -> dict[str, str]:
     """The environment of a node that a user starts for themselves: their own, and what ROS 2 needs on top.
 
     What the user has set stays theirs, workspaces that they sourced are searched first. `domain` is the one to use,
     else what they have set, else one of the user's own: classmates on one machine must not drive each other's turtles.
     """
     home = Path(env.get("HOME", "/"))
-    needed = environment(ros, home=home, underlay=underlay, domain=domain_of(os.getuid()))
+    needed = environment(ros, home=home, domain=domain_of(os.getuid()))
     for name in _UNWATCHED:
         needed.pop(name, None)
     if " " in str(ros.python):

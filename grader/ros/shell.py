@@ -32,8 +32,8 @@ def users_environment(
     if domain is not None and not 0 <= domain <= HIGHEST_DOMAIN:
         message = f"A domain id is a whole number from 0 to {HIGHEST_DOMAIN}, and {domain} is not."
         raise UsageError(message)
-    here = installation.find_ros(env)
-    return installation.users_environment(here, underlay.ensure(here, tell), env, domain)
+    ros = underlay.with_turtlesim(installation.find_ros(env), tell)
+    return installation.users_environment(ros, env, domain)
 
 
 def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> str:

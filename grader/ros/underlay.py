@@ -13,6 +13,7 @@ import sys
 import sysconfig
 import tempfile
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,8 +34,17 @@ def _say_nothing(_: str) -> None:
     """Nobody is there to read it."""
 
 
-def ensure(here: installation.Ros, tell: Callable[[str], None] = _say_nothing) -> Path | None:
-    """Return the prefix of our turtlesim, building it first where that was not done yet; None if `here` has its own.
+def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _say_nothing) -> installation.Ros:
+    """Return this ROS 2 with the turtlesim interfaces in it. They are built first if need be (see `ensure`).
+
+    Raises:
+        MachineError: they could not be built.
+    """
+    return replace(ros, underlay=ensure(ros, tell))
+
+
+def ensure(ros: installation.Ros, tell: Callable[[str], None] = _say_nothing) -> Path | None:
+    """Return the prefix of our turtlesim, building it first where that was not done yet; None if `ros` has its own.
 
     A build takes about ten seconds, and `tell` gets a line now and then. Where it is built already, this takes
     about a millisecond.
@@ -42,20 +52,20 @@ def ensure(here: installation.Ros, tell: Callable[[str], None] = _say_nothing) -
     Raises:
         MachineError: something to build with is missing, the build failed, or the cache cannot be written.
     """
-    if installation.has_turtlesim(here):
+    if installation.has_turtlesim(ros):
         return None
-    search = installation.environment(here, home=Path("/"))["PATH"]
-    prefix = xdg.cache() / _name(here, _compiler(search))
+    search = installation.environment(ros, home=Path("/"))["PATH"]
+    prefix = xdg.cache() / _name(ros, _compiler(search))
     if prefix.is_dir():
         return prefix
-    kept = _built_by_another_compiler(here) if _compiler(search) is None else None
+    kept = _built_by_another_compiler(ros) if _compiler(search) is None else None
     if kept is not None:
         return kept
     _require_tools(search)
     try:
         with _one_at_a_time(tell):
             if not prefix.is_dir():
-                _build(here, prefix, tell)
+                _build(ros, prefix, tell)
     except OSError as error:
         message = (
             f"The turtlesim interfaces could not be built in {xdg.cache()}: {error.strerror or error}. The folder must "
@@ -65,15 +75,15 @@ def ensure(here: installation.Ros, tell: Callable[[str], None] = _say_nothing) -
     return prefix
 
 
-def _name(here: installation.Ros, compiler: Path | None) -> str:
+def _name(ros: installation.Ros, compiler: Path | None) -> str:
     """Name the build by all that it was made of; no process is started for that."""
-    return f"turtlesim-{_key_of_sources(here)}-{_key_of_compiler(compiler)}"
+    return f"turtlesim-{_key_of_sources(ros)}-{_key_of_compiler(compiler)}"
 
 
-def _key_of_sources(here: installation.Ros) -> str:
+def _key_of_sources(ros: installation.Ros) -> str:
     key = hashlib.sha256()
     abi = sysconfig.get_config_var("SOABI")
-    for part in (here.kind, here.version, here.prefix, here.python, sys.version, abi):
+    for part in (ros.kind, ros.version, ros.prefix, ros.python, sys.version, abi):
         key.update(f"{part}\n".encode())
     for path in sorted(path for path in SOURCES.rglob("*") if path.is_file()):
         key.update(f"{path.relative_to(SOURCES)}\n".encode())
@@ -96,9 +106,9 @@ def _compiler(search: str) -> Path | None:
     return Path(found) if found else None
 
 
-def _built_by_another_compiler(here: installation.Ros) -> Path | None:
+def _built_by_another_compiler(ros: installation.Ros) -> Path | None:
     """Find a finished build whose compiler has been removed since: what it made still works."""
-    builds = xdg.cache().glob(f"turtlesim-{_key_of_sources(here)}-*")
+    builds = xdg.cache().glob(f"turtlesim-{_key_of_sources(ros)}-*")
     return max(builds, key=lambda build: build.stat().st_mtime, default=None)
 
 
@@ -140,14 +150,14 @@ def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
         yield
 
 
-def _build(here: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> None:
+def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> None:
     # Left by builds that were killed: whoever holds the lock is the only one who builds.
     for leftover in prefix.parent.glob(f"{_TEMPORARY}*"):
         shutil.rmtree(leftover, ignore_errors=True)
     tell("Building the turtlesim interfaces, once; this takes about ten seconds.")
     with tempfile.TemporaryDirectory(prefix=_TEMPORARY, dir=prefix.parent) as name:
         folder = Path(name)
-        env = installation.environment(here, home=folder)
+        env = installation.environment(ros, home=folder)
         staged = Path(f"{folder}/staged{prefix}")
         no_trace = shlex.quote(f"{folder}=turtlesim")
         configure = [
@@ -155,7 +165,7 @@ def _build(here: installation.Ros, prefix: Path, tell: Callable[[str], None]) ->
             *("-G", "Ninja" if shutil.which("ninja", path=env["PATH"]) else "Unix Makefiles"),
             # Not optimized: half the time to build, and a few microseconds a message.
             *("-DCMAKE_BUILD_TYPE=None", "-DBUILD_TESTING=OFF"),
-            f"-DPython3_EXECUTABLE={here.python}",
+            f"-DPython3_EXECUTABLE={ros.python}",
             f"-DCMAKE_INSTALL_PREFIX={prefix}",
             # No trace of the temporary folder in what is kept. A shell reads the flags, and a home may have spaces in
             # its path; CMake would strip quotes around the whole.
@@ -165,9 +175,9 @@ def _build(here: installation.Ros, prefix: Path, tell: Callable[[str], None]) ->
         _run(["cmake", "--build", str(folder / "build"), "--parallel", str(os.cpu_count() or 1)], env, tell)
         # Staged, so that all paths inside name the final place.
         _run(["cmake", "--install", str(folder / "build")], {**env, "DESTDIR": f"{folder}/staged"}, tell)
-        # Compiled here, since those who use it may not be allowed to write into it.
+        # Compiled ros, since those who use it may not be allowed to write into it.
         compiling = interpreter(
-            *("-m", "compileall", "-q", "-s", f"{folder}/staged", str(staged / "lib")), python=str(here.python), env=env
+            *("-m", "compileall", "-q", "-s", f"{folder}/staged", str(staged / "lib")), python=str(ros.python), env=env
         )
         _run(compiling.argv, compiling.env, tell)
         _make_readable(staged)

@@ -80,7 +80,7 @@ class View:
 
 def ros_view(ros: Ros, *more: Path) -> View:
     """The interpreter, ROS 2 and the folders or files `more`; not the grader, though it may be installed beside."""
-    needed = [Path(sys.base_prefix), Path(sys.prefix), *ros.prefixes, *more]
+    needed = [Path(sys.base_prefix), Path(sys.prefix), *ros.all_prefixes, *more]
     site = Path(sys.prefix) / f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
     hidden = tuple(site / name for name in ("grader", "course", "solutions") if (site / name).is_dir())
     return View(read_only=tuple(dict.fromkeys(needed)), hidden=hidden)

@@ -22,7 +22,7 @@ from grader.common import packages, xdg
 from grader.common.interpreter import interpreter
 from grader.errors import MachineError
 from grader.ros import underlay
-from grader.ros.installation import DISTRO, FASTDDS_PROFILE, Ros, environment, find_ros, has_turtlesim
+from grader.ros.installation import DISTRO, FASTDDS_PROFILE, Ros, environment, find_ros
 from grader.sandbox import bubblewrap
 from grader.sandbox.control_group import control_group
 from grader.setup import bootstrap, machine
@@ -91,12 +91,12 @@ def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] 
         return [*lines, Line("ROS 2", "not found", "broken", str(error))]
     lines.append(look_at_ros(ros, env))
     try:
-        ours = underlay.ensure(ros, tell)
+        ros = underlay.with_turtlesim(ros, tell)
     except MachineError as error:
         return [*lines, Line("turtlesim", "its interfaces are not built", "broken", str(error))]
-    where = "ROS 2 brings it" if has_turtlesim(ros) else f"the course's own interfaces, built in {ours}"
+    where = f"the course's own interfaces, built in {ros.underlay}" if ros.underlay else "ROS 2 brings it"
     lines.append(Line("turtlesim", where))
-    return [*lines, look_at_node(ros, ours, confined=confined)]
+    return [*lines, look_at_node(ros, confined=confined)]
 
 
 def exit_code(lines: Iterable[Line]) -> int:
@@ -239,16 +239,16 @@ def look_at_limits() -> Line:
     )
 
 
-def look_at_node(ros: Ros, ours: Path | None, *, confined: bool = True) -> Line:
+def look_at_node(ros: Ros, *, confined: bool = True) -> Line:
     """Let a node talk to another, as in a trial: interpreter, ROS 2, network and interfaces at once.
 
     `confined`: it is in a cell, and the other outside of it.
     """
     with tempfile.TemporaryDirectory(prefix="grader-") as home:
         if confined:
-            command, env = _talk_from_a_cell(ros, ours), dict(os.environ)
+            command, env = _talk_from_a_cell(ros), dict(os.environ)
         else:
-            env = environment(ros, home=Path(home), underlay=ours, domain=DOMAIN)
+            env = environment(ros, home=Path(home), domain=DOMAIN)
             talker, listener = _talker_and_listener(ros, env)
             command = ["sh", "-c", f"setpriv --pdeathsig=KILL {shlex.join(talker)} & exec {shlex.join(listener)}"]
         try:
@@ -267,9 +267,9 @@ def look_at_node(ros: Ros, ours: Path | None, *, confined: bool = True) -> Line:
     return Line("a node", f"is not heard{' from a cell' if confined else ''}: {said[0]}", "broken", todo)
 
 
-def _talk_from_a_cell(ros: Ros, ours: Path | None) -> list[str]:
-    env = environment(ros, home=bubblewrap.HOME, underlay=ours, domain=None)
-    view = bubblewrap.ros_view(ros, FASTDDS_PROFILE, *([ours] if ours else []))
+def _talk_from_a_cell(ros: Ros) -> list[str]:
+    env = environment(ros, home=bubblewrap.HOME, domain=None)
+    view = bubblewrap.ros_view(ros, FASTDDS_PROFILE)
     talker, listener = _talker_and_listener(ros, env)
     confined = bubblewrap.cell(talker, view, env=env, network=True)
     # The talker goes when the listener does: cells die with their parent.

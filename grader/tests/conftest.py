@@ -33,9 +33,8 @@ collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
 @pytest.fixture(scope="session")
 def in_ros(tmp_path_factory: pytest.TempPathFactory) -> InRos:
     """Processes with ROS 2 and turtlesim's interfaces, which are built if they were not yet."""
-    here = installation.find_ros()
     home: Path = tmp_path_factory.mktemp("ros")
-    return InRos(here, underlay.ensure(here), home)
+    return InRos(underlay.with_turtlesim(installation.find_ros()), home)
 
 
 @pytest.fixture(scope="module")

@@ -41,8 +41,7 @@ class Builds:
     def __call__(
         self,
         submission: Submission,
-        here: Ros,
-        underlay: Path | None,
+        ros: Ros,
         *,
         in_cell: bool,
         tell: Callable[[str], None],
@@ -54,7 +53,7 @@ class Builds:
             again = renewed(submission, *kept.first) if kept.first else None
             if again is not None:
                 return again
-            built = workspace.build(submission, here, underlay, in_cell=in_cell, tell=tell)
+            built = workspace.build(submission, ros, in_cell=in_cell, tell=tell)
             kept.first = kept.first or (submission, built)
             return built
 

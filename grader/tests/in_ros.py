@@ -35,19 +35,18 @@ class Ran:
 class InRos:
     """Starts processes that have ROS 2, each in a domain of its own."""
 
-    here: installation.Ros
-    underlay: Path | None
+    ros: installation.Ros
     home: Path
 
     def environment(self) -> dict[str, str]:
         """The environment of one process; whoever has another hears nothing of it."""
-        return installation.environment(self.here, home=self.home, underlay=self.underlay, domain=own_domain())
+        return installation.environment(self.ros, home=self.home, domain=own_domain())
 
     def run(self, name: str, *arguments: object) -> Ran:
         """Call a function, named as in "turtlesim.scenarios:graph" from grader.tests, in a process of its own."""
         code = "import sys; from grader.tests import in_ros; in_ros.call(*sys.argv[1:])"
         done = subprocess.run(
-            [self.here.python, "-c", code, name, json.dumps(arguments)],
+            [self.ros.python, "-c", code, name, json.dumps(arguments)],
             env=self.environment(),
             stdin=subprocess.DEVNULL,
             capture_output=True,

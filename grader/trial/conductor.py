@@ -13,6 +13,7 @@ import json
 import os
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
@@ -61,19 +62,16 @@ def main() -> None:
 
 
 def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
-    here = installation.find_ros()
-    underlay = Path(order["underlay"]) if order["underlay"] else None
+    ros = replace(installation.find_ros(), underlay=Path(order["underlay"]) if order["underlay"] else None)
     start, inputs = Pose(*order["start"]), Inputs.from_json(order["inputs"])
-    prefixes = [*here.prefixes, *([underlay] if underlay else [])]
+    prefixes = list(ros.all_prefixes)
     if order["alone"]:
         from grader.trial.without_node import AloneTrial
 
         recording = AloneTrial(start, prefixes, inputs).record(order["duration_s"], order["seed"])
         _say(answers, {"recording": to_json(recording)})
         return
-    with NodeProcess(
-        lambda *fds: _command(here, underlay, order, *fds), bubblewrap.NODE_LIMITS, in_cell=order["in_cell"]
-    ) as node:
+    with NodeProcess(lambda *fds: _command(ros, order, *fds), bubblewrap.NODE_LIMITS, in_cell=order["in_cell"]) as node:
         # Imported here: while it takes its time, the launcher imports too.
         from grader.trial.simulated import SimulatedTrial
         from grader.trial.wall import WallTrial
@@ -144,11 +142,9 @@ def _own_doing(stall: tuple[float, float], node: NodeProcess, stage: SimulatedTr
     return worked_s >= max(BUSY_S, BUSY * (end - begin))
 
 
-def _command(
-    here: installation.Ros, underlay: Path | None, order: dict[str, Any], info_fd: int, filter_fd: int | None
-) -> Sequence[str]:
-    env = installation.environment(here, home=Path(order["home"]), underlay=underlay, domain=order["domain"])
-    launch, env = interpreter(str(LAUNCHER), python=str(here.python), env=env, searches=True)
+def _command(ros: installation.Ros, order: dict[str, Any], info_fd: int, filter_fd: int | None) -> Sequence[str]:
+    env = installation.environment(ros, home=Path(order["home"]), domain=order["domain"])
+    launch, env = interpreter(str(LAUNCHER), python=str(ros.python), env=env, searches=True)
     if not order["in_cell"]:
         return [
             "env",
@@ -156,7 +152,7 @@ def _command(
             *(f"{key}={value}" for key, value in env.items()),
             *bubblewrap.limited(launch, bubblewrap.NODE_LIMITS),
         ]
-    view = bubblewrap.ros_view(here, installation.FASTDDS_PROFILE, LAUNCHER, *([underlay] if underlay else []))
+    view = bubblewrap.ros_view(ros, installation.FASTDDS_PROFILE, LAUNCHER)
     return bubblewrap.cell(
         launch, view, env=env, limits=bubblewrap.NODE_LIMITS, network=True, info_fd=info_fd, filter_fd=filter_fd
     )

@@ -81,10 +81,9 @@ def compile_conductor() -> None:
 class Trial:
     """A context manager: entering starts simulator and launcher, so that both are ready when the build is done."""
 
-    def __init__(self, plan: Plan, here: installation.Ros, underlay: Path | None, *, in_cell: bool) -> None:
+    def __init__(self, plan: Plan, ros: installation.Ros, *, in_cell: bool) -> None:
         self._plan = plan
-        self._here = here
-        self._underlay = underlay
+        self._ros = ros
         self._in_cell = in_cell
         self._node_runs = False
         self._stack = ExitStack()
@@ -138,9 +137,7 @@ class Trial:
         """
         install = self._workspace / "install"
         prefix = install / package
-        env = installation.environment(
-            self._here, home=self._home, underlay=self._underlay, overlays=[prefix], domain=self._domain
-        )
+        env = installation.environment(self._ros, home=self._home, overlays=[prefix], domain=self._domain)
         simulated = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []
         order = {
             "script": str(prefix / "lib" / package / executable),
@@ -180,12 +177,11 @@ class Trial:
             self._home.mkdir()
             self._domain = self._own_domain()
         self._errors: IO[bytes] = self._stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
-        env = installation.environment(self._here, home=self._home, underlay=self._underlay, domain=self._domain)
+        env = installation.environment(self._ros, home=self._home, domain=self._domain)
         env["ROS_PYTHON_CHECK_FIELDS"] = "0"  # for beginners; ours would pay for it in each frame
-        argv, env = interpreter("-m", "grader.trial.conductor", python=str(self._here.python), env=env, searches=True)
-        more = [self._underlay] if self._underlay else []
+        argv, env = interpreter("-m", "grader.trial.conductor", python=str(self._ros.python), env=env, searches=True)
         if self._in_cell:
-            view = bubblewrap.ros_view(self._here, _FOLDER, *more)
+            view = bubblewrap.ros_view(self._ros, _FOLDER)
             # What a node sends fills the memory of whoever listens; the conductor itself needs 1 GiB of addresses.
             argv = ["prlimit", f"--as={MOST_MEMORY}:", "--", *argv]
             self._group = self._stack.enter_context(control_group(bubblewrap.NODE_LIMITS))
@@ -196,7 +192,7 @@ class Trial:
         self._stack.callback(self._end)
         plan = asdict(self._plan) | {"start": [self._plan.start.x, self._plan.start.y, self._plan.start.theta]}
         where = {"home": str(self._home), "domain": self._domain, "in_cell": self._in_cell}
-        underlay = {"underlay": str(self._underlay) if self._underlay else None}
+        underlay = {"underlay": str(self._ros.underlay) if self._ros.underlay else None}
         self._send(json.dumps({**plan, **where, **underlay}).encode() + b"\n")
 
     def _limit(self) -> None:

@@ -37,19 +37,18 @@ def sim(
     from grader.common.interpreter import interpreter
     from grader.report.files import check_writable
     from grader.report.progress import progress
-    from grader.ros import underlay
     from grader.ros.installation import find_ros, users_environment
+    from grader.ros.underlay import with_turtlesim
 
     check_writable(image)
-    here = find_ros()
     with progress() as tell:
-        extra = underlay.ensure(here, tell)
+        ros = with_turtlesim(find_ros(), tell)
     # typer has no option that may stand with and without a value.
     where = context.args.pop(0) if view and context.args[:1] in (["page"], ["terminal"]) else "page"
     given = [("--image", image), ("--view", where if view else None), ("--port", port)]
     options = [text for name, value in given if value is not None for text in (name, str(value))]
-    env = users_environment(here, extra)
+    env = users_environment(ros)
     start = interpreter(
-        "-m", "grader.view.turtlesim_node", *options, *context.args, python=str(here.python), env=env, searches=True
+        "-m", "grader.view.turtlesim_node", *options, *context.args, python=str(ros.python), env=env, searches=True
     )
     os.execve(start.argv[0], start.argv, start.env)

@@ -22,9 +22,10 @@ from grader.learner.rebuild import Rebuild
 from grader.learner.screen import _Screen
 from grader.learner.watch import Events, Watched
 from grader.ros.installation import find_ros
-from grader.ros.underlay import ensure
+from grader.ros.underlay import with_turtlesim
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_submission
+from grader.tests.no_ros import NO_ROS
 from grader.trial.recording import Pose
 from grader.trial.trial import Plan
 
@@ -81,12 +82,12 @@ def test_changed_modules_are_graded_as_they_are_now_without_colcon(package: Path
 
 
 def test_what_symlink_install_would_not_see_is_built_anew(package: Path) -> None:
-    here = find_ros()
+    ros = with_turtlesim(find_ros())
     rebuild = Rebuild()
     told: list[str] = []
 
     def build() -> dict[str, str]:
-        built = rebuild(open_submission(package), here, ensure(here), in_cell=bubblewrap.usable(), tell=told.append)
+        built = rebuild(open_submission(package), ros, in_cell=bubblewrap.usable(), tell=told.append)
         return built.build.entry_points
 
     build()
@@ -226,7 +227,7 @@ def test_of_several_trials_the_first_is_kept_warm(package: Path, monkeypatch: py
 
     def graded(*_: object, trial: Callable[..., Waiting], **__: object) -> None:
         for plan in (first, second):
-            trial(plan, None, None, in_cell=False)
+            trial(plan, NO_ROS, in_cell=False)
 
     monkeypatch.setattr("grader.learner.watch.Trial", Waiting)
     monkeypatch.setattr("grader.learner.watch.grade", graded)

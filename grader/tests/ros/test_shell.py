@@ -16,8 +16,8 @@ HERE = installation.find_ros()
 BIN = str(Path(sys.prefix, "bin"))
 
 
-def users(env: dict[str, str], domain: int | None = None, underlay: Path | None = None) -> dict[str, str]:
-    return installation.users_environment(HERE, underlay, {"HOME": "/tmp", **env}, domain)
+def users(env: dict[str, str], domain: int | None = None) -> dict[str, str]:
+    return installation.users_environment(HERE, {"HOME": "/tmp", **env}, domain)
 
 
 def sourced(code: str, what: str, **env: str) -> str:
@@ -50,7 +50,7 @@ def test_colcons_scripts_get_a_python_without_a_space_in_its_path(home: str, tmp
     python = tmp_path / home / ".venv/bin/python3"
     python.parent.mkdir(parents=True)
     python.symlink_to(Path(sys.executable).resolve())
-    env = installation.users_environment(replace(HERE, python=python), None, {"HOME": str(tmp_path)})
+    env = installation.users_environment(replace(HERE, python=python), {"HOME": str(tmp_path)})
     assert env.get("COLCON_PYTHON_EXECUTABLE") == (str(python.resolve()) if " " in home else None)
 
 

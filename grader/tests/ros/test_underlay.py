@@ -23,7 +23,7 @@ INDEX = "share/ament_index/resource_index/packages"
 
 
 @pytest.fixture
-def here() -> installation.Ros:
+def ros() -> installation.Ros:
     return installation.find_ros()
 
 
@@ -56,7 +56,7 @@ def without(monkeypatch: pytest.MonkeyPatch, *programs: str) -> None:
     monkeypatch.setattr(shutil, "which", lambda name, path=None: None if name in programs else found(name, path=path))
 
 
-def test_two_at_once_build_it_once_and_both_get_it(here: installation.Ros, tmp_path: Path) -> None:
+def test_two_at_once_build_it_once_and_both_get_it(ros: installation.Ros, tmp_path: Path) -> None:
     code = "from grader.ros import installation, underlay; print(underlay.ensure(installation.find_ros(), print))"
     env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "home of Ada")}
     both = [
@@ -78,8 +78,8 @@ def test_two_at_once_build_it_once_and_both_get_it(here: installation.Ros, tmp_p
     assert closed == []
     script = "from turtlesim.srv import Spawn; print(Spawn.Request(x=1.0).x)"
     done = subprocess.run(
-        [here.python, "-c", script],
-        env=installation.environment(here, home=tmp_path, underlay=prefix),
+        [ros.python, "-c", script],
+        env=installation.environment(replace(ros, underlay=prefix), home=tmp_path),
         capture_output=True,
         text=True,
         check=False,
@@ -88,90 +88,90 @@ def test_two_at_once_build_it_once_and_both_get_it(here: installation.Ros, tmp_p
 
 
 def test_what_is_built_is_found_without_starting_a_process(
-    here: installation.Ros, cache: Path, builds: list[Sequence[str]]
+    ros: installation.Ros, cache: Path, builds: list[Sequence[str]]
 ) -> None:
-    prefix = underlay.ensure(here)
+    prefix = underlay.ensure(ros)
     assert prefix is not None
     assert prefix.parent == cache
     builds.clear()
-    assert underlay.ensure(here) == prefix
+    assert underlay.ensure(ros) == prefix
     assert builds == []
 
 
 def test_other_sources_are_built_anew(
-    here: installation.Ros,
+    ros: installation.Ros,
     cache: Path,  # noqa: ARG001
     builds: list[Sequence[str]],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    prefix = underlay.ensure(here)
+    prefix = underlay.ensure(ros)
     sources = tmp_path / "sources"
     sources.mkdir()
     monkeypatch.setattr(underlay, "SOURCES", sources)
     builds.clear()
-    assert underlay.ensure(here) != prefix
+    assert underlay.ensure(ros) != prefix
     assert builds
 
 
-def test_another_ros_is_built_for_anew(here: installation.Ros, cache: Path, builds: list[Sequence[str]]) -> None:  # noqa: ARG001
-    assert underlay.ensure(here) != underlay.ensure(replace(here, version="7.1.999"))
+def test_another_ros_is_built_for_anew(ros: installation.Ros, cache: Path, builds: list[Sequence[str]]) -> None:  # noqa: ARG001
+    assert underlay.ensure(ros) != underlay.ensure(replace(ros, version="7.1.999"))
 
 
 def test_a_build_that_fails_leaves_nothing_and_says_why(
-    here: installation.Ros, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ros: installation.Ros, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sources = tmp_path / "sources"
     sources.mkdir()
     (sources / "CMakeLists.txt").write_text('cmake_minimum_required(VERSION 3.20)\nmessage(FATAL_ERROR "so it goes")\n')
     monkeypatch.setattr(underlay, "SOURCES", sources)
     with pytest.raises(MachineError, match="so it goes"):
-        underlay.ensure(here)
+        underlay.ensure(ros)
     assert [path.name for path in cache.iterdir()] == ["turtlesim.lock"]
 
 
-def test_what_a_killed_build_left_is_removed(here: installation.Ros, cache: Path, builds: list[Sequence[str]]) -> None:  # noqa: ARG001
+def test_what_a_killed_build_left_is_removed(ros: installation.Ros, cache: Path, builds: list[Sequence[str]]) -> None:  # noqa: ARG001
     left = cache / ".building-dead"
     left.mkdir(parents=True)
-    underlay.ensure(here)
+    underlay.ensure(ros)
     assert not left.exists()
 
 
 def test_missing_tools_are_named_with_what_installs_them(
-    here: installation.Ros,
+    ros: installation.Ros,
     cache: Path,  # noqa: ARG001
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     without(monkeypatch, "c++", "cmake")
     with pytest.raises(MachineError, match=r"lacks a C\+\+ compiler and cmake .*apt-get install -y g\+\+ cmake"):
-        underlay.ensure(here)
+        underlay.ensure(ros)
 
 
 def test_what_was_built_before_the_compiler_went_is_still_used(
-    here: installation.Ros,
+    ros: installation.Ros,
     cache: Path,  # noqa: ARG001
     builds: list[Sequence[str]],  # noqa: ARG001
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    prefix = underlay.ensure(here)
+    prefix = underlay.ensure(ros)
     without(monkeypatch, "c++")
-    assert underlay.ensure(here) == prefix
+    assert underlay.ensure(ros) == prefix
 
 
 def test_a_cache_that_cannot_be_written_is_the_machines_fault(
-    here: installation.Ros, cache: Path, builds: list[Sequence[str]]
+    ros: installation.Ros, cache: Path, builds: list[Sequence[str]]
 ) -> None:
     cache.write_text("a file where a folder should be")
     with pytest.raises(MachineError, match="XDG_CACHE_HOME"):
-        underlay.ensure(here)
+        underlay.ensure(ros)
     assert builds == []
 
 
 def test_nothing_is_built_where_ros_has_its_own_turtlesim(
-    here: installation.Ros, tmp_path: Path, cache: Path, builds: list[Sequence[str]]
+    ros: installation.Ros, tmp_path: Path, cache: Path, builds: list[Sequence[str]]
 ) -> None:
     (tmp_path / INDEX).mkdir(parents=True)
     (tmp_path / INDEX / "turtlesim").touch()
-    assert underlay.ensure(replace(here, prefixes=(tmp_path, *here.prefixes))) is None
+    assert underlay.ensure(replace(ros, prefixes=(tmp_path, *ros.prefixes))) is None
     assert builds == []
     assert not cache.exists()

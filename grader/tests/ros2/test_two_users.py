@@ -28,8 +28,7 @@ START = "5.544444561004639,5.544444561004639,0.0,0.0,0.0\n"
 @pytest.fixture
 def users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[World]]:
     """What `grader env` gives to each of two users, who choose nothing."""
-    here = installation.find_ros()
-    prefix = underlay.ensure(here)
+    ros = underlay.with_turtlesim(installation.find_ros())
     worlds = []
     for uid in UIDS:
         home = tmp_path / str(uid)
@@ -39,7 +38,7 @@ def users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Worl
             World(
                 home,
                 installation.users_environment(
-                    here, prefix, {"HOME": str(home), "PATH": os.environ["PATH"], "GRADER_ROS2_DAEMON": "0"}
+                    ros, {"HOME": str(home), "PATH": os.environ["PATH"], "GRADER_ROS2_DAEMON": "0"}
                 ),
             )
         )

@@ -134,7 +134,7 @@ class World:
 
 def environment(home: Path, domain: int | None = None) -> dict[str, str]:
     """What a user has after `source <(grader env)`, in a domain of its own."""
-    here = installation.find_ros()
+    ros = underlay.with_turtlesim(installation.find_ros())
     own = own_domain() if domain is None else domain
     user = {
         "HOME": str(home),
@@ -144,7 +144,7 @@ def environment(home: Path, domain: int | None = None) -> dict[str, str]:
         "LANG": "C.UTF-8",
         "TERM": "dumb",
     }
-    return installation.users_environment(here, underlay.ensure(here), {**user, "LOGNAME": "root"}, own)
+    return installation.users_environment(ros, {**user, "LOGNAME": "root"}, own)
 
 
 def world(home: Path) -> Iterator[World]:

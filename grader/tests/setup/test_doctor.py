@@ -35,7 +35,7 @@ def bare(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
     """Nothing is tried, only what lies there is looked at: each test breaks one thing."""
     monkeypatch.setattr(bubblewrap, "why_unavailable", lambda: None)
     monkeypatch.setattr(underlay, "ensure", lambda _ros, _tell: Path("/cache/turtlesim"))
-    monkeypatch.setattr(doctor, "look_at_node", lambda _ros, _ours, **_: Line("a node", "starts"))
+    monkeypatch.setattr(doctor, "look_at_node", lambda _ros, **_: Line("a node", "starts"))
     return monkeypatch
 
 
@@ -139,7 +139,7 @@ def test_memory(meminfo: str, state: str) -> None:
 def test_a_node_that_is_not_heard_is_told(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
     monkeypatch.setattr(doctor, "_TALKER", "raise SystemExit('no interfaces')")
     monkeypatch.setattr(doctor, "_LISTENER", doctor._LISTENER.replace("20.0", "1.0"))
-    line = doctor.look_at_node(wheels, None)
+    line = doctor.look_at_node(wheels)
     assert line.state == "broken"
     assert "nothing was heard of it" in line.seen
 
@@ -158,7 +158,7 @@ def test_a_machine_without_a_sandbox_is_good_enough_for_ones_own_code(monkeypatc
 def test_a_node_that_is_not_heard_without_a_cell_is_told(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
     monkeypatch.setattr(doctor, "_TALKER", "raise SystemExit('no interfaces')")
     monkeypatch.setattr(doctor, "_LISTENER", doctor._LISTENER.replace("20.0", "1.0"))
-    line = doctor.look_at_node(wheels, None, confined=False)
+    line = doctor.look_at_node(wheels, confined=False)
     assert (line.state, "nothing was heard of it" in line.seen) == ("broken", True)
 
 

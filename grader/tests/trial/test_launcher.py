@@ -47,7 +47,7 @@ def launch(in_ros: InRos, folder: Path, text: str, ros_arguments: list[str]) -> 
     given = {"script": str(script), "ros_arguments": ros_arguments}
     order = {**given, "python_path": [], "env": {}, "install": str(folder / "install")}
     return subprocess.run(
-        [in_ros.here.python, f"{grader.trial.__path__[0]}/launcher.py"],
+        [in_ros.ros.python, f"{grader.trial.__path__[0]}/launcher.py"],
         input=json.dumps(order).encode() + b"\n" + tree.getvalue(),
         env=in_ros.environment(),
         capture_output=True,

@@ -25,7 +25,7 @@ def test_the_end_of_a_trial_is_the_end_of_a_child_that_does_not_die_with_its_par
     said = tmp_path / "pid"
     starter = ["sh", "-c", f"sleep 300 & echo $! > {said}.new; mv {said}.new {said}; wait"]
     monkeypatch.setattr("grader.sandbox.bubblewrap.room", lambda *_, **__: starter)
-    trial = Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), None, in_cell=True)
+    trial = Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), in_cell=True)
     trial.start()
     until(said.exists)
     child = int(said.read_text("ascii"))
@@ -45,7 +45,7 @@ def test_a_trial_that_is_ready_may_wait_for_its_turn_as_long_as_it_takes(monkeyp
     monkeypatch.setattr("grader.trial.trial.Timer", Limit)
     starter = ["sh", "-c", """read plan; echo '{"ready": true}'; read order"""]
     monkeypatch.setattr("grader.sandbox.bubblewrap.room", lambda *_, **__: starter)
-    with Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), None, in_cell=True) as trial:
+    with Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), in_cell=True) as trial:
         trial.await_ready()
         assert [limit.finished.is_set() for limit in limits] == [True]
 
@@ -60,7 +60,7 @@ def test_what_the_conductor_imports_is_compiled_when_it_starts(monkeypatch: pyte
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     compile_conductor.cache_clear()
     try:
-        with Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), None, in_cell=True):
+        with Trial(Plan("simulated", Pose(5.5, 5.5, 0.0), None, 1.0), find_ros(), in_cell=True):
             assert all(Path(cache_from_source(str(module))).is_file() for module in modules)
     finally:
         compile_conductor.cache_clear()

@@ -191,10 +191,10 @@ def test_a_late_frame_is_caught_up_and_none_left_out(in_ros: InRos) -> None:
 def test_the_executable_runs_until_ctrl_c_and_leaves_a_picture(
     in_ros: InRos, tmp_path: Path, number: signal.Signals
 ) -> None:
-    if in_ros.underlay is None:
+    if in_ros.ros.underlay is None:
         pytest.skip("this ROS 2 has a turtlesim of its own")
     image = tmp_path / "canvas.png"
-    node = in_ros.underlay / "lib/turtlesim/turtlesim_node"
+    node = in_ros.ros.underlay / "lib/turtlesim/turtlesim_node"
     command = [str(node), "--image", str(image), "--ros-args", "-r", "__node:=pond", "-p", "background_r:=0"]
     with subprocess.Popen(command, env=in_ros.environment(), stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None
@@ -221,7 +221,7 @@ def test_the_executable_runs_until_ctrl_c_and_leaves_a_picture(
 )
 def test_wrong_arguments_end_with_2_and_one_message(in_ros: InRos, arguments: list[str], said: str) -> None:
     done = subprocess.run(
-        [in_ros.here.python, "-m", "grader.view.turtlesim_node", *arguments],
+        [in_ros.ros.python, "-m", "grader.view.turtlesim_node", *arguments],
         env=in_ros.environment(),
         capture_output=True,
         text=True,
