@@ -58,7 +58,7 @@ def test_any_id_survives_the_file(student: str) -> None:
     [
         ("radius_m = ", "cannot be read"),
         ("radius_m = 1.0", "student or direction"),
-        ('student = "a"\nsense = "b"', "radius_m"),
+        ('student = "a"\ndirection = "b"', "radius_m"),
     ],
 )
 def test_a_broken_file_says_what_is_wrong(text: str, why: str) -> None:
