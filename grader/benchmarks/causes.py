@@ -135,7 +135,7 @@ def names(outcome: Outcome, made: Made) -> bool:
 def is_false(outcome: Outcome, made: Made) -> bool:
     """Whether an outcome claims a cause that is none of the mistakes, or says what is false about one of them."""
     finding = outcome.finding
-    text = f"{finding.seen} {finding.cause}"
+    text = f"{finding.observed} {finding.cause}"
     if any(operator.never and re.search(operator.never, text) for operator, _ in made.mistakes):
         return True
     says = {diagnosis for operator, _ in made.mistakes for diagnosis in operator.says | operator.also}
@@ -222,10 +222,10 @@ def tell(all_: Iterable[Judged]) -> None:
                 print(f"  true: {change.file}:{','.join(map(str, sorted(change.lines)))}")
             for outcome in each.failed:
                 finding = outcome.finding
-                print(f"  {outcome.id} [{finding.diagnosis}] {finding.where}: {finding.seen} | {finding.cause}")
+                print(f"  {outcome.id} [{finding.diagnosis}] {finding.where}: {finding.observed} | {finding.cause}")
     passed = [each.made.operators for each in every if not each.failed]
     for each in every:
-        broken = [outcome.finding.seen for outcome in each.outcomes if outcome.status is Status.ERROR]
+        broken = [outcome.finding.observed for outcome in each.outcomes if outcome.status is Status.ERROR]
         if broken:
             print(f"\n{each.made.name} {each.made.operators}: error: {broken[0]}")
     print(f"\nnot made wrong: {len(passed)} ({', '.join(sorted(set(passed)))})")
