@@ -21,6 +21,10 @@ from grader.setup import cli as setup
 from grader.view import cli as view
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from grader.checks.outcome import Outcome
+    from grader.evidence.archive import Archived
     from grader.evidence.evidence import Evidence
     from grader.exercise.model import Exercise
     from grader.report.report import Report
@@ -129,16 +133,15 @@ def regrade(
 ) -> None:
     """Judge a stored recording again; nothing of the student's is run."""
     from grader.checks.exercises import find_exercise, load_exercise
-    from grader.checks.judge import judge
-    from grader.evidence import archive
     from grader.grading.grade import report_of
     from grader.report.files import check_writable
+    from grader.submission.reader import read
 
     for file in (json, image, html):
         check_writable(file)
     other = find_exercise(exercise) if exercise else None
-    kept = archive.load(recording, (lambda _: other) if other else load_exercise)
-    report = report_of(kept.evidence, judge(kept.evidence), kept.ros, {})
+    kept, outcomes = read(_judged, recording, (lambda _: other) if other else load_exercise)
+    report = report_of(kept.evidence, outcomes, kept.ros, {})
     _show(report, kept.evidence, json, image, html, verbose=verbose)
 
 
@@ -196,6 +199,14 @@ def main() -> None:
         told = f"grader: a fault of the grader itself, not of your work: {type(error).__name__}: {error}"
         typer.secho(f"{told}\nGRADER_DEBUG=1 before the command shows where; please report that.", err=True)
         sys.exit(3)
+
+
+def _judged(recording: Path, read_exercise: Callable[[Path], Exercise]) -> tuple[Archived, tuple[Outcome, ...]]:
+    from grader.checks.judge import judge
+    from grader.evidence import archive
+
+    kept = archive.load(recording, read_exercise)
+    return kept, judge(kept.evidence)
 
 
 def _opened(path: Path | None, name: str | None) -> tuple[Exercise, Submission]:

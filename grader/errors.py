@@ -15,9 +15,17 @@ class UsageError(GraderError):
     exit_code = 2
 
 
-class TooLargeError(GraderError):
-    """What a student handed in is too large, or nested too deeply, to be read: the student's fault."""
+class UnreadableError(UsageError):
+    """What a student handed in could not be read: the student's fault."""
+
+
+class TooLargeError(UnreadableError):
+    """It is too large, or nested too deeply, to be read."""
 
 
 class MachineError(GraderError):
     """The grader or the machine is broken: never the student's fault."""
+
+
+class DiskError(MachineError):
+    """The disk that the grader itself writes to has failed: no other submission would fare better."""

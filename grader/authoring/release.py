@@ -154,8 +154,7 @@ def _must_parse(text: str, path: str, name: str) -> None:
 
 
 def _read(folder: Path) -> tree.Tree:
-    with tree.open_folder(str(folder)) as descriptor:
-        found = tree.read_tree(descriptor)
+    found = tree.read_folder(folder)
     for path, why in found.rejected.items():
         message = f"{folder}/{tree.shown(path)} {why}."
         raise UsageError(message)

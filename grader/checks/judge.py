@@ -9,7 +9,7 @@ from grader.checks.causes.cause import Cause
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.common.words import shorten
-from grader.errors import MachineError, TooLargeError
+from grader.errors import MachineError, UnreadableError
 from grader.evidence.stage import STAGES
 
 if TYPE_CHECKING:
@@ -71,11 +71,11 @@ def judge_early(evidence: Evidence) -> Early:
     return Early(tuple(failed_), frozenset(blocked))
 
 
-def wants_trial(evidence: Evidence) -> bool:
+def wants_trial(evidence: Evidence, outcomes: Iterable[Outcome]) -> bool:
     """Return whether any check of this trial would use a recording. If not, the trial does not have to run."""
-    outcomes = {outcome.id: outcome for outcome in judge(evidence)}
+    by_id = {outcome.id: outcome for outcome in outcomes}
     return any(
-        _of_this_trial(evidence, spec) and not any(_blocked(outcomes[need]) for need in spec.needs)
+        _of_this_trial(evidence, spec) and not any(_blocked(by_id[need]) for need in spec.needs)
         for spec in evidence.exercise.checks
     )
 
@@ -85,12 +85,10 @@ def near_edge(outcomes: Iterable[Outcome]) -> bool:
     return any(outcome.finding.near_edge for outcome in outcomes)
 
 
-def of_this_trial(evidence: Evidence) -> tuple[Outcome, ...]:
-    """Return the outcomes of the checks that judge the recording of this trial."""
+def of_this_trial(evidence: Evidence, outcomes: Iterable[Outcome]) -> tuple[Outcome, ...]:
+    """Return those of all outcomes that judge the recording of this trial."""
     specs = evidence.exercise.checks
-    return tuple(
-        outcome for spec, outcome in zip(specs, judge(evidence), strict=True) if _of_this_trial(evidence, spec)
-    )
+    return tuple(outcome for spec, outcome in zip(specs, outcomes, strict=True) if _of_this_trial(evidence, spec))
 
 
 def _of_this_trial(evidence: Evidence, spec: CheckSpec) -> bool:
@@ -116,6 +114,8 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
     kind = KINDS[spec.kind]
     made = {"source": True, "build": evidence.build is not None, "trial": evidence.run.recording is not None}
     fault = evidence.fault
+    if fault is not None and fault.stage == "source":
+        return unreadable(fault.message)
     if fault is not None and STAGES.index(kind.stage) >= STAGES.index(fault.stage) and not made[kind.stage]:
         return unreadable(fault.message) if fault.unreadable else Finding(Status.ERROR, fault.message)
     if kind.stage == "trial" and evidence.run.overwhelmed is not None:
@@ -143,7 +143,7 @@ def unreadable(how: str) -> Finding:
 
 def in_words(error: Exception) -> str:
     """Return the exception on one line; of ours, the text alone."""
-    if isinstance(error, TooLargeError):
+    if isinstance(error, UnreadableError):
         return str(error).rstrip(".")
     return f"{type(error).__name__}: {error}".rstrip(" :.")
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.common.interpreter import interpreter
-from grader.errors import MachineError
+from grader.errors import DiskError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,7 +43,7 @@ def unpacked(archive: Path) -> Iterator[Path]:
 
     Raises:
         NotUnpackedError: it cannot be unpacked, or would take more than a submission may.
-        MachineError: the disk failed.
+        DiskError: the disk failed that it is unpacked on.
     """
     if not archive.name.lower().endswith(ENDINGS):
         message = "is no archive that is unpacked here: hand in a .zip or a .tar.gz"
@@ -80,5 +80,5 @@ def _why(done: subprocess.CompletedProcess[bytes] | None) -> str | None:
     said: str | None = json.loads(done.stdout)["why"]
     if done.returncode != 0:
         message = f"A submission could not be unpacked: {said}. Make room in {tempfile.gettempdir()} and try again."
-        raise MachineError(message)
+        raise DiskError(message)
     return said

@@ -5,10 +5,12 @@ from __future__ import annotations
 import hashlib
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from grader.classroom import archives
-from grader.errors import MachineError, UsageError
+from grader.errors import DiskError, MachineError, UsageError
+from grader.submission import reader
 from grader.submission.package import ANSWERS, Submission, open_answers, open_submission
 from grader.submission.tree import shown
 
@@ -25,36 +27,47 @@ MOST_DEEP = 4
 
 @dataclass(frozen=True)
 class Refused:
-    """Nothing can be graded, and why: for the student to read."""
+    """Nothing can be graded, and why: for the student to read.
+
+    `of_the_machine`: the machine failed while it was read. That stops nobody else's grading.
+    """
 
     reason: str
+    of_the_machine: bool = False
 
 
 def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused:
     """The submission as it is graded; `student` is who handed it in.
 
     Raises:
-        MachineError: the disk failed.
+        DiskError: the disk failed that archives are unpacked on.
     """
     if found.refused:
         return Refused(found.refused)
     try:
         with _folder(found) as folder:
             try:
-                opened = _open(folder, exercise)
+                opened = reader.read(_open, folder, exercise)
             except UsageError as error:
                 # No path of this machine: a student reads it.
-                return Refused(str(error).replace(str(folder), shown(found.name)))
+                return Refused(str(error).replace(shown(str(folder)), shown(found.name)))
     except archives.NotUnpackedError as error:
         return Refused(f"{shown(found.path.name)} {error}.")
+    except DiskError:
+        raise
+    except MachineError as error:
+        return Refused(str(error), of_the_machine=True)
+    except (OSError, ValueError) as error:
+        told = error.strerror if isinstance(error, OSError) else str(error)
+        return Refused(f"{shown(found.path.name)} could not be read ({told}).")
     return replace(opened, name=found.name, student=student)
 
 
 def fingerprint(found: Found, exercise: Exercise) -> str:
-    """sha256 of all that is read of a submission; an archive is not unpacked for that.
+    """sha256 of all that is read of a submission, or of why it cannot be; an archive is not unpacked for that.
 
     Raises:
-        MachineError: the disk failed.
+        DiskError: the disk failed that archives are unpacked on.
     """
     archive = None if found.refused else _archive(found.path)
     if archive is not None:
@@ -72,11 +85,8 @@ def _of_archive(archive: Path) -> str:
         with archive.open("rb") as file:
             while data := file.read(1024 * 1024):
                 whole.update(data)
-    except PermissionError:
-        whole.update(b"may not be read")  # `read` tells it
     except OSError as error:
-        message = f"{shown(str(archive))} cannot be read: {error.strerror}. This is a fault of the machine; try again."
-        raise MachineError(message) from error
+        whole.update(f"cannot be read: {error.errno}".encode())  # `read` tells it
     return whole.hexdigest()
 
 
@@ -92,14 +102,14 @@ def _folder(found: Found) -> Iterator[Path]:
 
 def _archive(path: Path) -> Path | None:
     """The archive that holds the submission: itself, or all that lies in the folder (as Moodle makes them)."""
-    if not path.is_dir():
-        return path
     try:
-        inside = [entry for entry in path.iterdir() if not entry.name.startswith(".")]
+        if not path.is_dir():
+            return path
+        inside = list(islice((entry for entry in path.iterdir() if not entry.name.startswith(".")), 2))
+        if len(inside) != 1 or inside[0].is_symlink() or not inside[0].is_file():
+            return None
     except OSError:
         return None  # reading it as a folder will tell why
-    if len(inside) != 1 or inside[0].is_symlink() or not inside[0].is_file():
-        return None
     return inside[0] if archives.stem(inside[0].name) else None
 
 
@@ -107,7 +117,7 @@ def _open(folder: Path, exercise: Exercise) -> Submission:
     if exercise.package:
         return open_submission(folder)
     for _ in range(MOST_DEEP):
-        below = [entry for entry in folder.iterdir() if not entry.name.startswith((".", "__"))]
+        below = list(islice((entry for entry in folder.iterdir() if not entry.name.startswith((".", "__"))), 2))
         if len(below) != 1 or below[0].is_symlink() or not below[0].is_dir() or (folder / ANSWERS).exists():
             break
         folder = below[0]

@@ -2,12 +2,19 @@
 
 Three trees are known, and may be mixed: a folder or an archive a student; nbgrader's submitted/STUDENT/EXERCISE; a
 folder of classroom clones, each with the course's exercises/EXERCISE in it.
+
+Nobody vanishes: each folder and archive becomes a submission, if only with the reason why it is not graded. Functions
+of os.path say of a place that cannot be looked at that nothing is there; those of pathlib raise.
 """
+
+# ruff: noqa: PTH110, PTH112, PTH114
 
 from __future__ import annotations
 
+import os
 import stat
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import find_exercise
@@ -20,8 +27,9 @@ from grader.submission.tree import shown, sort_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
 
+UNKNOWN = ""
+"""The exercise of a folder that does not tell it."""
 OWN = "exercises"
 """The folder of a clone that holds what the student works on."""
 
@@ -46,69 +54,111 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
     """All submissions in the folders, archives and packages `given`, by student; `leave_out` is passed over.
 
     Raises:
-        UsageError: there is none, two are of the same student, or nothing says which exercise it is.
+        UsageError: there is none, or nothing says which exercise it is.
     """
     wanted = find_exercise(exercise).id if exercise else None
-    found = [each for path in given for each in _in(path, wanted, leave_out.resolve())]
+    found = [each for path in given for each in _in(path, wanted, leave_out)]
     if not found:
         message = (
             f"There is no submission in {a_list([shown(str(path)) for path in given])}: give the folder that holds a "
             "folder or an archive (.zip, .tar.gz) of each student."
         )
         raise UsageError(message)
-    seen: dict[tuple[str, str], Found] = {}
+    alike: dict[tuple[str, str], list[Found]] = {}
+    for each in _of_known_exercises(found):
+        alike.setdefault((each.student, each.exercise), []).append(each)
+    submissions = (_one_of(each) for each in alike.values())
+    return tuple(sorted(submissions, key=lambda each: (sort_key(each.student), each.exercise)))
+
+
+def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
+    """The same; a folder of which nobody knows the exercise counts for each that others were found for.
+
+    Raises:
+        UsageError: no exercise is known.
+    """
+    known = sorted({each.exercise for each in found} - {UNKNOWN})
     for each in found:
-        other = seen.setdefault((each.student, each.exercise), each)
-        if other is not each:
+        if each.exercise != UNKNOWN:
+            yield each
+            continue
+        if not known:
             message = (
-                f"{shown(each.student)} is there twice: {shown(str(other.path))} and {shown(str(each.path))}. Take one "
-                "of them away, or rename it."
+                f"Which exercise is {shown(str(each.path))} for? Say it with --exercise, one of: "
+                f"{', '.join(catalogue())}. (In nbgrader's tree, submitted/STUDENT/EXERCISE, it follows from the "
+                "folder.)"
             )
             raise UsageError(message)
-    return tuple(sorted(found, key=lambda each: (sort_key(each.student), each.exercise)))
+        for exercise in known:
+            yield replace(each, exercise=exercise, refused=f"{shown(each.student)} holds no folder {exercise}.")
+
+
+def _one_of(alike: Sequence[Found]) -> Found:
+    """The submission of a student for an exercise; where there are several, none of them is graded."""
+    if len(alike) == 1:
+        return alike[0]
+    paths = a_list([shown(str(each.path)) for each in alike])
+    times = "twice" if len(alike) == 2 else f"{len(alike)} times"
+    name = shown(alike[0].student)
+    return replace(alike[0], refused=f"{name} is there {times}: {paths}. Take all but one away, or rename them.")
 
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
     """The names of what lies beside submissions and is none: files, links. What is hidden is not named."""
-    folders = [path for path in given if path.is_dir() and not _is_one(path)]
+    folders = [path for path in given if os.path.isdir(path) and not _is_one(path)]
     return tuple(
         shown(entry.name)
         for folder in folders
-        for entry in sorted(folder.iterdir(), key=lambda each: sort_key(each.name))
-        if not entry.name.startswith((".", "__MACOSX"))
-        and _student(entry) is None
-        and entry.resolve() != leave_out.resolve()
+        for entry in _entries(folder)
+        if not entry.name.startswith((".", "__MACOSX")) and _student(entry) is None and not _same(entry, leave_out)
     )
 
 
+def _entries(folder: Path) -> list[Path]:
+    """What the folder holds, in order. Raises UsageError where it cannot be opened."""
+    try:
+        return sorted(folder.iterdir(), key=lambda each: sort_key(each.name))
+    except OSError as error:
+        message = f"{shown(str(folder))} cannot be opened: {error.strerror}."
+        raise UsageError(message) from error
+
+
+def _same(one: Path, other: Path) -> bool:
+    """Whether both lead to one place; links that lead in a circle lead nowhere."""
+    return os.path.realpath(one) == os.path.realpath(other)
+
+
 def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
-    if not path.exists():
+    if not os.path.exists(path):
         message = f"There is no {shown(str(path))}. Give the folder that holds a folder or an archive of each student."
         raise UsageError(message)
-    absolute = path.resolve()
-    if not path.is_dir() or _is_one(path):
-        name = archives.stem(absolute.name) if not path.is_dir() else absolute.name
+    absolute = Path(os.path.realpath(path))
+    if not os.path.isdir(path) or _is_one(path):
+        name = absolute.name if os.path.isdir(path) else archives.stem(absolute.name)
         if name is None:
             message = f"{shown(str(path))} is neither a folder nor an archive (.zip, .tar.gz)."
             raise UsageError(message)
         yield from _of_student(name, path, wanted)
         return
-    for entry in sorted(path.iterdir(), key=lambda each: sort_key(each.name)):
+    for entry in _entries(path):
         name = _student(entry)
-        if name is not None and entry.resolve() != leave_out:
+        if name is not None and not _same(entry, leave_out):
             yield from _of_student(name, entry, wanted)
 
 
 def _is_one(folder: Path) -> bool:
     """Whether a folder is one submission by itself: a package, or a clone of the course."""
-    return any((folder / name).exists() for name in (*PACKAGE_FILES, OWN))
+    return any(os.path.exists(folder / name) for name in (*PACKAGE_FILES, OWN))
 
 
 def _student(entry: Path) -> str | None:
     """Whose it is; None for what lies about beside submissions: hidden files, lists, notes."""
     if entry.name.startswith(".") or entry.name == "__MACOSX":
         return None
-    mode = entry.lstat().st_mode
+    try:
+        mode = entry.lstat().st_mode
+    except OSError:
+        return entry.name  # Nobody may look at it: whoever reads it says so.
     if stat.S_ISDIR(mode):
         return entry.name
     return archives.stem(entry.name) if stat.S_ISREG(mode) else None
@@ -116,28 +166,24 @@ def _student(entry: Path) -> str | None:
 
 def _of_student(student: str, path: Path, wanted: str | None) -> Iterator[Found]:
     assigned = _assignments(path)
-    if assigned:
+    own = path / OWN / (wanted or UNKNOWN)
+    if assigned and wanted not in (None, *assigned):
+        refused = f"{shown(student)} holds {a_list(assigned)}, and no folder {wanted}."
+        yield Found(student, wanted or UNKNOWN, path, refused)
+    elif assigned:
         yield from (Found(student, name, path / name) for name in assigned if wanted in (None, name))
-        return
-    if wanted is None:
-        message = (
-            f"Which exercise is {shown(str(path))} for? Say it with --exercise, one of: {', '.join(catalogue())}. "
-            "(In nbgrader's tree, submitted/STUDENT/EXERCISE, it follows from the folder.)"
-        )
-        raise UsageError(message)
-    own = path / OWN / wanted
-    if path.is_dir() and own.is_dir() and not _leads_away((path / OWN, own)):
+    elif wanted and os.path.isdir(own) and not _leads_away((path / OWN, own)):
         yield Found(student, wanted, own)
     else:
-        yield Found(student, wanted, path)
+        yield Found(student, wanted or UNKNOWN, path)
 
 
 def _assignments(path: Path) -> list[str]:
     """The exercises in a student's folder, as nbgrader lays them out."""
-    if not path.is_dir() or _is_one(path):
+    if not os.path.isdir(path) or _is_one(path):
         return []
-    return [name for name in catalogue() if (path / name).is_dir() and not (path / name).is_symlink()]
+    return [name for name in catalogue() if os.path.isdir(path / name) and not os.path.islink(path / name)]
 
 
 def _leads_away(folders: Iterable[Path]) -> bool:
-    return any(folder.is_symlink() for folder in folders)
+    return any(os.path.islink(folder) for folder in folders)

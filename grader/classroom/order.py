@@ -44,7 +44,7 @@ class Order:
         return {name: exercise_from(sources) for name, sources in self.sources.items()}
 
     def key(self, found: Found) -> Key:
-        """The key of a submission's result. Raises MachineError where the disk fails."""
+        """The key of a submission's result. Raises DiskError as `content.read`."""
         exercise = self.exercises[found.exercise]
         return Key(
             submission=fingerprint(found, exercise),
@@ -56,11 +56,11 @@ class Order:
         )
 
     def task(self, found: Found) -> Task:
-        """The task of grading a submission, read now. Raises MachineError where the disk fails."""
+        """The task of grading a submission, read now. Raises DiskError as `content.read`."""
         owner = self._owner(found)
         content = read(found, self.exercises[found.exercise], owner)
         if isinstance(content, Refused):
-            return self._task(found, owner, content.reason)
+            return self._task(found, owner, content.reason, of_the_machine=content.of_the_machine)
         return self._task(
             found,
             owner,
@@ -76,6 +76,8 @@ class Order:
         found: Found,
         owner: str,
         content: dict[str, bytes] | str,
+        *,
+        of_the_machine: bool = False,
         package: str = "",
         rejected: tuple[str, ...] = (),
         digest: str = "",
@@ -86,6 +88,7 @@ class Order:
             owner=owner,
             sources=self.sources[found.exercise],
             content=content,
+            of_the_machine=of_the_machine,
             package=package,
             rejected=rejected,
             digest=digest,
@@ -117,7 +120,7 @@ class Todo:
 
 
 def sort_out(order: Order, results: Results) -> tuple[list[Result], list[Todo]]:
-    """The results that hold still, and what is to be graded. Raises MachineError where the disk fails."""
+    """The results that hold still, and what is to be graded. Raises DiskError as `content.read`."""
     kept: list[Result] = []
     todo: list[Todo] = []
     for found in order.found:

@@ -19,7 +19,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from grader.errors import MachineError, UsageError
+from grader.errors import DiskError, MachineError, UsageError
 from grader.report.json import from_json, to_data
 from grader.report.suspicion import ERRORS
 
@@ -85,7 +85,8 @@ class Results:
         name = file_name(student, report.exercise)
         data = {**to_data(report), "student": _encodable(student), "key": key.to_data(), ERRORS: errors}
         self.write(f"{REPORTS}/{name}.html", page)
-        self.write(f"{REPORTS}/{name}.json", (json.dumps(data, ensure_ascii=False, indent=1) + "\n").encode())
+        text = json.dumps(data, ensure_ascii=False, indent=1) + "\n"
+        self.write(f"{REPORTS}/{name}.json", text.encode("utf-8", "backslashreplace"))
         return Result(student, report, key.to_data(), f"{name}.html", errors)
 
     def write(self, name: str, content: bytes) -> Path:
@@ -106,7 +107,7 @@ class Results:
                 f"{file} could not be written: {error.strerror}. What was graded before is kept; make room, and the "
                 "same command goes on from there."
             )
-            raise MachineError(message) from error
+            raise DiskError(message) from error
         return file
 
     def others(self, mine: set[str]) -> int:

@@ -43,6 +43,8 @@ class Task:
     """The id that the student's own numbers must be drawn from."""
     sources: Sources
     content: dict[str, bytes] | str
+    of_the_machine: bool = False
+    """There are no files because the machine failed."""
     package: str = ""
     rejected: tuple[str, ...] = ()
     digest: str = ""
@@ -83,6 +85,8 @@ def perform(
     in_cell = _confined(trusted=task.trusted)
     exercise = exercise_from(task.sources)
     if isinstance(task.content, str):
+        if task.of_the_machine:
+            return set_aside(task, task.content)
         return _with_page(_refused(task, exercise, task.content))
 
     class Waiting(Trial):
@@ -99,7 +103,10 @@ def perform(
 
     # The processors are busy with other submissions, and memory is counted by the submission.
     options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed, trials_at_once=1)
-    return _with_page(grade(exercise, _submission(task), options, tell, trial=Waiting))
+    try:
+        return _with_page(grade(exercise, _submission(task), options, tell, trial=Waiting))
+    except MachineError as error:  # nothing to read it with: the next submission may fare better
+        return set_aside(task, str(error))
 
 
 @cache

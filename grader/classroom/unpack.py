@@ -8,6 +8,7 @@ the disk fails.
 
 from __future__ import annotations
 
+import errno
 import gzip
 import io
 import json
@@ -30,6 +31,7 @@ MOST_DEPTH = 40
 MOST_PATH_BYTES = 1000
 CHUNK = 256 * 1024
 DISK_FAILED = 3
+OF_THE_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS)
 
 
 class RefusedError(Exception):
@@ -159,13 +161,19 @@ def main(archive: str, folder: str) -> int:
         why = str(error)
     except (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, gzip.BadGzipFile) as error:
         why = f"is no .zip or .tar.gz, or a damaged one ({_shown(str(error))[:200]})"
-    except (NotImplementedError, RuntimeError, UnicodeError, ValueError, OverflowError) as error:
+    except (NotImplementedError, RuntimeError, UnicodeError) as error:
         why = f"is packed in a way that is not read here ({_shown(str(error))[:200]})"
     except MemoryError:
         why = "needs more memory to unpack than a submission may take"
     except OSError as error:
-        print(json.dumps({"why": str(error.strerror)}))
-        return DISK_FAILED
+        said = _shown(str(error.strerror or error))[:200]
+        if error.errno in OF_THE_DISK and error.filename != archive:
+            print(json.dumps({"why": said}))
+            return DISK_FAILED
+        why = f"is a damaged archive, or holds a name that no disk takes ({said})"
+    except Exception as error:
+        # Whatever else a damaged archive makes the modules above raise.
+        why = f"is no .zip or .tar.gz, or a damaged one ({type(error).__name__}: {_shown(str(error))[:200]})"
     print(json.dumps({"why": why}))
     return 0
 

@@ -23,6 +23,7 @@ from grader.sandbox import bubblewrap, process
 from grader.sandbox.control_group import control_group
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.tar_stream import Member, read_tar
+from grader.submission.reader import read
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -148,6 +149,12 @@ def _read(done: process.Finished) -> Built:
         else:
             message = f"The build could not be started: {said or 'no message'}. `grader doctor` tells what is missing."
         raise MachineError(message)
+    built, cut = read(_described, done)
+    return Built(built, b"" if cut else done.stdout)
+
+
+def _described(done: process.Finished) -> tuple[Build, bool]:
+    """What the build left, and whether its install tree is not to be used."""
     lines = done.stderr[len(_READY) :].decode("utf-8", "replace").splitlines(keepends=True)
     # The wheels' prefix is no colcon install tree; that says nothing about the submission.
     log = "".join(line for line in lines if "colcon_ros.prefix_path.ament" not in line)
@@ -158,20 +165,18 @@ def _read(done: process.Finished) -> Built:
         cut, files, out_of = True, {}, "files"
     package = next((path.parts[0] for path in files if len(path.parts) > 1), None)
     inside = {path.relative_to(package): member for path, member in files.items() if path.parts[0] == package}
-    return Built(
-        Build(
-            exit_code=done.exit_code,
-            log=log,
-            package=package,
-            timed_out=done.timed_out,
-            out_of=done.out_of or ("disk" if done.too_much else out_of),
-            installed=tuple(sorted(map(str, inside))),
-            executables=tuple(sorted(p.name for p in inside if p.parts[:-1] == ("lib", package))),
-            entry_points=_entry_points(inside, done.stdout),
-            seconds=done.seconds,
-        ),
-        b"" if cut else done.stdout,
+    build = Build(
+        exit_code=done.exit_code,
+        log=log,
+        package=package,
+        timed_out=done.timed_out,
+        out_of=done.out_of or ("disk" if done.too_much else out_of),
+        installed=tuple(sorted(map(str, inside))),
+        executables=tuple(sorted(p.name for p in inside if p.parts[:-1] == ("lib", package))),
+        entry_points=_entry_points(inside, done.stdout),
+        seconds=done.seconds,
     )
+    return build, cut
 
 
 def _entry_points(files: dict[PurePosixPath, Member], tree: bytes) -> dict[str, str]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from grader.evidence import activity
 from grader.evidence.trajectory import Trajectory, trajectory_of
@@ -61,6 +61,10 @@ class Evidence:
     fault: Fault | None = None
     trial_id: str = ""
     """The trial that it is looked at from; empty for the exercise's first."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is handed to another process: not what was read on first use."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}
 
     @property
     def trial(self) -> TrialSpec:

@@ -32,6 +32,7 @@ from grader.sandbox.system_calls import call_filter
 from grader.sandbox.usage import Guard
 from grader.submission import tree
 from grader.submission.package import Submission, write_copy
+from grader.submission.reader import read
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
@@ -198,8 +199,7 @@ def _honest(cell: NotebookNode) -> None:
 
 def _copy(folder: Path, copy: Path) -> None:
     """What of the submission can be read without trusting it; links that lead out of it are left out."""
-    with tree.open_folder(str(folder)) as descriptor:
-        found = tree.read_tree(descriptor)
+    found = read(tree.read_folder, folder)
     files = {path: data for path, data in found.files.items() if not path.endswith(".ipynb")}
     write_copy(Submission("", folder, files, (), "", frozenset(found.executable & files.keys())), copy)
 

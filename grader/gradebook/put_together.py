@@ -15,6 +15,7 @@ from grader.learner.workspace import starting_point
 from grader.notebook.place import Part, counts, ended, parts_of, starting_text
 from grader.submission import tree
 from grader.submission.package import Submission, write_copy
+from grader.submission.reader import read
 from grader.submission.search import PACKAGE_FILES
 
 if TYPE_CHECKING:
@@ -28,20 +29,28 @@ def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:
     """The folder to grade: the submission's own, or `together`, where it is written when its notebook says more.
 
     Raises:
-        MachineError: it cannot be read, or written.
+        UnreadableError: it cannot be read.
+        MachineError: it cannot be written.
     """
     if together.exists():
         shutil.rmtree(together)
-    with tree.open_folder(str(submitted)) as descriptor:
-        found = tree.read_tree(descriptor)
+    whole = read(_together, exercise, submitted)
+    if whole is None:
+        return submitted
+    together.parent.mkdir(parents=True, exist_ok=True)
+    write_copy(whole, together)
+    return together
+
+
+def _together(exercise: Exercise, submitted: Path) -> Submission | None:
+    """The submission with what its notebook says; None where the notebook says nothing more."""
+    found = tree.read_folder(submitted)
     notebook = found.files.get(f"{exercise.id}.ipynb")
     parts = _worked_on(exercise, notebook) if notebook else []
     files = _with(exercise, found.files, parts)
     if files is None or found.rejected:
-        return submitted
-    together.parent.mkdir(parents=True, exist_ok=True)
-    write_copy(Submission("", submitted, files, (), "", frozenset(found.executable & files.keys())), together)
-    return together
+        return None
+    return Submission("", submitted, files, (), "", frozenset(found.executable & files.keys()))
 
 
 def _worked_on(exercise: Exercise, notebook: bytes) -> list[Part]:
@@ -63,8 +72,7 @@ def _with(exercise: Exercise, files: Mapping[str, bytes], parts: list[Part]) -> 
     """The files with those parts that count; None where the submission is whole without them."""
     whole = {path: data for path, data in files.items() if not path.endswith(".ipynb")}
     if parts and exercise.package and not any(path.rpartition("/")[2] in PACKAGE_FILES for path in whole):
-        with tree.open_folder(str(starting_point(exercise))) as descriptor:
-            start = tree.read_tree(descriptor).files
+        start = tree.read_folder(starting_point(exercise)).files
         whole = {path: data for path, data in start.items() if not path.endswith(".ipynb")} | whole
     counted = [part for part in parts if counts(_text(whole.get(part.path)), _start(exercise, part.path)) == "cell"]
     if not counted:

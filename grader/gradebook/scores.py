@@ -7,7 +7,6 @@ and go into nbgrader's gradebook through its API. What the grader cannot judge c
 
 from __future__ import annotations
 
-import errno
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -17,8 +16,9 @@ from grader.checks.outcome import Status
 from grader.classroom.found import Found
 from grader.classroom.grade_class import Asked, grade_found
 from grader.classroom.results import Results
+from grader.common.refusal import OF_THE_DISK
 from grader.common.words import shorten
-from grader.errors import UsageError
+from grader.errors import UnreadableError, UsageError
 from grader.gradebook.confirmed import (
     Unconfirmed,
     outcome_of,
@@ -28,7 +28,7 @@ from grader.gradebook.confirmed import (
     withhold_unconfirmed,
 )
 from grader.gradebook.put_together import graded_folder
-from grader.submission.tree import OF_THE_MACHINE
+from grader.submission.reader import read
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -36,9 +36,6 @@ if TYPE_CHECKING:
 
     from grader.classroom.results import Result
     from grader.gradebook.folders import ClassFolders
-
-OF_THE_DISK = OF_THE_MACHINE | {errno.ENOSPC, errno.EDQUOT, errno.EROFS}
-"""Faults while reading and writing that stop a run: no other submission would fare better."""
 
 
 @dataclass(frozen=True)
@@ -238,13 +235,17 @@ def _late(folders: ClassFolders, student: str, step: str) -> None:
 
 def _kernel_scores(notebook: Path) -> dict[str, float | None] | None:
     """What each grade cell of an autograded notebook is worth by its own output; None without the notebook."""
-    from nbformat import read
+    try:
+        return read(_scores_in, notebook)
+    except UnreadableError:
+        return None
+
+
+def _scores_in(notebook: Path) -> dict[str, float | None]:
+    from nbformat import read as read_notebook
     from nbgrader.utils import is_grade
 
-    try:
-        cells = read(notebook, as_version=4).cells  # type: ignore[no-untyped-call]
-    except (OSError, ValueError, AttributeError, KeyError, TypeError, RecursionError):
-        return None
+    cells = read_notebook(notebook, as_version=4).cells  # type: ignore[no-untyped-call]
     return {cell.metadata.nbgrader.grade_id: _kernel_score(cell) for cell in cells if is_grade(cell)}
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import grader
-from grader.checks.judge import in_words, judge, judge_early, near_edge, of_this_trial, wants_trial
+from grader.checks.judge import in_words, near_edge, of_this_trial, wants_trial
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Status
 from grader.colcon import workspace
@@ -18,13 +18,13 @@ from grader.common.refusal import refusal
 from grader.common.words import printable
 from grader.errors import MachineError
 from grader.evidence.evidence import Evidence, Fault, Run
+from grader.grading.judging import Judging
 from grader.grading.turns import Turns
 from grader.grading.turns import folder as turns_folder
 from grader.report.report import Report
 from grader.ros import underlay
 from grader.ros.installation import find_ros
 from grader.trial.ahead import Ahead
-from grader.trial.clues import wall_clues
 from grader.trial.inputs import draw_inputs
 from grader.trial.start import start_pose
 from grader.trial.trial import OverwhelmedError, Plan, Trial, WallTimeNeeded
@@ -130,6 +130,7 @@ class _Grading:
     trials: Callable[..., Trial]
     turns: Turns
     ahead: Ahead
+    judging: Judging = field(default_factory=Judging)
     seconds: dict[str, float] = field(default_factory=dict)
     tree: bytes = b""
     """What was built, as a tar stream."""
@@ -139,10 +140,24 @@ class _Grading:
         evidence = Evidence(self.exercise, self.submission)
         ros_name = "none"
         prefixes: tuple[Path, ...] = ()
-        stage: Stage = "build"
         with self._timed("files"):
-            certain = judge_early(evidence)
+            certain = self.judging.early(evidence)
         self.early(certain.failed)
+        if self.judging.fault is None:
+            evidence, ros_name, prefixes = self._run_all(evidence, certain)
+        with self._timed("checks"):
+            outcomes = self.judging.outcomes(evidence)
+            evidence = self.judging.known(evidence)
+        self.seconds["in all"] = time.monotonic() - begun
+        confined = self.options.in_cell or evidence.build is None
+        report = report_of(evidence, outcomes, ros_name, self.seconds, confined=confined)
+        return Graded(report, evidence, prefixes)
+
+    def _run_all(self, evidence: Evidence, certain: Early) -> tuple[Evidence, str, tuple[Path, ...]]:
+        """The evidence with build and trials, the ROS 2 that ran them, and what holds the message types."""
+        ros_name = "none"
+        prefixes: tuple[Path, ...] = ()
+        stage: Stage = "build"
         try:
             ros = find_ros()
             ros_name = ros.name
@@ -159,7 +174,7 @@ class _Grading:
                     stage = "trial"
                     self._run_ahead(evidence)
                     for spec in self.exercise.trials:
-                        if wants_trial(evidence.from_trial(spec.id)):
+                        if self._wants_trial(evidence.from_trial(spec.id)):
                             evidence = self._run_trial(evidence.from_trial(spec.id), ros)
                     evidence = evidence.from_trial(self.exercise.trials[0].id)
         except MachineError as error:
@@ -169,12 +184,7 @@ class _Grading:
             refused = refusal(error)
             fault = Fault(stage, refused) if refused else Fault(stage, in_words(error), unreadable=True)
             evidence = dataclasses.replace(evidence, fault=fault)
-        with self._timed("checks"):
-            outcomes = judge(evidence)
-        self.seconds["in all"] = time.monotonic() - begun
-        confined = self.options.in_cell or evidence.build is None
-        report = report_of(evidence, outcomes, ros_name, self.seconds, confined=confined)
-        return Graded(report, evidence, prefixes)
+        return evidence, ros_name, prefixes
 
     def _simulator_alone(self, evidence: Evidence, ros: Ros) -> Evidence:
         self.tell("Asking a running simulator")
@@ -194,7 +204,7 @@ class _Grading:
         """Let the nodes begin whose trials pass in simulated time."""
         for seen in _longest_first(evidence):
             name = seen.trial.id
-            if self.ahead.trial(name) and self._first_clock(seen)[0] == "simulated" and wants_trial(seen):
+            if self.ahead.trial(name) and self._first_clock(seen)[0] == "simulated" and self._wants_trial(seen):
                 self.ahead.run(name, _package(seen), seen.trial.executable, self.tree)
 
     def _run_trial(self, evidence: Evidence, ros: Ros) -> Evidence:
@@ -207,15 +217,16 @@ class _Grading:
     def _first_clock(self, evidence: Evidence) -> tuple[ClockName, str]:
         if self.options.clock != "auto":
             return self.options.clock, f"asked for with --clock {self.options.clock}"
-        try:
-            entry = evidence.entry_point()
-            clues = wall_clues(self.submission.files, entry.partition(":")[0].strip() if entry else None)
-        except Exception as error:  # told by the checks that read the source, too
-            return "wall", f"the source could not be read ({in_words(error)}), so it may follow the wall's clock"
-        if clues:
-            first = clues[0]
-            return "wall", f"{first.name} at {first.file}:{first.line} may follow the wall's clock"
-        return "simulated", "the node waits only for ROS time and messages, so its seconds need not be waited for"
+        return self.judging.first_clock(evidence)
+
+    def _wants_trial(self, evidence: Evidence) -> bool:
+        return wants_trial(evidence, self.judging.outcomes(evidence))
+
+    def _of_this_trial(self, evidence: Evidence) -> tuple[Outcome, ...]:
+        return of_this_trial(evidence, self.judging.outcomes(evidence))
+
+    def _passed(self, evidence: Evidence) -> bool:
+        return all(outcome.status is Status.PASSED for outcome in self._of_this_trial(evidence))
 
     def _build(self, evidence: Evidence, ros: Ros) -> Evidence:
         with self._timed("build"):
@@ -248,7 +259,7 @@ class _Grading:
             except WallTimeNeeded as doubt:
                 why = str(doubt)
             else:
-                if self.options.clock == "simulated" or not near_edge(of_this_trial(evidence)):
+                if self.options.clock == "simulated" or not near_edge(self._of_this_trial(evidence)):
                     return evidence
                 why = "a measured value lies near the edge of what is allowed, where only the wall's clock decides"
             with self._trial(evidence, "wall", ros) as again:
@@ -264,11 +275,11 @@ class _Grading:
         the one that was disturbed least.
         """
         tried = [evidence]
-        while len(tried) < WALL_TRIALS and _disturbed(tried[-1]) and not _passed(tried[-1]):
+        while len(tried) < WALL_TRIALS and _disturbed(tried[-1]) and not self._passed(tried[-1]):
             self.tell("The machine was too busy for wall time: once more")
             with self.turns.alone(), self._trial(evidence, "wall", ros) as trial:
                 tried.append(self._run(evidence, trial, "wall", why))
-        return tried[-1] if _passed(tried[-1]) else min(tried, key=_disturbance)
+        return tried[-1] if self._passed(tried[-1]) else min(tried, key=_disturbance)
 
     def _run(self, evidence: Evidence, trial: Runs, clock: ClockName, why: str) -> Evidence:
         duration_s = evidence.trial.scenario.duration_s
@@ -345,10 +356,6 @@ def _why_this_clock(evidence: Evidence) -> str:
 
 def _why_not_run(evidence: Evidence) -> str:
     return "The node was not run." if evidence.run.overwhelmed is None else "The trial could not be finished."
-
-
-def _passed(evidence: Evidence) -> bool:
-    return all(outcome.status is Status.PASSED for outcome in of_this_trial(evidence))
 
 
 def _disturbed(evidence: Evidence) -> bool:

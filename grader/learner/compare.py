@@ -11,6 +11,7 @@ from grader.errors import UsageError
 from grader.exercise.markers import MEANT, solved, syntax_of
 from grader.learner import progress, workspace
 from grader.submission import tree
+from grader.submission.reader import read
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,8 +49,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
 
 def _texts(folder: Path, *, marked: bool = False) -> dict[str, str]:
     """The text of each file, by path; when `marked`, only of those with a region that is the student's to write."""
-    with tree.open_folder(str(folder)) as opened:
-        files = tree.read_tree(opened).files
+    files = read(tree.read_folder, folder).files
     texts = {}
     for path in sorted(files, key=tree.sort_key):
         try:

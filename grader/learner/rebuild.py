@@ -13,6 +13,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from grader.colcon import workspace
+from grader.submission.reader import read
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,7 +38,7 @@ class Rebuild:
         tell: Callable[[str], None],
     ) -> workspace.Built:
         """Build the submission, with colcon or without; `tell` hears which."""
-        built = renewed(submission, *self._last) if self._last else None
+        built = read(renewed, submission, *self._last) if self._last else None
         if built is not None:
             tell("Taking the last build, with the modules as they are now")
         else:

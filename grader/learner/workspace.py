@@ -100,8 +100,7 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
 
     `instead`: what stands in these files instead. Raises OSError.
     """
-    with tree.open_folder(str(source)) as opened:
-        found = tree.read_tree(opened)
+    found = tree.read_folder(source)
     added, present = [], []
     for path in sorted(found.files, key=tree.sort_key):
         if path.endswith(".ipynb"):

@@ -11,13 +11,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
-from grader.errors import GraderError
+from grader.errors import UnreadableError
 from grader.report.code_excerpt import excerpt
 from grader.report.html_run import runs_of
 from grader.report.logs import logs_of
 from grader.report.page import make_page, save_page
 from grader.report.plain import plain_line
 from grader.report.verdict import UNCONFINED, tone, verdict
+from grader.submission.reader import read
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -77,10 +78,8 @@ def html_page(evidence: Evidence, report: Report) -> str:
     What a submission has made may be more than can be drawn; its verdict is told all the same, without the drawings.
     """
     try:
-        return _page(evidence, report)
-    except GraderError:
-        raise
-    except Exception:
+        return read(_page, evidence, report)
+    except UnreadableError:
         return _page(without_content(evidence), report)
 
 

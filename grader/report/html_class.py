@@ -21,6 +21,7 @@ from grader.report.page import make_page, save_page
 from grader.report.suspicion import ERRORS, suspicions
 from grader.report.svg import picture, tag, words
 from grader.report.verdict import tone, verdict
+from grader.submission.reader import read
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -216,7 +217,7 @@ def class_page(reports: ClassReports) -> str:
 
 def save_class_page(folder: Path, file: Path) -> None:
     """Write the page on the reports below a folder. Raises UsageError where that cannot be done."""
-    save_page(class_page(read_class(folder)), file)
+    save_page(class_page(read(read_class, folder)), file)
 
 
 BINS = [f"{10 * each} to {10 * each + 9}" for each in range(10)] + ["100"]

@@ -10,11 +10,12 @@ import hashlib
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
-from grader.errors import GraderError
+from grader.errors import UnreadableError
 from grader.report.html import ShownCheck, without_content
 from grader.report.html_run import runs_of
 from grader.report.template import fill
 from grader.report.verdict import UNCONFINED, tone, verdict
+from grader.submission.reader import read
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -24,10 +25,8 @@ if TYPE_CHECKING:
 def html_fragment(evidence: Evidence, report: Report) -> str:
     """The piece of HTML; without drawings where what the submission has made cannot be drawn."""
     try:
-        return _fragment(evidence, report)
-    except GraderError:
-        raise
-    except Exception:
+        return read(_fragment, evidence, report)
+    except UnreadableError:
         return _fragment(without_content(evidence), report)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from grader.report.canvas import paint
 from grader.report.files import not_written
 from grader.report.scene import Scene, scene_of
 from grader.report.shapes import DEEP, LOOKS, SEA, SIDE_M, Rgb, Role
+from grader.submission.reader import read
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,11 +48,17 @@ class Panel:
 
 def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
     """Write the picture as a PNG file. Raises the error of `not_written` where that cannot be done."""
-    image = draw_picture(evidence, report)
+    image = read(_png, evidence, report)
     try:
-        image.save(file, format="PNG")
+        file.write_bytes(image)
     except OSError as error:
         raise not_written(file, error) from error
+
+
+def _png(evidence: Evidence, report: Report) -> bytes:
+    image = io.BytesIO()
+    draw_picture(evidence, report).save(image, format="PNG")
+    return image.getvalue()
 
 
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:

@@ -10,13 +10,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.errors import MachineError, UsageError
+from grader.errors import MachineError, UnreadableError, UsageError
 from grader.submission import tree
+from grader.submission.reader import read
 from grader.submission.search import find_package, why_not_opened
 from grader.submission.tree import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
 ANSWERS = "answers.toml"
 """What a student writes where questions are asked."""
@@ -53,7 +54,18 @@ def open_submission(path: str | os.PathLike[str]) -> Submission:
     Raises UsageError where there is no such folder, or not exactly one package in it; MachineError where the disk or
     the system fails. Everything else that is odd about the folder is the student's and told in `rejected`.
     """
-    name = os.fspath(path)
+    return _read(_submission, os.fspath(path))
+
+
+def _read(function: Callable[[str], Submission], name: str) -> Submission:
+    try:
+        return read(function, name)
+    except UnreadableError as error:
+        message = f"{shown(name)} cannot be opened: {error}."
+        raise UnreadableError(message) from error
+
+
+def _submission(name: str) -> Submission:
     try:
         with tree.open_folder(name) as root:
             package = find_package(root, name)
@@ -77,7 +89,10 @@ def open_answers(path: str | os.PathLike[str]) -> Submission:
 
     Raises UsageError where there is no such folder, or no such file in it; MachineError where the disk fails.
     """
-    name = os.fspath(path)
+    return _read(_answers, os.fspath(path))
+
+
+def _answers(name: str) -> Submission:
     try:
         with tree.open_folder(name) as root:
             found = tree.read_tree(root)

@@ -134,6 +134,12 @@ def _exists(path: str, folder: int) -> bool:
     return True
 
 
+def read_folder(folder: str | os.PathLike[str]) -> Tree:
+    """As `read_tree`, of the folder at this path. Raises OSError where it cannot be opened."""
+    with open_folder(os.fspath(folder)) as opened:
+        return read_tree(opened)
+
+
 def read_tree(folder: int) -> Tree:
     """All regular files below the folder, and links to them."""
     tree = Tree()

@@ -47,6 +47,7 @@ OTHERS = {
     ("process", "run"): "bubblewrap, with what colcon.workspace.build made inside",
     ("ros2", "_measure"): "our command ros2",
     ("ros2", "main"): "our command ros2",
+    ("reader", "_fork"): "this process again, which then only reads",
     ("bubblewrap", "why_unavailable"): "bubblewrap and `true`",
     ("shell", "open_shell"): "the user's shell",
     ("simulator", "start"): "a node of the user's, as _command made it",

@@ -117,8 +117,8 @@ def test_what_breaks_a_check_could_not_be_read_and_the_others_are_judged(monkeyp
 
 
 def test_a_trial_is_wanted_only_where_it_would_be_judged() -> None:
-    assert wants_trial(evidence(None))
-    assert not wants_trial(evidence(None, build=NO_BUILD))
+    for seen, wanted in ((evidence(None), True), (evidence(None, build=NO_BUILD), False)):
+        assert wants_trial(seen, judge(seen)) is wanted
 
 
 def test_a_value_near_an_edge_asks_for_wall_time() -> None:

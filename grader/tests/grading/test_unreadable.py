@@ -11,7 +11,7 @@ from grader.checks.outcome import Status
 from grader.colcon.workspace import Built
 from grader.errors import MachineError
 from grader.evidence import evidence as of_evidence
-from grader.grading import grade as of_grading
+from grader.grading import judging as of_grading
 from grader.grading.grade import Options, grade
 from grader.report import html, html_notebook
 from grader.tests.checks.made import BUILD, exercise, good, submission
