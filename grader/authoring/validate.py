@@ -45,7 +45,9 @@ def validate(
     files = catalogue(course)
     unknown = [name for name in names if name not in files]
     if unknown:
-        message = f"There is no exercise {a_list(unknown, 'or')}. The exercises are {a_list(list(files))}."
+        message = (
+            f"There is no exercise {a_list(unknown, 'or')}. The exercises are {a_list(list(files), most=len(files))}."
+        )
         raise UsageError(message)
     problems = [
         f"{line} Run: grader release" for line in stale(course.parent / "solutions", course.parent / "exercises")
@@ -81,6 +83,11 @@ class _Validation:
             return
         if not self._exercise.hints:
             yield f"{self._file}: there is no [[hint]]; a learner who is stuck needs some."
+        elif all(hint.checks for hint in self._exercise.hints):
+            helped = {check for hint in self._exercise.hints for check in hint.checks}
+            for check in self._exercise.unsolved:
+                if check not in helped:
+                    yield f"{self._file}: the starting point fails {check}, and no [[hint]] names it in checks."
         yield from _lesson(self._file.with_name("lesson.md"))
         yield from _judged(self._exercise, self._solution, _solution)
         yield from _judged(self._exercise, self._starting_point, _starting_point)

@@ -35,7 +35,7 @@ def nearest(name: str, candidates: Iterable[str], alike: float = 0.6) -> str | N
     return found[0] if found else None
 
 
-def a_list(items: Sequence[str], last: str = "and", *, most: int = 6) -> str:
+def a_list(items: Sequence[str], last: str = "and", *, most: int = 12) -> str:
     """'a', 'a and b', 'a, b and c'; at most `most` are named."""
     shown = list(items[:most])
     if len(items) > len(shown):

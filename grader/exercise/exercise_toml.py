@@ -5,7 +5,7 @@ starting_point_fails: the checks (ids) that exercises/ must fail, for `grader va
 `[[trial]]` id, executable, node, duration_s, start, rename, pose_every; `[[trial.drive]]` from_s, linear_x_m_s,
 angular_z_rad_s (one number, or two to draw from). `[[check]]` id, kind, points, needs (ids), title, trial (the first
 one when it is left out), hidden, and the parameters of its kind; or preset (presets.py). `[[hint]]` text, from a nudge
-to nearly the answer.
+to nearly the answer, checks (the ids of those that it helps with), part (a letter).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.common.words import nearest, shorten
 from grader.errors import UsageError
-from grader.exercise.model import CheckSpec, Drive, Exercise, Scenario, TrialSpec
+from grader.exercise.model import CheckSpec, Drive, Exercise, Hint, Scenario, TrialSpec
 from grader.exercise.presets import expand, problem_of
 from grader.exercise.tables import Table, read_toml, shown
 
@@ -35,6 +35,7 @@ OLDER = {
 ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 ROS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 NAME = "letters, digits and _, beginning with a letter"
+PART = re.compile(r"[a-z]")
 REMAP = re.compile(r"(/\w+)+:=(/\w+)+")
 MAX_DURATION_S = 600.0
 MAX_SPEED = 10.0
@@ -81,13 +82,14 @@ def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) 
     # What is answered in answers.toml alone has no package, and no trial of it has a node.
     package = head.text("package", ROS_NAME, NAME, default=None if "package" in head.values else "")
     trials = _trials(top, package)
+    checks = _checks(top, tuple(trial.id for trial in trials), kinds)
     exercise = Exercise(
         id=head.text("id", ID, "small letters, digits and single dashes, as in 03-circle-publisher"),
         title=head.text("title"),
         package=package,
         trials=trials,
-        checks=_checks(top, tuple(trial.id for trial in trials), kinds),
-        hints=tuple(_hint(table) for table in top.tables("hint")),
+        checks=checks,
+        hints=tuple(_hint(table, checks) for table in top.tables("hint")),
         unsolved=head.texts("starting_point_fails"),
         folder=folder,
         digest=digest,
@@ -147,10 +149,23 @@ def _drive(table: Table) -> Drive:
     return drive
 
 
-def _hint(table: Table) -> str:
-    hint = table.text("text").strip()
+def _hint(table: Table, checks: tuple[CheckSpec, ...]) -> Hint:
+    hint = Hint(
+        table.text("text").strip(),
+        table.texts("checks"),
+        table.text("part", PART, 'a letter, as in "d"', default=""),
+    )
+    for name in hint.checks:
+        _must_be_check(table, "checks", name, [check.id for check in checks])
     table.finish()
     return hint
+
+
+def _must_be_check(table: Table, key: str, name: str, ids: list[str]) -> None:
+    if name not in ids:
+        guess = nearest(name, ids)
+        hint = f' Did you mean "{guess}"?' if guess else ""
+        table.problem(f'"{key}" names "{shorten(name)}", which is no check.{hint} Allowed: {", ".join(ids)}.')
 
 
 def _checks(top: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) -> tuple[CheckSpec, ...]:
@@ -163,10 +178,7 @@ def _checks(top: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) 
         if spec.id and ids.count(spec.id) > 1:
             table.problem(f'the id "{spec.id}" is used {ids.count(spec.id)} times; each check needs one of its own.')
         for need in spec.needs:
-            if need not in ids:
-                guess = nearest(need, ids)
-                hint = f' Did you mean "{guess}"?' if guess else ""
-                table.problem(f'"needs" names "{shorten(need)}", which is no check.{hint} Allowed: {", ".join(ids)}.')
+            _must_be_check(table, "needs", need, ids)
     circle = _circle(specs)
     if circle:
         top.problem(f'"needs" goes in a circle: {" -> ".join(circle)}. Take one of them out.')

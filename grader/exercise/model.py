@@ -71,6 +71,15 @@ class TrialSpec:
 
 
 @dataclass(frozen=True)
+class Hint:
+    """One `[[hint]]`: it helps with these checks, or with all of the exercise; `part` is the letter of a part of it."""
+
+    text: str
+    checks: tuple[str, ...] = ()
+    part: str = ""
+
+
+@dataclass(frozen=True)
 class Exercise:
     """A step's exercise: a package is built and run in every trial, and the checks judge what was observed.
 
@@ -83,7 +92,7 @@ class Exercise:
     trials: tuple[TrialSpec, ...]
     """In the order of the file; there is at least one."""
     checks: tuple[CheckSpec, ...]
-    hints: tuple[str, ...]
+    hints: tuple[Hint, ...]
     folder: Path
     digest: str = ""
     """sha256 of exercise.toml: what the exercise asks for, and how it is judged."""

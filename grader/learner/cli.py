@@ -44,11 +44,18 @@ def start(
     typer.echo(steps.told(begun))
 
 
-def hint(step: Step = None, workspace: Workspace = None) -> None:
-    """Show the next hint for the step you are at: from a nudge to nearly the answer."""
-    from grader.learner import steps
+def hint(
+    step: Step = None,
+    part: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Argument(help="A part of the step, as in d.", metavar="PART"),
+    ] = None,
+    workspace: Workspace = None,
+) -> None:
+    """Show the next hint for the step you are at, first for what failed: from a nudge to nearly the answer."""
+    from grader.learner import hints
 
-    _print(steps.hint(step, workspace))
+    _print(hints.hint(step, workspace, part))
 
 
 def status(workspace: Workspace = None) -> None:

@@ -11,11 +11,15 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from grader.checks.outcome import Status
 from grader.common import xdg
+from grader.common.refusal import of_the_machine, refusal
 from grader.errors import MachineError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+
+    from grader.report.report import Report
 
 _SCHEMA = 1
 DEFAULT_WORKSPACE = Path("~/ros2_ws")
@@ -23,12 +27,17 @@ DEFAULT_WORKSPACE = Path("~/ros2_ws")
 
 @dataclass(frozen=True)
 class StepProgress:
-    """One step: the best points so far, of `max` in that report; whether it has passed; how many hints were read."""
+    """One step: the best points so far, of `max` in that report, and whether it has passed."""
 
     points: float = 0.0
     max: float = 0.0
     passed: bool = False
-    hints: int = 0
+    read: tuple[int, ...] = ()
+    """The hints that were read, in that order, by their places in exercise.toml."""
+    failed: tuple[str, ...] = ()
+    """The ids of the checks that failed in the last verdict, in its order."""
+    done: tuple[str, ...] = ()
+    """Those that passed."""
 
 
 @dataclass(frozen=True)
@@ -51,11 +60,19 @@ class Progress:
         """The same, standing at another step."""
         return replace(self, current=name, steps={**self.steps, name: self.step(name)})
 
-    def graded(self, name: str, points: float, most: float, *, passed: bool) -> Progress:
+    def graded(self, name: str, report: Report) -> Progress:
         """The same after a verdict: points never go down, and what has passed stays passed."""
         before = self.step(name)
-        best = (points, most) if points >= before.points else (before.points, before.max)
-        return self.with_step(name, replace(before, points=best[0], max=best[1], passed=passed or before.passed))
+        better = report.points >= before.points
+        after = replace(
+            before,
+            points=report.points if better else before.points,
+            max=report.max if better else before.max,
+            passed=before.passed or report.exit_code == 0,
+            failed=tuple(outcome.id for outcome in report.with_status(Status.FAILED)),
+            done=tuple(outcome.id for outcome in report.with_status(Status.PASSED)),
+        )
+        return self.with_step(name, after)
 
 
 def workspace_of(folder: Path | None) -> Path:
@@ -78,8 +95,15 @@ def load(workspace: Path) -> Progress:
     data = _read(state_file())["workspaces"].get(str(workspace))
     if data is None:
         return Progress(student=secrets.token_hex(4))
-    steps = {name: StepProgress(**step) for name, step in data["steps"].items()}
+    steps = {name: _step(step) for name, step in data["steps"].items()}
     return Progress(data["student"], data["current"], steps)
+
+
+def _step(data: dict[str, Any]) -> StepProgress:
+    # Older versions counted the hints, which came in order.
+    read = data.get("read", range(data.get("hints", 0)))
+    lists = {"read": tuple(read), "failed": tuple(data.get("failed", ())), "done": tuple(data.get("done", ()))}
+    return StepProgress(data["points"], data["max"], data["passed"], **lists)
 
 
 def update(workspace: Path, change: Callable[[Progress], Progress]) -> Progress:
@@ -99,7 +123,8 @@ def update(workspace: Path, change: Callable[[Progress], Progress]) -> Progress:
             fresh.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
             fresh.replace(file)
     except OSError as error:
-        message = f"Your progress could not be written to {file}: {error.strerror}."
+        more = refusal(error) if of_the_machine(error) else "Name another folder with XDG_STATE_HOME."
+        message = f"Your progress could not be written to {file} ({error.strerror}). {more}"
         raise MachineError(message) from error
     return changed
 

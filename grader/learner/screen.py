@@ -9,7 +9,7 @@ from rich.console import Console
 
 from grader.errors import GraderError, UsageError
 from grader.grading.grade import Options
-from grader.learner import steps
+from grader.learner import hints, steps
 from grader.learner.keys import single_keys
 from grader.learner.watch import Events, Watched
 from grader.report import terminal
@@ -74,7 +74,7 @@ class _Screen:
             elif happened.key == "r":
                 self._grade()
             elif happened.key == "h":
-                self._say(steps.hint(self._exercise.id, self._workspace))
+                self._hint()
             elif happened.key == "l":
                 steps.print_status(self._workspace, self._console)
             elif happened.key == "n":
@@ -108,6 +108,14 @@ class _Screen:
             terminal.render(report, self._console)
         fits = whole.get().count("\n") + more + BELOW <= self._console.height
         terminal.render(report, self._console, brief=self._console.is_terminal and not fits)
+
+    def _hint(self) -> None:
+        # A progress file that cannot be written ends no watching.
+        try:
+            told = hints.hint(self._exercise.id, self._workspace)
+        except GraderError as error:
+            told = str(error)
+        self._console.print(told, markup=False, soft_wrap=not self._console.is_terminal)
 
     def _next(self) -> steps.Begun | None:
         try:

@@ -1,4 +1,4 @@
-"""The steps in order: begin one, look how far one is, read a hint."""
+"""The steps in order: begin one, note a verdict, look how far one is."""
 
 from __future__ import annotations
 
@@ -96,42 +96,12 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
     root = progress.workspace_of(folder)
     if not submission.resolve().is_relative_to(root) or progress.load(root).current is None:
         return ""
-    passed = report.exit_code == 0
-    known = progress.update(root, lambda before: before.graded(exercise.id, report.points, report.max, passed=passed))
-    if not passed:
+    known = progress.update(root, lambda before: before.graded(exercise.id, report))
+    if report.exit_code != 0:
         return ""
     if all(known.step(name).passed for name in catalogue()):
         return "That was the last one: you have passed every step."
     return f"The next step: grader start next   (our solution: grader solution {exercise.id[:2]})"
-
-
-def hint(step: str | None, folder: Path | None) -> str:
-    """The next hint of a step, the current one when left out; the last one again when all were read.
-
-    Raises:
-        UsageError: no step was begun.
-    """
-    root = progress.workspace_of(folder)
-    if step is None:
-        at = current(folder)
-        if at is None:
-            message = "Hints for which step? Name it, as in `grader hint 03`, or begin one: `grader start 01`."
-            raise UsageError(message)
-        exercise = at[0]
-    else:
-        exercise = find_exercise(step)
-    if not exercise.hints:
-        return f"{exercise.id} has no hints."
-    read = progress.load(root).step(exercise.id).hints
-    index = min(read, len(exercise.hints) - 1)
-
-    def one_more(before: progress.Progress) -> progress.Progress:
-        known = before.step(exercise.id)
-        return before.with_step(exercise.id, progress.StepProgress(known.points, known.max, known.passed, index + 1))
-
-    progress.update(root, one_more)
-    last = " (the last)" if index + 1 == len(exercise.hints) else ""
-    return f"Hint {index + 1} of {len(exercise.hints)}{last}: {exercise.hints[index]}"
 
 
 def print_status(folder: Path | None, console: Console) -> None:
@@ -148,7 +118,7 @@ def print_status(folder: Path | None, console: Console) -> None:
         sign = "✓" if step.passed else ("→" if name == known.current else "·")
         points = f"{step.points:g}/{step.max:g}" if step.max else ""
         style = "green" if step.passed else ("bold" if name == known.current else "dim")
-        table.add_row(sign, name, find_exercise(name).title, points, str(step.hints or ""), style=style)
+        table.add_row(sign, name, find_exercise(name).title, points, str(len(step.read) or ""), style=style)
     console.print(table)
     passed = sum(known.step(name).passed for name in catalogue())
     console.print(f"\n{passed} of {count(len(catalogue()), 'step')} passed, in {root}", soft_wrap=True)

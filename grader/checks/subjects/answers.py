@@ -44,7 +44,8 @@ def answers(evidence: Evidence, _: NoParams) -> Finding:
     other = sorted(set(found.given) - questions)
     if other:
         observed = f"{FILE} answers {a_list([shorten(name) for name in other])}, but no question has that name."
-        cause = f"The names of the questions are {a_list(sorted(questions - set(found.given)) or sorted(questions))}."
+        names = sorted(questions - set(found.given)) or sorted(questions)
+        cause = f"The names of the questions are {a_list(names, most=len(names))}."
         where = Where(FILE, found.lines.get(other[0]))
         return failed(observed, expected, Cause("unknown-answer", cause, where))
     if not found.given:

@@ -53,7 +53,9 @@ def test_lists() -> None:
         "a and b",
         "a, b or c",
     ]
-    assert a_list([str(each) for each in range(9)]) == "0, 1, 2, 3, 4, 5 and 3 more"
+    assert a_list([str(each) for each in range(7)]) == "0, 1, 2, 3, 4, 5 and 6"
+    assert a_list([str(each) for each in range(9)], most=6) == "0, 1, 2, 3, 4, 5 and 3 more"
+    assert a_list([str(each) for each in range(99)]).endswith("11 and 87 more")
 
 
 @pytest.mark.parametrize(

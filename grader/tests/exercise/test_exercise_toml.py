@@ -6,7 +6,7 @@ import pytest
 
 from grader.checks.exercises import load_exercise
 from grader.errors import UsageError
-from grader.exercise.model import Drive, Exercise, Scenario, TrialSpec, catalogue
+from grader.exercise.model import Drive, Exercise, Hint, Scenario, TrialSpec, catalogue
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -83,7 +83,7 @@ def test_what_stands_in_the_file_is_what_the_exercise_says(tmp_path: Path) -> No
         "stand", "my_other_node", "other", Scenario(3.0, (Drive(1.0, (0.5, 1.0), (0.0, 0.0)),), anywhere=True)
     )
     assert exercise.trial("stand") is stand
-    assert exercise.hints == ("Think.",)
+    assert exercise.hints == (Hint("Think."),)
     assert exercise.folder == tmp_path
     rate, values = exercise.checks
     assert (values.title, values.points, values.needs, values.hidden) == ("The values", 5.0, ("rate",), True)
@@ -197,7 +197,21 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
         ),
         ("hidden = true", 'hidden = "yes"', '[[check]] 2 (values): "hidden" is "yes"; it must be true or false.'),
         ('text = "Think."', 'text = " "', '[[hint]] 1: "text" is " "; it must be a text.'),
-        ('text = "Think."', 'text = "Think."\nfor = "rate"', '[[hint]] 1: unknown key "for". Allowed: text.'),
+        (
+            'text = "Think."',
+            'text = "Think."\nfor = "rate"',
+            '[[hint]] 1: unknown key "for". Allowed: text, checks, part.',
+        ),
+        (
+            'text = "Think."',
+            'text = "Think."\npart = "a)"',
+            '[[hint]] 1: "part" is "a)"; it must be a letter, as in "d".',
+        ),
+        (
+            'text = "Think."',
+            'text = "Think."\nchecks = ["rat"]',
+            '[[hint]] 1: "checks" names "rat", which is no check. Did you mean "rate"? Allowed: rate, values.',
+        ),
         ("[[hint]]", "[hint]", '"hint" is a table; it must be tables [[hint]].'),
     ],
 )

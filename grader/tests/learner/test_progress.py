@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
+from grader.checks.outcome import Status
 from grader.errors import MachineError, UsageError
 from grader.exercise.model import catalogue
 from grader.exercise.own_numbers import draw_numbers, from_toml
 from grader.learner import progress, steps, workspace
 from grader.learner.compare import print_solution
 from grader.learner.progress import Progress, StepProgress
+from grader.tests.report.reports import report
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,7 +35,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def passed(name: str) -> None:
     root = progress.workspace_of(None)
-    progress.update(root, lambda before: before.graded(name, 100.0, 100.0, passed=True))
+    progress.update(root, lambda before: before.graded(name, report("passed")))
 
 
 def test_progress_survives_and_is_kept_apart_by_workspace(home: Path) -> None:
@@ -51,18 +53,30 @@ def test_a_student_keeps_the_id_that_was_drawn_once(home: Path) -> None:
 
 
 def test_points_never_go_down_and_what_has_passed_stays_passed() -> None:
-    known = Progress("x").graded(FIRST, 100.0, 100.0, passed=True).graded(FIRST, 20.0, 100.0, passed=False)
-    assert known.step(FIRST) == StepProgress(100.0, 100.0, passed=True)
+    right, wrong = report("passed"), report("failed")
+    assert (right.exit_code, wrong.exit_code) == (0, 1)
+    step = Progress("x").graded(FIRST, right).graded(FIRST, wrong).step(FIRST)
+    assert (step.points, step.max, step.passed) == (right.points, right.max, True)
+    assert step.failed == tuple(outcome.id for outcome in wrong.outcomes if outcome.status is Status.FAILED)
+
+
+def test_hints_that_an_older_version_counted_were_read(home: Path) -> None:
+    progress.update(home, lambda before: before.at(FIRST))
+    file = progress.state_file()
+    data = json.loads(file.read_text())
+    data["workspaces"][str(home)]["steps"][FIRST] = {"points": 1.0, "max": 2.0, "passed": False, "hints": 2}
+    file.write_text(json.dumps(data))
+    assert progress.load(home).step(FIRST) == StepProgress(1.0, 2.0, read=(0, 1))
 
 
 def test_forty_writers_at_once_lose_nothing(home: Path) -> None:
     def one_hint(before: Progress) -> Progress:
         known = before.step(FIRST)
-        return before.with_step(FIRST, replace(known, hints=known.hints + 1))
+        return before.with_step(FIRST, replace(known, read=(*known.read, len(known.read))))
 
     with ThreadPoolExecutor(8) as pool:
         list(pool.map(lambda _: progress.update(home, one_hint), range(40)))
-    assert progress.load(home).step(FIRST).hints == 40
+    assert progress.load(home).step(FIRST).read == tuple(range(40))
 
 
 @pytest.mark.parametrize("content", ["{", "[]", '{"schema": 99}', ""])
@@ -128,19 +142,6 @@ def test_after_the_last_step_there_is_no_next() -> None:
     passed("07-challenges")
     with pytest.raises(UsageError, match="you are through"):
         steps.start("next", None)
-
-
-def test_hints_come_one_by_one_and_the_last_one_again() -> None:
-    begun = steps.start("01", None)
-    hints = begun.exercise.hints
-    read = [steps.hint(None, None) for _ in range(len(hints) + 2)]
-    for index, text in enumerate(read):
-        assert hints[min(index, len(hints) - 1)] in text
-
-
-def test_hints_without_a_step_say_how_to_begin() -> None:
-    with pytest.raises(UsageError, match="grader start 01"):
-        steps.hint(None, None)
 
 
 def test_a_workspace_that_is_a_file_is_told(home: Path) -> None:

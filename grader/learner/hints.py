@@ -1,0 +1,93 @@
+"""Hints: one at a time, first for what failed in the last verdict, and none for what is done already."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from grader.checks.exercises import find_exercise
+from grader.common.words import a_list
+from grader.errors import UsageError
+from grader.learner import progress, steps
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from grader.exercise.model import Exercise, Hint
+    from grader.learner.progress import StepProgress
+
+
+def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
+    """Return the next hint of a step, the current one when left out, and of a part of it if one is named.
+
+    When all were read, the last one comes again. A single letter in place of the step is a part of the current one.
+
+    Raises:
+        UsageError: no step was begun, or it has no such part.
+    """
+    if step is not None and part is None and re.fullmatch("[A-Za-z]", step):
+        step, part = None, step
+    root = progress.workspace_of(folder)
+    exercise = _exercise(step, folder)
+    if not exercise.hints:
+        return f"{exercise.id} has no hints."
+    wanted = [index for index, each in enumerate(exercise.hints) if part is None or each.part == _part(exercise, part)]
+    known = progress.load(root).step(exercise.id)
+    index = _next(exercise, wanted, known)
+    if index is None:
+        return f"{_whole(exercise, part)} has passed: there is nothing left to hint at."
+    read = (*(each for each in known.read if each != index), index)
+    progress.update(root, lambda before: before.with_step(exercise.id, replace(before.step(exercise.id), read=read)))
+    place = f"{sum(each in read for each in wanted)} of {len(wanted)}"
+    return f"Hint {place}{_about(exercise, index, known)}: {exercise.hints[index].text}"
+
+
+def _exercise(step: str | None, folder: Path | None) -> Exercise:
+    if step is not None:
+        return find_exercise(step)
+    at = steps.current(folder)
+    if at is None:
+        message = "Hints for which step? Name it, as in `grader hint 03`, or begin one: `grader start 01`."
+        raise UsageError(message)
+    return at[0]
+
+
+def _part(exercise: Exercise, part: str) -> str:
+    """Return the letter of a part, however it was typed: d, D, d)."""
+    letter = part.lower().rstrip(")")
+    parts = sorted({each.part for each in exercise.hints if each.part})
+    if letter not in parts:
+        has = f"has the parts {a_list(parts)}" if parts else "has no parts"
+        message = f"{exercise.id} {has}: {part!r} is none of them. `grader hint {exercise.id[:2]}` gives the next hint."
+        raise UsageError(message)
+    return letter
+
+
+def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | None:
+    """Return the place of the hint to give; None where all that they help with is done."""
+    open_ = [index for index in wanted if not _is_done(exercise.hints[index], known)]
+    if known.passed and not known.failed:
+        open_ = []
+    failed = [index for check in known.failed for index in open_ if check in exercise.hints[index].checks]
+    in_order = list(dict.fromkeys([*failed, *open_]))
+    unread = [index for index in in_order if index not in known.read]
+    if unread:
+        return unread[0]
+    # All were read: once more the last one for what fails, or the last of all.
+    return max(failed or open_, default=None)
+
+
+def _is_done(hint: Hint, known: StepProgress) -> bool:
+    return bool(hint.checks) and set(hint.checks) <= set(known.done)
+
+
+def _about(exercise: Exercise, index: int, known: StepProgress) -> str:
+    """Return for which failed check the hint is."""
+    titles = {check.id: check.title for check in exercise.checks if not check.hidden}
+    about = [titles[check] for check in known.failed if check in exercise.hints[index].checks and check in titles]
+    return f', for "{about[0]}"' if about else ""
+
+
+def _whole(exercise: Exercise, part: str | None) -> str:
+    return f"Part {_part(exercise, part)}) of {exercise.id}" if part else exercise.id

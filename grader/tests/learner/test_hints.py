@@ -1,0 +1,114 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+from typer.testing import CliRunner
+
+from grader.checks.exercises import find_exercise
+from grader.cli import app
+from grader.errors import UsageError
+from grader.exercise.model import catalogue
+from grader.learner import hints, progress, steps
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+LAST = "07-challenges"
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A learner of this test's own."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.delenv("XDG_STATE_HOME", raising=False)
+    monkeypatch.delenv("ROS2_WORKSPACE", raising=False)
+    return tmp_path
+
+
+def verdict(step: str, *, failed: tuple[str, ...] = (), done: tuple[str, ...] = (), passed: bool = False) -> None:
+    """What a learner's progress holds after a verdict."""
+
+    def change(before: progress.Progress) -> progress.Progress:
+        known = replace(before.step(step), failed=failed, done=done, passed=passed)
+        return before.at(step).with_step(step, known)
+
+    progress.update(progress.workspace_of(None), change)
+
+
+def texts(step: str, check: str) -> list[str]:
+    """The hints that help with a check."""
+    return [hint.text for hint in find_exercise(step).hints if check in hint.checks]
+
+
+def test_before_the_first_verdict_hints_come_in_their_order_and_the_last_one_again() -> None:
+    begun = steps.start("01", None)
+    given = begun.exercise.hints
+    for index, told in enumerate(hints.hint(None, None) for _ in range(len(given) + 2)):
+        assert told.startswith(f"Hint {min(index + 1, len(given))} of {len(given)}: ")
+        assert told.endswith(given[min(index, len(given) - 1)].text)
+
+
+@pytest.mark.parametrize("check", ["topic", "values", "rate", "wall", "timer"])
+def test_after_a_verdict_a_hint_for_the_check_that_failed_comes_first(check: str) -> None:
+    verdict("03-circle-publisher", failed=(check,))
+    helps = texts("03-circle-publisher", check)
+    for text in helps:
+        told = hints.hint(None, None)
+        assert told.endswith(text)
+        assert ', for "' in told
+    others = [hint.text for hint in find_exercise("03").hints if hint.text not in helps]
+    assert hints.hint(None, None).endswith(others[0])
+
+
+def test_the_first_failed_check_comes_first() -> None:
+    verdict(LAST, failed=("goal", "square"))
+    assert [hints.hint(None, None)[-40:] for _ in range(2)] == [
+        text[-40:] for text in (*texts(LAST, "goal"), *texts(LAST, "square"))
+    ]
+
+
+def test_when_all_were_read_it_is_one_for_what_fails() -> None:
+    verdict(LAST, failed=("square",))
+    for _ in find_exercise(LAST).hints:
+        hints.hint(None, None)
+    assert hints.hint(None, None).endswith(texts(LAST, "square")[-1])
+
+
+def test_what_is_done_gets_no_hint() -> None:
+    verdict("04-package-files", done=("depends-rclpy", "depends-geometry-msgs"), failed=("entry-point",))
+    given = find_exercise("04").hints
+    told = {hints.hint(None, None).split(": ", 1)[1] for _ in range(9)}
+    assert told == {hint.text for hint in given[1:]}
+    verdict("04-package-files", passed=True)
+    assert hints.hint(None, None) == "04-package-files has passed: there is nothing left to hint at."
+
+
+@pytest.mark.parametrize("words", [("07", "d"), ("7", "D"), ("07", "d)"), ("d",)])
+def test_a_part_has_hints_of_its_own(words: tuple[str, ...]) -> None:
+    verdict(LAST, failed=("rate",))
+    told = CliRunner().invoke(app, ["hint", *words]).stdout
+    assert told.startswith("Hint 1 of 1: d) ")
+
+
+def test_a_part_that_is_done_says_so() -> None:
+    verdict(LAST, done=("goal", "goal-subscription"), failed=("square",))
+    assert hints.hint("07", None, "d") == "Part d) of 07-challenges has passed: there is nothing left to hint at."
+
+
+def test_a_part_that_there_is_not_is_told_with_those_that_there_are() -> None:
+    with pytest.raises(UsageError, match=r"07-challenges has the parts a, b, c and d: 'e' is none of them\."):
+        hints.hint("07", None, "e")
+    with pytest.raises(UsageError, match="03-circle-publisher has no parts: 'a'"):
+        hints.hint("03", None, "a")
+
+
+def test_hints_without_a_step_say_how_to_begin() -> None:
+    with pytest.raises(UsageError, match="grader start 01"):
+        hints.hint(None, None)
+
+
+@pytest.mark.parametrize("step", list(catalogue()))
+def test_every_check_that_a_starting_point_fails_has_a_hint(step: str) -> None:
+    assert all(texts(step, check) for check in find_exercise(step).unsolved)
