@@ -34,6 +34,8 @@ CONDUCTORS_ROOMS = ("common", "ros", "sandbox", "trial", "turtlesim")
 """What grader.trial.conductor imports from, beside the package's own modules."""
 MOST_MEMORY = 3 * 1024 * bubblewrap.MIB
 """Address space of the conductor (bytes)."""
+MOST_ANSWER = 256 * bubblewrap.MIB
+"""What the conductor may say at once (bytes): the messages of a recording are most of it."""
 
 
 @dataclass(frozen=True)
@@ -226,7 +228,7 @@ class Trial:
 
     def _answer(self, key: str) -> Any:  # noqa: ANN401 - JSON
         assert self._process.stdout is not None
-        line = self._process.stdout.readline()
+        line = self._process.stdout.readline(MOST_ANSWER)
         answer = json.loads(line) if line.endswith(b"\n") else {}
         if "doubt" in answer:
             raise WallTimeNeeded(answer["doubt"])

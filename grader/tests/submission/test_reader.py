@@ -1,0 +1,125 @@
+"""The process that reads what students wrote: its limits, and what comes back from it."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import resource
+import threading
+import time
+from pathlib import Path
+from typing import NoReturn
+
+import pytest
+
+from grader.checks.outcome import Finding, Status
+from grader.errors import MachineError, TooLargeError, UnreadableError, UsageError
+from grader.submission import reader
+from grader.submission.reader import read
+from grader.submission.where import Where
+
+
+def add(one: int, other: int = 1) -> int:
+    return one + other
+
+
+def found() -> tuple[Finding, Path, frozenset[str], dict[str, bytes]]:
+    return Finding(Status.FAILED, "seen", where=Where("a.py", 3)), Path("/x"), frozenset("ab"), {"a": b"b"}
+
+
+def refuses() -> NoReturn:
+    message = "not so"
+    raise UsageError(message)
+
+
+def breaks() -> NoReturn:
+    message = "odd"
+    raise KeyError(message)
+
+
+def spins() -> NoReturn:
+    while True:
+        pass
+
+
+def sleeps() -> None:
+    time.sleep(600)
+
+
+def hoards() -> int:
+    return len(bytearray(2 * reader.MEMORY))
+
+
+def nests() -> object:
+    return nests()
+
+
+def crashes() -> object:
+    return ctypes.string_at(0)
+
+
+def overflows() -> bytes:
+    return bytes(reader.MOST_ANSWER)
+
+
+def test_what_is_read_comes_back() -> None:
+    assert read(add, 1, other=3) == 4
+    assert read(found) == found()
+
+
+def test_it_is_read_in_another_process_and_in_one_only() -> None:
+    ours = os.getpid()
+    theirs = read(os.getpid)
+    inner, outer = read(lambda: (read(os.getpid), os.getpid()))
+    assert theirs != ours
+    assert inner == outer != ours
+
+
+def test_errors_of_ours_come_back_and_others_are_the_submissions() -> None:
+    with pytest.raises(UsageError, match="not so"):
+        read(refuses)
+    with pytest.raises(UnreadableError, match="KeyError"):
+        read(breaks)
+    with pytest.raises(UnreadableError, match="SIGSEGV"):
+        read(crashes)
+
+
+@pytest.mark.parametrize("function", [hoards, nests, overflows, spins, sleeps])
+def test_what_takes_too_much_is_too_large(function: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reader, "CPU_S", 1)
+    if function is sleeps:
+        monkeypatch.setattr(reader, "TIMEOUT_S", 0.5)
+    with pytest.raises(TooLargeError, match=r"too large to be read|nested too deeply"):
+        read(function)  # type: ignore[arg-type]
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)  # nobody is left
+
+
+def test_the_limits_are_of_the_child_alone() -> None:
+    kinds = (resource.RLIMIT_AS, resource.RLIMIT_CPU, resource.RLIMIT_FSIZE)
+    before = [resource.getrlimit(kind) for kind in kinds]
+    inside = read(lambda: [resource.getrlimit(kind)[0] for kind in kinds])
+    assert [resource.getrlimit(kind) for kind in kinds] == before
+    assert inside[1:] == [reader.CPU_S, 0]
+    assert reader.MEMORY < inside[0] < 64 * reader.MEMORY
+
+
+def test_it_holds_no_descriptor_of_its_parents() -> None:
+    with Path("/dev/null").open("rb"):
+        assert len(read(os.listdir, "/proc/self/fd")) <= 5  # the standard ones, its pipe, and the listing itself
+
+
+def test_threads_read_at_the_same_time() -> None:
+    read_by: list[int] = []
+    threads = [threading.Thread(target=lambda: read_by.append(read(add, 1))) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert read_by == [2] * 8
+
+
+@pytest.mark.parametrize("value", [os.system, Path.unlink, threading.Thread, lambda: 1])
+def test_nothing_but_plain_data_is_taken(value: object) -> None:
+    with pytest.raises(MachineError, match=r"handed over|cannot be taken"):
+        read(lambda: value)

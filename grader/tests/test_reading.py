@@ -1,0 +1,109 @@
+"""Nothing of ours reads what a student wrote but in the process made for that: submission/reader.py."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests.test_process_starts import GRADER, in_functions, sources
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+READS = {
+    "read_tree", "read_folder", "find_package", "read_code", "read_module", "read_manifest", "read_setup_py",
+    "read_answers", "read_tar", "read_entry_points", "wall_clues", "uses_of", "judge", "judge_early", "archive.load",
+    "parse_package_string", "read_payloads", "read_class", "read_notebook", "nbformat.read", "zipfile.ZipFile",
+    "tarfile.open", "tokenize.tokenize", "tomllib.loads", "ast.parse", "json.loads", "json.load", "ET.fromstring",
+    "yaml.safe_load", "pickle.load", "pickle.loads",
+}  # fmt: skip
+"""Functions that read what they are given, as the source calls them."""
+NO_SUBMISSIONS = {"benchmarks", "exercise", "graph", "ros", "ros2", "setup", "turtlesim", "view"}
+"""Rooms that no submission comes into."""
+INSIDE = {"checks", "evidence", "submission"}
+"""Rooms in which the process reads that the door makes."""
+BEHIND_THE_DOOR = {
+    ("clues", "wall_clues"): "judging",
+    ("cli", "_judged"): "cli",
+    ("html_class", "read_class"): "html_class",
+    ("judging", "_all"): "judging",
+    ("judging", "_early"): "judging",
+    ("judging", "_first_clock"): "judging",
+    ("json", "from_json"): "html_class, and results of our own",
+    ("put_together", "_together"): "put_together",
+    ("put_together", "_with"): "put_together",
+    ("put_together", "_worked_on"): "put_together",
+    ("rebuild", "_with_texts"): "rebuild",
+    ("scores", "_scores_in"): "scores",
+    ("unpack", "_tar"): "archives: a process of its own, with limits",
+    ("unpack", "_zip"): "archives: a process of its own, with limits",
+    ("workspace", "_described"): "workspace",
+    ("workspace", "_entry_points"): "workspace",
+}
+"""Other functions that read there, and the module that has the door."""
+OURS = {
+    ("archives", "_why"): "what unpack.py says",
+    ("check", "_graded"): "what the notebook's grader says",
+    ("conductor", "_conduct"): "an order of trial.py",
+    ("conductor", "main"): "an order of trial.py",
+    ("dask_engine", "perform_here"): "a task of the instructor's command",
+    ("gradescope", "build_archive"): "our own archive, written",
+    ("judging", "_judge"): "a submission that is not read any more",
+    ("launcher", "main"): "an order of the conductor",
+    ("node_process", "_find_pid"): "what bubblewrap says",
+    ("progress", "_read"): "the learner's state",
+    ("release", "_read"): "a solution",
+    ("released", "released_notebook"): "a notebook of the course",
+    ("results", "load"): "a result of our own",
+    ("source", "refreshed"): "a notebook of the course",
+    ("trial", "_answer"): "what the conductor says",
+    ("workspace", "_pack"): "our own stream, written",
+    ("workspace", "add_missing"): "a starting point",
+}
+"""Functions that read what is no student's, and what that is."""
+
+
+def reading(tree: ast.Module) -> Iterator[tuple[str, str]]:
+    """The functions that read, and what they call for that."""
+    for function, node in in_functions(tree):
+        if isinstance(node, ast.Call):
+            name = ast.unparse(node.func)
+            if name in READS or name.rpartition(".")[2] in READS:
+                yield function, name
+
+
+def test_all_reading_is_behind_the_door_or_of_what_is_ours() -> None:
+    found = {
+        (path.stem, function): f"{path.relative_to(GRADER)}, {function}: {name}"
+        for path, tree in sources()
+        if path.relative_to(GRADER).parts[0] not in INSIDE | NO_SUBMISSIONS
+        for function, name in reading(tree)
+    }
+    known = {**BEHIND_THE_DOOR, **OURS}
+    unknown = [told for where, told in found.items() if where not in known]
+    assert (unknown, known.keys() - found.keys() - {("clues", "wall_clues")}) == ([], set()), "see submission/reader.py"
+
+
+def test_the_door_is_where_it_is_said_to_be() -> None:
+    doors = {
+        path.stem
+        for path, tree in sources()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module in ("grader.submission.reader", "grader.submission")
+        for alias in node.names
+        if alias.name in ("read", "reader")
+    }
+    behind = {module for module in BEHIND_THE_DOOR.values() if re.fullmatch(r"\w+", module)}
+    assert behind <= doors
+    assert {"package", "content", "confined", "compare", "html", "html_notebook", "picture"} <= doors
+
+
+NEW = ("tree.read_tree(folder)", "import json\njson.loads(notebook)", "judge(evidence)")
+
+
+@pytest.mark.parametrize("code", NEW)
+def test_a_new_place_that_reads_would_be_found(code: str) -> None:
+    assert [function for function, _ in reading(ast.parse(f"def function():\n    pass\n{code}"))] == [""]
