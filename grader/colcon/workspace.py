@@ -55,6 +55,9 @@ exit $code
 _COLCON = r"""
 import os, subprocess, sys
 from colcon_core.command import main
+# colcon loads these when it builds, and goes on without what cannot be loaded: the package would be to blame.
+import colcon_core.shell.dsv, colcon_core.shell.sh, colcon_core.task.python.build
+import colcon_ros.package_identification.ros, colcon_ros.task.ament_python.build
 os.write(2, b"colcon-is-ready\n")
 if subprocess.call(["tar", "-x", "-f", "-", "-C", "src"]):
     sys.exit(90)
@@ -147,7 +150,8 @@ def _read(done: process.Finished) -> Built:
         if "No module named 'colcon_core'" in said:
             message = "colcon is not installed in this Python: `make demo` in the course's folder installs it."
         else:
-            message = f"The build could not be started: {said or 'no message'}. `grader doctor` tells what is missing."
+            why = said.splitlines()[-1].rstrip(".") if said else "no message"
+            message = f"The build could not be started: {why}. `grader doctor` tells what is missing."
         raise MachineError(message)
     built, cut = read(_described, done)
     return Built(built, b"" if cut else done.stdout)

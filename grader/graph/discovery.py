@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 
 QUIET_S = 0.2
 """The graph has settled when nothing new was heard for this long."""
-DEADLINE_S = 3.0
-"""For participants that are there (their ports are open) but say nothing, as a stopped process."""
+DEADLINE_S = 4.0
+"""For participants that are there (their ports are open) but say nothing, as a stopped process. A node without our
+profile whose answer was lost announces itself 3 s later (leaseAnnouncement), and then tells its endpoints."""
 NOTHING_THERE_S = 0.5
 """How long to listen where it cannot be known whether anybody is there: as long as the real one does."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
@@ -128,26 +129,29 @@ class Settling:
         if graph != self._seen:
             self._seen, self._changed = graph, time.monotonic()
 
-    def settle(self, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> None:
+    def settle(self, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
         """Wait until nothing new came for 0.2 s and all participants of this machine have told what they have.
 
-        `enough` ends the wait earlier. `deadline_s` is the longest wait, if the caller named one.
+        `enough` ends the wait earlier. `deadline_s` is the longest wait, if the caller named one. Returns whether that
+        was so in time.
         """
         begun = time.monotonic()
         most = deadline_s if deadline_s is not None else DEADLINE_S
         while True:
             self.observe()
             now = time.monotonic()
-            if enough() or now - begun >= most:
-                return
+            if enough():
+                return True
             if now - self._changed >= QUIET_S and _complete(self._node, now - self._begun, deadline_s):
-                return
+                return True
+            if now - begun >= most:
+                return False
             time.sleep(_POLL_S)
 
 
-def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> None:
-    """Wait until the graph that a new node sees has settled, or until it is `enough`."""
-    Settling(node).settle(enough, deadline_s)
+def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
+    """Wait until the graph that a new node sees has settled, or until it is `enough`; returns whether in time."""
+    return Settling(node).settle(enough, deadline_s)
 
 
 def published(node: Node, topic: str) -> bool:

@@ -34,6 +34,13 @@ _UNWATCHED = (
     "OPENBLAS_NUM_THREADS",
 )
 """What an environment holds for a run that nobody watches; a user's own nodes have what the user wants."""
+_THEIRS = frozenset(
+    {
+        *("HOME", "LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"),
+        *("FASTDDS_BUILTIN_TRANSPORTS", "FASTRTPS_DEFAULT_PROFILES_FILE"),
+    }
+)
+"""What stays as the user has set it."""
 _PYTHON_LIB = Path(f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages")
 
 
@@ -156,10 +163,15 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
     """The environment of a node that a user starts for themselves: their own, and what ROS 2 needs on top.
 
     What the user has set stays theirs, workspaces that they sourced are searched first. `domain` is the one to use,
-    else what they have set, else one of the user's own: classmates on one machine must not drive each other's turtles.
+    else what they have set. Else it is one of the user's own, since classmates on one machine must not drive each
+    other's turtles. A ROS 2 that they sourced keeps its own rule, or the programs of this environment and those of a
+    terminal where nothing but that ROS 2 was sourced would never meet: domain 0, as far as its setup.bash says.
     """
     home = Path(env.get("HOME", "/"))
-    needed = environment(ros, home=home, domain=domain_of(os.getuid()))
+    own = 0 if ros.kind == "sourced" else domain_of(os.getuid())
+    needed = environment(ros, home=home, domain=own)
+    if ros.kind == "sourced":
+        del needed["ROS_AUTOMATIC_DISCOVERY_RANGE"]
     for name in _UNWATCHED:
         needed.pop(name, None)
     if " " in str(ros.python):
@@ -167,12 +179,22 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
         needed["COLCON_PYTHON_EXECUTABLE"] = str(ros.python.resolve())
     if "ROS_LOG_DIR" not in env and "ROS_HOME" not in env and not os.access(home, os.W_OK):
         needed["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir(), f"ros-log-{os.getuid()}"))
-    theirs = {"HOME", "LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"}
     joined = {name: _joined(name, needed, env) for name in SEARCHED if name in needed or name in env}
     joined["PATH"] = _users_path(ros, env)
-    kept = {key: value for key, value in env.items() if key in theirs or key not in needed}
+    kept = {key: value for key, value in env.items() if key in _THEIRS or key not in needed}
     chosen = {"ROS_DOMAIN_ID": str(domain)} if domain is not None else {}
     return {**needed, **kept, **joined, **chosen}
+
+
+def who_hears(env: Mapping[str, str]) -> str:
+    """In which domain the nodes of an environment are, and who hears them, for whoever starts one."""
+    domain = env.get("ROS_DOMAIN_ID") or "0"
+    reach = env.get("ROS_AUTOMATIC_DISCOVERY_RANGE") or "SUBNET"
+    if reach == "LOCALHOST" or env.get("ROS_LOCALHOST_ONLY") == "1":
+        return f"ROS domain {domain}, heard on this machine only"
+    if reach == "SUBNET":
+        return f"ROS domain {domain}, heard in the whole network (ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST limits it)"
+    return f"ROS domain {domain}, ROS_AUTOMATIC_DISCOVERY_RANGE={reach}"
 
 
 def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str:

@@ -13,7 +13,7 @@ from grader.errors import MachineError, UsageError
 from grader.ros import installation, underlay
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
 HIGHEST_DOMAIN = 101
 COMMANDS = ("ros2", "rqt_graph")
@@ -36,21 +36,28 @@ def users_environment(
     return installation.users_environment(ros, env, domain)
 
 
-def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> str:
-    """Shell code, for bash, zsh and sh, that turns `env` into `wanted`, and completes the words of our commands."""
+def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sourced: bool = False) -> str:
+    """Shell code, for bash, zsh and sh, that turns `env` into `wanted`, and completes the words of our commands.
+
+    `sourced`: the ROS 2 is not ours, and may have an rqt_graph of its own.
+    """
     lines = [f"# For `source <(grader env)`: ROS 2 Jazzy, in domain {wanted['ROS_DOMAIN_ID']}."]
     lines += [f"export {name}={shlex.quote(value)}" for name, value in wanted.items() if env.get(name) != value]
     lines += [
-        # A sourced ROS 2 completes its own `ros2`. zsh has no words to complete before its own set-up ran.
+        # zsh has no words to complete before its own set-up ran.
         'if [ -n "${ZSH_VERSION-}" ]; then',
         "  whence compdef > /dev/null || { autoload -Uz compinit && compinit -u; }",
         "fi",
+        # A sourced ROS 2 completes its own `ros2`.
         'if [ -n "${ZSH_VERSION-}" ] || { [ -n "${BASH_VERSION-}" ] && ! complete -p ros2 > /dev/null 2>&1; }; then',
-        f"  eval {shlex.quote(_completion())}",
-        "fi",
+        f"  eval {shlex.quote(_completion(COMMANDS))}",
+        f'elif [ -n "${{BASH_VERSION-}}" ]; then eval {shlex.quote(_completion(COMMANDS[1:]))}; fi',
         f'if [ -n "${{ZSH_VERSION-}}" ]; then eval {shlex.quote(_completion_of_grader("zsh"))}',
         f'elif [ -n "${{BASH_VERSION-}}" ]; then eval {shlex.quote(_completion_of_grader("bash"))}; fi',
     ]
+    if sourced:
+        # The one that a sourced ROS 2 may have comes first on PATH, and does not know --text and --output.
+        lines.append(f'rqt_graph() {{ {shlex.quote(str(Path(sys.prefix, "bin/rqt_graph")))} "$@"; }}')
     return "\n".join(lines) + "\n"
 
 
@@ -86,8 +93,8 @@ def _completion_of_grader(shell: str) -> str:
     return get_completion_script(prog_name="grader", complete_var="_GRADER_COMPLETE", shell=shell)
 
 
-def _completion() -> str:
+def _completion(commands: Sequence[str]) -> str:
     from argcomplete.shell_integration import shellcode
 
-    made: str = shellcode(list(COMMANDS), shell="bash")
+    made: str = shellcode(list(commands), shell="bash")
     return made

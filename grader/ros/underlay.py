@@ -175,7 +175,7 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
         _run(["cmake", "--build", str(folder / "build"), "--parallel", str(os.cpu_count() or 1)], env, tell)
         # Staged, so that all paths inside name the final place.
         _run(["cmake", "--install", str(folder / "build")], {**env, "DESTDIR": f"{folder}/staged"}, tell)
-        # Compiled ros, since those who use it may not be allowed to write into it.
+        # Compiled here, since those who use it may not be allowed to write into it.
         compiling = interpreter(
             *("-m", "compileall", "-q", "-s", f"{folder}/staged", str(staged / "lib")), python=str(ros.python), env=env
         )

@@ -28,6 +28,7 @@ ROOT = Path(__file__).resolve().parents[2]
 VENV = ROOT / ".venv"
 PYTHON = VENV / "bin/python3"
 STAMP = VENV / "course-setup.json"
+WHEELS = "wheels"
 PARTS = {
     "learner": ["setup", "grader", "ros"],
     "cluster": ["setup", "grader", "ros", "cluster"],
@@ -42,7 +43,7 @@ class Stamp(NamedTuple):
 
     root: str
     ros: str
-    """The prefix of the sourced ROS 2, or "wheels"."""
+    """The prefix of the sourced ROS 2, or WHEELS."""
     python: str
     version: List[int]
     digest: str
@@ -74,11 +75,15 @@ def digest() -> str:
     return whole.hexdigest()
 
 
-def stands(stamp: Stamp, ros: str, wanted: Optional[machine.Python]) -> bool:
+def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> bool:
     """Whether .venv is where it was made, for this ROS 2, and its Python still the one it was made with."""
     now = machine.probe(str(PYTHON))
     same = now is not None and (now.path, list(now.version)) == (stamp.python, stamp.version)
-    return same and (stamp.root, stamp.ros) == (str(ROOT), ros) and (wanted is None or wanted.path == stamp.python)
+    if not same or stamp.root != str(ROOT) or (wanted is not None and wanted.path != stamp.python):
+        return False
+    if ros is None or now is None:
+        return stamp.ros == WHEELS
+    return os.path.realpath(stamp.ros) == os.path.realpath(ros.prefix) and not machine.for_ros(now, ros).lacks
 
 
 def say(text: str) -> None:
@@ -114,11 +119,16 @@ def look(
     if made:
         return None, tools
     version = ros.python if ros else None
-    pythons = [wanted] if wanted else machine.find_pythons(path)
+    pythons = iter([wanted]) if wanted else machine.find_pythons(path)
+    refused = []
+    if ros:
+        found = [machine.for_ros(python, ros) for python in pythons]
+        refused = [python for python in found if python.lacks]
+        pythons = iter(found)
     python = machine.choose_python(pythons, root=os.getuid() == 0, wanted=version)
     manager = packages.find_manager(path)
     newer = manager.newer if manager and Path("/usr/bin/python3").exists() else ""
-    return python, machine.missing_of_python(python, version, newer) + tools
+    return python, machine.missing_of_python(python, version, newer, refused) + tools
 
 
 def tell_lacks(needs: Sequence[Need], why: str) -> bool:
@@ -189,9 +199,9 @@ def main(arguments: Sequence[str]) -> int:
 
 def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> int:
     """Look at the machine, make .venv and fill it, each only if it is to be done; returns the exit code."""
-    kind = ros.prefix if ros else "wheels"
+    kind = ros.prefix if ros else WHEELS
     stamp = read_stamp()
-    made = stamp is not None and stands(stamp, kind, wanted)
+    made = stamp is not None and stands(stamp, ros, wanted)
     unfinished = not (stamp and made and stamp.digest == digest() and set(parts) <= set(stamp.parts))
     python, needs = look(ros, wanted, parts, made=made)
     why = ""

@@ -42,7 +42,7 @@ def env(domain: Domain = None) -> None:
     """Print shell code that puts ROS 2 into this shell: for `source <(grader env)`, in bash and zsh."""
     from grader.report.progress import progress
     from grader.ros import shell
-    from grader.ros.installation import find_ros
+    from grader.ros.installation import find_ros, who_hears
 
     try:
         with progress() as tell:
@@ -53,17 +53,19 @@ def env(domain: Domain = None) -> None:
         raise
     ros = find_ros()
     if ros.kind == "sourced":
-        print(f"The ROS 2 that is sourced in this terminal is used: {ros.prefix}", file=sys.stderr)
-    sys.stdout.write(shell.code(wanted))
+        used = f"The ROS 2 that is sourced in this terminal is used: {ros.prefix}"
+        print(f"{used} ({who_hears(wanted)})", file=sys.stderr)
+    sys.stdout.write(shell.code(wanted, sourced=ros.kind == "sourced"))
 
 
 def shell(domain: Domain = None) -> None:
     """Open a shell in which ROS 2 is there, until you type exit."""
     from grader.report.progress import progress
     from grader.ros import shell as shells
+    from grader.ros.installation import who_hears
 
     with progress() as tell:
         wanted = shells.users_environment(domain, tell)
-    print(f"A shell with ROS 2, in domain {wanted['ROS_DOMAIN_ID']}. To leave it: exit")
+    print(f"A shell with ROS 2, in {who_hears(wanted)}. To leave it: exit")
     sys.stdout.flush()
     shells.open_shell(wanted)

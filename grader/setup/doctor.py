@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 import platform
-import shlex
 import shutil
 import subprocess
 import sys
@@ -15,18 +14,19 @@ import sysconfig
 import tempfile
 from dataclasses import dataclass
 from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from grader.common import packages, xdg
-from grader.common.interpreter import interpreter
 from grader.errors import MachineError
 from grader.ros import underlay
-from grader.ros.installation import DISTRO, FASTDDS_PROFILE, Ros, environment, find_ros
+from grader.ros.installation import DISTRO, Ros, find_ros
 from grader.sandbox import bubblewrap
 from grader.sandbox.control_group import control_group
 from grader.setup import bootstrap, machine
 from grader.setup.shares import shares
+from grader.setup.talk import why_not_heard
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -38,30 +38,6 @@ GIB = 1024**3
 LEAST_DISK = GIB // 4
 LITTLE_DISK = 2 * GIB
 LITTLE_MEMORY = 1 * GIB
-
-_TALKER = """
-import rclpy, turtlesim.msg, turtlesim.srv
-from std_msgs.msg import String
-rclpy.init()
-node = rclpy.create_node("talker")
-publisher = node.create_publisher(String, "doctor", 10)
-node.create_timer(0.05, lambda: publisher.publish(String(data="well")))
-rclpy.spin(node)
-"""
-_LISTENER = """
-import sys, time, rclpy
-from std_msgs.msg import String
-rclpy.init()
-node = rclpy.create_node("listener")
-heard = []
-node.create_subscription(String, "doctor", heard.append, 10)
-deadline = time.monotonic() + 20.0
-while not heard and time.monotonic() < deadline:
-    rclpy.spin_once(node, timeout_sec=0.5)
-sys.exit(None if heard else "nothing was heard of it within 20 s")
-"""
-DOMAIN = 101
-"""ROS domain of the nodes without a cell: the last that a trial would take."""
 
 
 @dataclass(frozen=True)
@@ -139,15 +115,18 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
         yield Line("set-up", "not made by `make`; the lock file's versions are not certain")
         return
     ros = machine.sourced_ros(env, bootstrap.VENV)
-    now = ros.prefix if ros else "wheels"
+    now = ros.prefix if ros else bootstrap.WHEELS
+    made_for = "the course's own ROS 2" if stamp.ros == bootstrap.WHEELS else stamp.ros
     if stamp.digest != bootstrap.digest():
         yield Line("set-up", "older than requirements.lock or pyproject.toml", "advice", "make demo")
-    elif stamp.ros != now:
-        names = {"wheels": "the course's own ROS 2"}
-        seen = f"made for {names.get(stamp.ros, stamp.ros)}, and now it is {names.get(now, now)}"
-        yield Line("set-up", seen, "broken", "make demo, with the ROS 2 sourced (or not) that you want to use")
-    else:
+    elif os.path.realpath(stamp.ros) == os.path.realpath(now):
         yield Line("set-up", "as the lock file says")
+    elif now == bootstrap.WHEELS:
+        todo = f"source {stamp.ros}/setup.bash; or make demo, for the course's own ROS 2"
+        yield Line("set-up", f"made for {made_for}, which is not sourced", "broken", todo)
+    else:
+        seen = f"made for {made_for}, and {now} is sourced and used"
+        yield Line("set-up", seen, "advice", "nothing, if the lines below are ok; else make demo, with it sourced")
 
 
 def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
@@ -178,6 +157,8 @@ def look_at_colcon() -> Line:
         version = metadata.version("colcon-core")
     except metadata.PackageNotFoundError:
         return Line("colcon", "not installed in this Python", "broken", "make demo")
+    if find_spec("em") is None:
+        return Line("colcon", f"colcon-core {version}, which does not start without empy", "broken", "make demo")
     return Line("colcon", f"colcon-core {version}, colcon-ros {metadata.version('colcon-ros')}")
 
 
@@ -244,43 +225,14 @@ def look_at_node(ros: Ros, *, confined: bool = True) -> Line:
 
     `confined`: it is in a cell, and the other outside of it.
     """
-    with tempfile.TemporaryDirectory(prefix="grader-") as home:
-        if confined:
-            command, env = _talk_from_a_cell(ros), dict(os.environ)
-        else:
-            env = environment(ros, home=Path(home), domain=DOMAIN)
-            talker, listener = _talker_and_listener(ros, env)
-            command = ["sh", "-c", f"setpriv --pdeathsig=KILL {shlex.join(talker)} & exec {shlex.join(listener)}"]
-        try:
-            done = subprocess.run(
-                command, capture_output=True, text=True, timeout=60, check=False, stdin=subprocess.DEVNULL, env=env
-            )
-            said = done.stderr.strip().splitlines()[-1:] or [f"exit code {done.returncode}"]
-            if done.returncode == 0:
-                return Line("a node", "starts in a cell and is heard outside" if confined else "starts and is heard")
-        except subprocess.TimeoutExpired:
-            said = ["no answer within 60 s"]
+    why = why_not_heard(ros, confined=confined)
+    if why is None:
+        return Line("a node", "starts in a cell and is heard outside" if confined else "starts and is heard")
     closed = machine.closed_folder(os.path.realpath(sys.executable))
     todo = "please report this, with all these lines"
     if closed and os.getuid() == 0:
         todo += f"; it may help that other users can enter {closed}, where this Python lies"
-    return Line("a node", f"is not heard{' from a cell' if confined else ''}: {said[0]}", "broken", todo)
-
-
-def _talk_from_a_cell(ros: Ros) -> list[str]:
-    env = environment(ros, home=bubblewrap.HOME, domain=None)
-    view = bubblewrap.ros_view(ros, FASTDDS_PROFILE)
-    talker, listener = _talker_and_listener(ros, env)
-    confined = bubblewrap.cell(talker, view, env=env, network=True)
-    # The talker goes when the listener does: cells die with their parent.
-    script = f"{shlex.join(confined)} & exec {shlex.join(listener)}"
-    return bubblewrap.room(["sh", "-c", script], view, env=env)
-
-
-def _talker_and_listener(ros: Ros, env: Mapping[str, str]) -> tuple[list[str], list[str]]:
-    python = str(ros.python)
-    talker = interpreter("-c", _TALKER, python=python, env=env, searches=True)
-    return talker.argv, interpreter("-c", _LISTENER, python=python, env=env, searches=True).argv
+    return Line("a node", f"is not heard{' from a cell' if confined else ''}: {why}", "broken", todo)
 
 
 def _distribution() -> str:

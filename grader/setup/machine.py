@@ -28,6 +28,17 @@ CONTAINER = """\
           bash -c "apt-get update && apt-get install -y make python3 && CI=true make demo; exec bash"
   - a ROS 2 Jazzy of your own, on any Linux: source /opt/ros/jazzy/setup.bash, then run make again."""
 
+LEFT_TO_ROS = {"numpy": "python3-numpy", "em": "python3-empy"}
+"""Modules that the set-up leaves to a sourced ROS 2 (lock.SOURCED_BRINGS), and the Debian packages that bring them."""
+_IMPORTS = """
+import importlib, json, sys
+def lacks(name):
+    try:
+        importlib.import_module(name)
+    except Exception:
+        return True
+print(json.dumps([name for name in sys.argv[1:] if lacks(name)]))
+"""
 _PROBE = """
 import importlib.util, json, os, platform, sys, sysconfig
 print(json.dumps({
@@ -48,6 +59,8 @@ class Python(NamedTuple):
     cpython: bool
     venv: bool
     headers: bool
+    lacks: Tuple[str, ...] = ()
+    """The modules of LEFT_TO_ROS that it cannot import."""
 
     @property
     def is_systems(self) -> bool:
@@ -139,6 +152,20 @@ def probe(executable: str) -> Optional[Python]:
     return Python(answer["path"], tuple(answer["version"]), answer["cpython"], answer["venv"], answer["headers"])
 
 
+def for_ros(python: Python, ros: SourcedRos) -> Python:
+    """The same interpreter with what it lacks for this ROS 2; one of another version is not asked."""
+    if python.version[:2] != ros.python or not python.cpython:
+        return python
+    # As in .venv, which sees the system's packages and nobody's own.
+    env = {**os.environ, "PYTHONNOUSERSITE": "1"}
+    asking = interpreter("-c", _IMPORTS, *LEFT_TO_ROS, python=python.path, env=env, searches=True)
+    try:
+        output = subprocess.check_output(asking.argv, env=asking.env, stderr=subprocess.DEVNULL, timeout=60)
+        return python._replace(lacks=tuple(json.loads(output.decode())))
+    except (OSError, ValueError, subprocess.SubprocessError):
+        return python._replace(lacks=tuple(LEFT_TO_ROS))
+
+
 def find_pythons(path: str) -> Iterator[Python]:
     """Interpreters on PATH and in the system's folders: `python3` first, then by name from the newest."""
     folders = list(dict.fromkeys([*filter(None, path.split(os.pathsep)), *SYSTEM_PATH]))
@@ -159,14 +186,14 @@ def choose_python(
     Root gets one that others can run too (not below its own home), since the sandbox gives up root's rights.
     `wanted` is the only (major, minor) that will do: the one a sourced ROS 2 was built for.
     """
-    best: Optional[Tuple[Tuple[bool, bool], Python]] = None
+    best: Optional[Tuple[Tuple[bool, bool, bool], Python]] = None
     for python in pythons:
         fits = python.version[:2] == wanted if wanted else OLDEST <= python.version[:2] <= NEWEST
-        lacks = not (python.venv and python.headers)
+        lacks = not (python.venv and python.headers) or bool(python.lacks)
         # What a Python that is not the system's lacks, no package manager could add.
         if not python.cpython or not fits or (lacks and not python.is_systems):
             continue
-        rank = (root and closed_folder(python.path) is not None, lacks)
+        rank = (bool(python.lacks), root and closed_folder(python.path) is not None, lacks)
         if best is None or rank < best[0]:
             best = (rank, python)
         if not any(rank):
@@ -198,15 +225,23 @@ def missing_of_tests(path: str) -> List[Need]:
 
 
 def missing_of_python(
-    python: Optional[Python], wanted: Optional[Tuple[int, int]] = None, newer: str = ""
+    python: Optional[Python],
+    wanted: Optional[Tuple[int, int]] = None,
+    newer: str = "",
+    refused: Sequence[Python] = (),
 ) -> List[Need]:
     """What the chosen Python lacks; all of it, if there is none.
 
-    `newer` is the package of a Python that the system has beside one that is too old.
+    `newer` is the package of a Python that the system has beside one that is too old, `refused` are those of the
+    `wanted` version that cannot import what the sourced ROS 2 needs.
     """
     if python is None:
         name = f"python{wanted[0]}.{wanted[1]}" if wanted else newer or "python3"
         what = f"CPython {wanted[0]}.{wanted[1]}" if wanted else f"CPython 3.{OLDEST[1]} to 3.{NEWEST[1]}"
+        if refused:
+            why = "; ".join("{} cannot import {}".format(p.path, " and ".join(p.lacks)) for p in refused)
+            what += f" that can import what the sourced ROS 2 needs ({why}); PYTHON=/path/to/python3 names another one"
+            return [Need(what, package) for package in (name, *LEFT_TO_ROS.values())]
         return [Need(what + " with its headers", name + part) for part in ("", "-venv", "-dev")]
     default = os.path.realpath("/usr/bin/python3") == python.path
     name = "python3" if default else f"python{python.version[0]}.{python.version[1]}"
@@ -215,7 +250,8 @@ def missing_of_python(
         needs.append(Need("Python's module venv, which makes the course's own environment", name + "-venv"))
     if not python.headers:
         needs.append(Need("Python's headers (Python.h), for turtlesim's messages", name + "-dev"))
-    return needs
+    lacks = [Need(f"the module {name}, which the sourced ROS 2 needs", LEFT_TO_ROS[name]) for name in python.lacks]
+    return needs + lacks
 
 
 def lack_message(needs: Sequence[Need], manager: Optional[packages.Manager], *, root: bool, why: str = "") -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 from typing import Annotated, Optional
 
@@ -37,7 +38,7 @@ def sim(
     from grader.common.interpreter import interpreter
     from grader.report.files import check_writable
     from grader.report.progress import progress
-    from grader.ros.installation import find_ros, users_environment
+    from grader.ros.installation import find_ros, users_environment, who_hears
     from grader.ros.underlay import with_turtlesim
 
     check_writable(image)
@@ -48,6 +49,7 @@ def sim(
     given = [("--image", image), ("--view", where if view else None), ("--port", port)]
     options = [text for name, value in given if value is not None for text in (name, str(value))]
     env = users_environment(ros)
+    print(f"turtlesim in {who_hears(env)}. It stops with Ctrl-C.", file=sys.stderr, flush=True)
     start = interpreter(
         "-m", "grader.view.turtlesim_node", *options, *context.args, python=str(ros.python), env=env, searches=True
     )

@@ -20,9 +20,17 @@ if TYPE_CHECKING:
     from grader.graph.graph import Picture
 
 _FORMATS = (".svg", ".png", ".dot")
+_OURS = ("-o", "--output", "--text", "--port", "--active", "--debug", "--hidden", "--all")
+"""What the rqt_graph of a sourced ROS 2, which opens a window, does not know."""
 _NOTHING = (
     "No node is running here (ROS_DOMAIN_ID is {domain}). Start one in another terminal, with the same domain id: "
     "ros2 run turtlesim turtlesim_node"
+)
+
+
+_MISSING = (
+    "rqt_graph: a program on this machine did not say in time what it publishes and subscribes to, so something may be "
+    "missing below. Type it again."
 )
 
 
@@ -34,7 +42,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, signal.default_int_handler)
     try:
-        hand_over("rqt_graph", "rqt_graph")
+        if "_ARGCOMPLETE" not in os.environ and not any(_is_ours(word) for word in argv):
+            hand_over("rqt_graph", "rqt_graph")
         options = _parse(argv)
         see_to_environment({"rclpy"})
         return _run(options)
@@ -47,6 +56,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # Whoever read us has gone, as in `rqt_graph | head`.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return 1
+
+
+def _is_ours(word: str) -> bool:
+    return word.partition("=")[0] in _OURS
 
 
 def _parse(argv: Sequence[str]) -> argparse.Namespace:
@@ -95,11 +108,13 @@ def _run(options: argparse.Namespace) -> int:
     from grader.graph.endpoints import heard
 
     with cli_node(f"_rqt_graph_{os.getpid()}") as node:
-        settle(node)
+        complete = settle(node)
         seen = heard(node)
     if not seen.nodes:
         print(_NOTHING.format(domain=os.environ.get("ROS_DOMAIN_ID", "0")), file=sys.stderr)
         return 1
+    if not complete:
+        print(_MISSING, file=sys.stderr)
     drawn = picture(seen.nodes, seen.ends, show)
     if options.output is not None:
         _write(options.output, drawn)

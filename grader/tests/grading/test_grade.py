@@ -139,8 +139,15 @@ grader.sandbox.bubblewrap.room = lambda *_, **__: ['sh', '-c', 'echo no namespac
 """,
             "grader doctor",
         ),
+        (
+            """
+import grader.colcon.workspace as workspace
+workspace._COLCON = "import sys; sys.modules['em'] = None\\n" + workspace._COLCON
+""",
+            "The build could not be started: ModuleNotFoundError",
+        ),
     ],
-    ids=["no ROS", "no compiler", "no cell", "no room"],
+    ids=["no ROS", "no compiler", "no cell", "no room", "no empy"],
 )
 def test_a_fault_of_the_machine_is_an_error_and_no_failure(tmp_path: Path, fault: str, said: str) -> None:
     done = broken(tmp_path, fault)

@@ -16,8 +16,11 @@ HERE = installation.find_ros()
 BIN = str(Path(sys.prefix, "bin"))
 
 
-def users(env: dict[str, str], domain: int | None = None) -> dict[str, str]:
-    return installation.users_environment(HERE, {"HOME": "/tmp", **env}, domain)
+WHEELS, SOURCED = replace(HERE, kind="wheels"), replace(HERE, kind="sourced")
+
+
+def users(env: dict[str, str], domain: int | None = None, ros: installation.Ros = HERE) -> dict[str, str]:
+    return installation.users_environment(ros, {"HOME": "/tmp", **env}, domain)
 
 
 def sourced(code: str, what: str, **env: str) -> str:
@@ -33,9 +36,36 @@ def sourced(code: str, what: str, **env: str) -> str:
 
 
 def test_a_domain_of_the_users_own_unless_they_chose_one() -> None:
-    assert users({})["ROS_DOMAIN_ID"] == str(installation.domain_of(os.getuid()))
+    assert users({}, ros=WHEELS)["ROS_DOMAIN_ID"] == str(installation.domain_of(os.getuid()))
     assert users({"ROS_DOMAIN_ID": "7"})["ROS_DOMAIN_ID"] == "7"
     assert users({"ROS_DOMAIN_ID": "7"}, domain=9)["ROS_DOMAIN_ID"] == "9"
+
+
+def test_a_sourced_ros_2_stays_where_a_terminal_has_it_in_which_nothing_else_was_sourced() -> None:
+    assert users({}, ros=SOURCED)["ROS_DOMAIN_ID"] == "0"
+    assert "ROS_AUTOMATIC_DISCOVERY_RANGE" not in users({}, ros=SOURCED)
+    theirs = {"ROS_DOMAIN_ID": "7", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+    assert theirs.items() <= users(theirs, ros=SOURCED).items()
+    assert users(theirs, domain=9, ros=SOURCED)["ROS_DOMAIN_ID"] == "9"
+
+
+@pytest.mark.parametrize(
+    ("env", "told"),
+    [
+        ({"ROS_DOMAIN_ID": "5", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, "domain 5, heard on this machine only"),
+        ({"ROS_LOCALHOST_ONLY": "1"}, "domain 0, heard on this machine only"),
+        ({}, "domain 0, heard in the whole network"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, "domain 0, heard in the whole network"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, "domain 0, ROS_AUTOMATIC_DISCOVERY_RANGE=OFF"),
+    ],
+)
+def test_who_hears_a_node_is_told(env: dict[str, str], told: str) -> None:
+    assert told in installation.who_hears(env)
+
+
+def test_how_messages_travel_stays_the_users() -> None:
+    theirs = {"FASTRTPS_DEFAULT_PROFILES_FILE": "/home/me/fast.xml", "FASTDDS_BUILTIN_TRANSPORTS": "SHM"}
+    assert theirs.items() <= users(theirs).items()
 
 
 @pytest.mark.parametrize("domain", [-1, 102])
@@ -55,7 +85,7 @@ def test_colcons_scripts_get_a_python_without_a_space_in_its_path(home: str, tmp
 
 
 def test_what_every_node_needs_is_in_it() -> None:
-    env = users({})
+    env = users({}, ros=WHEELS)
     assert env["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
     assert env["ROS_PYTHON_CHECK_FIELDS"] == "1"
     assert Path(env["FASTRTPS_DEFAULT_PROFILES_FILE"]).is_file()
@@ -96,7 +126,8 @@ def test_another_ros_2_and_an_older_turtlesim_do_not_mix_with_ours(tmp_path: Pat
 
 
 def test_our_commands_come_first_unless_a_ros_2_is_sourced() -> None:
-    assert users({"PATH": "/usr/bin"})["PATH"].split(":")[0 if HERE.kind == "wheels" else -1] == BIN
+    assert users({"PATH": "/usr/bin"}, ros=WHEELS)["PATH"] == f"{BIN}:/usr/bin"
+    assert users({"PATH": "/usr/bin"}, ros=SOURCED)["PATH"] == f"/usr/bin:{BIN}"
     assert users({"PATH": f"/usr/bin:{BIN}"})["PATH"] == f"/usr/bin:{BIN}"
 
 
@@ -110,6 +141,16 @@ def test_the_code_does_in_a_shell_what_it_says() -> None:
 def test_the_completion_of_a_sourced_ros_2_is_left_alone() -> None:
     code = "complete -F theirs ros2\n" + shell.code({"ROS_DOMAIN_ID": "5"}, {})
     assert sourced(code, "complete -p ros2") == "complete -F theirs ros2\n"
+    assert "_python_argcomplete rqt_graph" in sourced(code, "complete -p rqt_graph")
+
+
+def test_where_a_ros_2_is_sourced_ours_gets_the_first_look_at_the_options_of_rqt_graph(tmp_path: Path) -> None:
+    (tmp_path / "rqt_graph").write_text("#!/bin/sh\necho real\n")
+    (tmp_path / "rqt_graph").chmod(0o755)
+    for of_a_sourced_one, shown in [(False, "real\n"), (True, "usage: rqt_graph ")]:
+        code = shell.code({"ROS_DOMAIN_ID": "5"}, {}, sourced=of_a_sourced_one)
+        printed = sourced(code, "rqt_graph --text --help", PATH=f"{tmp_path}:/usr/bin:/bin")
+        assert printed.startswith(shown)
 
 
 def test_the_code_is_read_by_a_plain_sh() -> None:

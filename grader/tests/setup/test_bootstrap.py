@@ -85,6 +85,7 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Course:
     monkeypatch.setattr(bootstrap, "provide", course.provide)
     monkeypatch.setattr(machine, "probe", lambda _path: course.python)
     monkeypatch.setattr(machine, "find_pythons", lambda _path: iter([course.python]))
+    monkeypatch.setattr(machine, "for_ros", lambda python, _ros: python)
     monkeypatch.setattr(machine, "missing_tools", lambda _path, _ros: list(course.needs))
     monkeypatch.setattr(machine, "is_offline", lambda _env: course.offline)
     monkeypatch.setattr(machine, "missing_of_tests", lambda _path: list(course.of_tests))
@@ -183,7 +184,7 @@ def test_another_python_behind_the_environment_makes_it_anew(course: Course) -> 
 def test_a_moved_folder_makes_the_environment_anew(course: Course, monkeypatch: pytest.MonkeyPatch) -> None:
     course.set_up()
     monkeypatch.setattr(bootstrap, "ROOT", Path("/elsewhere"))
-    assert not bootstrap.stands(Stamp(**json.loads(course.stamp.read_text())), "wheels", None)
+    assert not bootstrap.stands(Stamp(**json.loads(course.stamp.read_text())), None, None)
 
 
 def test_a_sourced_ros_sees_the_systems_packages(course: Course) -> None:
@@ -193,6 +194,45 @@ def test_a_sourced_ros_sees_the_systems_packages(course: Course) -> None:
     assert course.programs == ["venv", "grader.setup.install"]
     assert "--system-site-packages" in course.commands[0]
     assert json.loads(course.commands[1][-1])["ros"] == "/opt/ros/jazzy"
+
+
+JAZZY = SourcedRos("/opt/ros/jazzy", (3, 11), turtlesim=True)
+
+
+def test_of_two_pythons_the_one_that_can_import_what_a_sourced_ros_needs_is_taken(
+    course: Course, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pyenvs = SYSTEMS._replace(path="/home/me/.pyenv/bin/python3.11", lacks=("em",))
+    monkeypatch.setattr(machine, "find_pythons", lambda _path: iter([pyenvs, SYSTEMS]))
+    assert course.set_up(ros=JAZZY) == 0
+    assert SYSTEMS.path in course.commands[0]
+
+
+def test_where_no_python_can_it_is_told_and_nothing_is_done(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
+    course.python = SYSTEMS._replace(path="/home/me/.pyenv/bin/python3.11", lacks=("em",))
+    assert course.set_up(ros=JAZZY) == MACHINE_BROKEN
+    assert course.commands == []
+    assert "/home/me/.pyenv/bin/python3.11 cannot import em" in capsys.readouterr().err
+
+
+def test_an_environment_that_lacks_what_the_sourced_ros_needs_is_made_anew(
+    course: Course, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    course.set_up(ros=JAZZY)
+    course.set_up(ros=JAZZY)
+    assert course.commands == []
+    monkeypatch.setattr(machine, "for_ros", lambda python, _ros: python._replace(lacks=("em",)))
+    monkeypatch.setattr(machine, "find_pythons", lambda _path: iter([SYSTEMS]))
+    course.set_up(ros=JAZZY)
+    assert course.asked == [["python3-empy"]]
+
+
+def test_a_prefix_by_another_name_is_the_same_ros(course: Course, tmp_path: Path) -> None:
+    (tmp_path / "jazzy").mkdir()
+    (tmp_path / "link").symlink_to("jazzy")
+    course.set_up(ros=JAZZY._replace(prefix=str(tmp_path / "jazzy")))
+    course.set_up(ros=JAZZY._replace(prefix=str(tmp_path / "link")))
+    assert course.commands == []
 
 
 def test_what_is_missing_is_told_and_nothing_is_done(course: Course, capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,7 +14,7 @@ from grader.errors import MachineError
 from grader.ros import underlay
 from grader.ros.installation import Ros, find_ros
 from grader.sandbox import bubblewrap
-from grader.setup import bootstrap, doctor, machine
+from grader.setup import bootstrap, doctor, machine, talk
 from grader.setup.doctor import Line
 
 OURS = bootstrap.Stamp(str(bootstrap.ROOT), "wheels", "/usr/bin/python3", [3, 11, 2], bootstrap.digest(), [], {})
@@ -98,12 +98,33 @@ def test_an_old_set_up_is_advice(bare: pytest.MonkeyPatch) -> None:
     assert [line.todo for line in doctor.look_at_set_up({}, OURS._replace(digest="old"))] == ["make demo"]
 
 
-def test_an_environment_made_for_another_ros_is_broken(bare: pytest.MonkeyPatch) -> None:
+def test_an_environment_made_for_another_ros_than_the_sourced_one_is_advice(bare: pytest.MonkeyPatch) -> None:
     bare.setattr(sys, "prefix", str(bootstrap.VENV))
     bare.setattr(machine, "sourced_ros", lambda _env, _ours: JAZZY)
     (line,) = doctor.look_at_set_up({}, OURS)
+    assert line.state == "advice"
+    assert line.seen == "made for the course's own ROS 2, and /opt/ros/jazzy is sourced and used"
+
+
+def test_an_environment_whose_ros_is_not_sourced_is_broken(bare: pytest.MonkeyPatch) -> None:
+    bare.setattr(sys, "prefix", str(bootstrap.VENV))
+    (line,) = doctor.look_at_set_up({}, OURS._replace(ros="/opt/ros/jazzy"))
     assert line.state == "broken"
-    assert "/opt/ros/jazzy" in line.seen
+    assert line.todo.startswith("source /opt/ros/jazzy/setup.bash")
+
+
+def test_a_ros_by_another_name_is_the_same_one(bare: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "jazzy").mkdir()
+    (tmp_path / "link").symlink_to("jazzy")
+    bare.setattr(sys, "prefix", str(bootstrap.VENV))
+    bare.setattr(machine, "sourced_ros", lambda _env, _ours: JAZZY._replace(prefix=str(tmp_path / "link")))
+    assert [line.state for line in doctor.look_at_set_up({}, OURS._replace(ros=str(tmp_path / "jazzy")))] == ["ok"]
+
+
+def test_a_colcon_that_cannot_start_is_broken(bare: pytest.MonkeyPatch) -> None:
+    assert doctor.look_at_colcon().state == "ok"
+    bare.setattr(doctor, "find_spec", lambda _name: None)
+    assert "does not start without empy" in doctor.look_at_colcon().seen
 
 
 def test_a_sourced_ros_for_another_python_is_broken(bare: pytest.MonkeyPatch, wheels: Ros) -> None:
@@ -137,8 +158,8 @@ def test_memory(meminfo: str, state: str) -> None:
 
 
 def test_a_node_that_is_not_heard_is_told(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
-    monkeypatch.setattr(doctor, "_TALKER", "raise SystemExit('no interfaces')")
-    monkeypatch.setattr(doctor, "_LISTENER", doctor._LISTENER.replace("20.0", "1.0"))
+    monkeypatch.setattr(talk, "_TALKER", "raise SystemExit('no interfaces')")
+    monkeypatch.setattr(talk, "_LISTENER", talk._LISTENER.replace("20.0", "1.0"))
     line = doctor.look_at_node(wheels)
     assert line.state == "broken"
     assert "nothing was heard of it" in line.seen
@@ -156,8 +177,8 @@ def test_a_machine_without_a_sandbox_is_good_enough_for_ones_own_code(monkeypatc
 
 
 def test_a_node_that_is_not_heard_without_a_cell_is_told(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
-    monkeypatch.setattr(doctor, "_TALKER", "raise SystemExit('no interfaces')")
-    monkeypatch.setattr(doctor, "_LISTENER", doctor._LISTENER.replace("20.0", "1.0"))
+    monkeypatch.setattr(talk, "_TALKER", "raise SystemExit('no interfaces')")
+    monkeypatch.setattr(talk, "_LISTENER", talk._LISTENER.replace("20.0", "1.0"))
     line = doctor.look_at_node(wheels, confined=False)
     assert (line.state, "nothing was heard of it" in line.seen) == ("broken", True)
 

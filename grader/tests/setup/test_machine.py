@@ -166,6 +166,34 @@ def test_a_sourced_ros_decides_the_version() -> None:
     assert machine.choose_python([SYSTEMS], root=False, wanted=(3, 12)) is None
 
 
+def test_a_python_that_lacks_what_a_sourced_ros_needs_comes_last_and_only_the_systems_can_get_it() -> None:
+    pyenvs = SYSTEMS._replace(path="/home/me/.pyenv/bin/python3.11", lacks=("em",))
+    bare = SYSTEMS._replace(lacks=("numpy", "em"))
+    assert machine.choose_python([pyenvs, SYSTEMS], root=False, wanted=(3, 11)) == SYSTEMS
+    assert machine.choose_python([pyenvs, bare], root=False, wanted=(3, 11)) == bare
+    assert machine.choose_python([pyenvs], root=False, wanted=(3, 11)) is None
+    assert [need.package for need in machine.missing_of_python(bare)] == ["python3-numpy", "python3-empy"]
+
+
+def test_a_python_that_was_refused_is_told_with_what_it_lacks() -> None:
+    pyenvs = SYSTEMS._replace(path="/home/me/.pyenv/bin/python3.11", lacks=("numpy", "em"))
+    (what,) = {need.what for need in machine.missing_of_python(None, (3, 11), refused=[pyenvs])}
+    assert "(/home/me/.pyenv/bin/python3.11 cannot import numpy and em)" in what
+    assert "PYTHON=/path/to/python3" in what
+
+
+def test_a_python_is_asked_for_what_the_ros_needs_as_it_will_be_in_the_environment(tmp_path: Path) -> None:
+    here = SYSTEMS._replace(path=sys.executable, version=sys.version_info[:3])
+    ros = SourcedRos("/opt/ros/jazzy", sys.version_info[:2], turtlesim=True)
+    assert machine.for_ros(here, ros).lacks == ()
+    (tmp_path / "python3").write_text(f'#!/bin/sh\nexec {sys.executable} -S "$@"\n')
+    (tmp_path / "python3").chmod(0o755)
+    bare = here._replace(path=str(tmp_path / "python3"))
+    assert machine.for_ros(bare, ros).lacks == ("numpy", "em")
+    assert machine.for_ros(bare, ros._replace(python=(3, 9))).lacks == (), "it will not do whatever it has"
+    assert machine.for_ros(here._replace(path="/nowhere/python3"), ros).lacks == ("numpy", "em")
+
+
 def test_closed_folder_is_the_topmost_one(closed: Path) -> None:
     (closed / "bin").chmod(0o700)
     assert machine.closed_folder(str(closed / "bin/python3")) == closed.resolve()

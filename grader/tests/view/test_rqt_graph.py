@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import socket
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -170,11 +171,36 @@ def test_a_broken_pipe_and_an_unknown_option_end_without_a_traceback(tutorial: W
     assert "Traceback" not in done.stderr
 
 
+def real_one(prefix: Path) -> None:
+    """A ROS 2 with an rqt_graph of its own."""
+    (prefix / "share/ament_index/resource_index/packages").mkdir(parents=True)
+    (prefix / "share/ament_index/resource_index/packages/rqt_graph").touch()
+    (prefix / "bin").mkdir()
+    (prefix / "bin/rqt_graph").write_text('#!/bin/sh\necho "the real one: $*"\n')
+    (prefix / "bin/rqt_graph").chmod(0o755)
+
+
 def test_a_sourced_rqt_graph_is_used(alone: World, tmp_path: Path) -> None:
-    (tmp_path / "share/ament_index/resource_index/packages").mkdir(parents=True)
-    (tmp_path / "share/ament_index/resource_index/packages/rqt_graph").touch()
-    (tmp_path / "bin").mkdir()
-    (tmp_path / "bin/rqt_graph").write_text('#!/bin/sh\necho "the real one: $*"\n')
-    (tmp_path / "bin/rqt_graph").chmod(0o755)
+    real_one(tmp_path)
     done = alone.run("rqt_graph --force-discover", AMENT_PREFIX_PATH=f"{alone.env['AMENT_PREFIX_PATH']}:{tmp_path}")
     assert done.stdout == "the real one: --force-discover\n"
+
+
+@pytest.mark.parametrize("option", ["--text", "--output graph.dot", "--output=graph.dot", "-o graph.dot"])
+def test_a_sourced_rqt_graph_does_not_get_options_that_it_does_not_know(
+    alone: World, tmp_path: Path, option: str
+) -> None:
+    real_one(tmp_path)
+    done = alone.run(f"rqt_graph {option}", AMENT_PREFIX_PATH=f"{alone.env['AMENT_PREFIX_PATH']}:{tmp_path}")
+    assert (done.code, done.stdout) == (1, "")
+    assert "No node is running here" in done.stderr
+
+
+def test_what_may_be_missing_is_told(tutorial: World) -> None:
+    # A process that has the port of a participant and says nothing, as one that was stopped.
+    port = 7400 + 250 * int(tutorial.env["ROS_DOMAIN_ID"]) + 10 + 2 * 100
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as silent:
+        silent.bind(("127.0.0.1", port))
+        done = tutorial.run("rqt_graph --text")
+    assert (done.code, done.stdout) == (0, (GOLDEN / "tutorial.unicode.txt").read_text())
+    assert "something may be missing below" in done.stderr

@@ -1,0 +1,80 @@
+"""Let a node talk to another, as in a trial: interpreter, ROS 2, network and interfaces are tried at once."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.common.interpreter import interpreter
+from grader.ros.installation import FASTDDS_PROFILE, Ros, environment
+from grader.sandbox import bubblewrap
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_TALKER = """
+import rclpy, turtlesim.msg, turtlesim.srv
+from std_msgs.msg import String
+rclpy.init()
+node = rclpy.create_node("talker")
+publisher = node.create_publisher(String, "doctor", 10)
+node.create_timer(0.05, lambda: publisher.publish(String(data="well")))
+rclpy.spin(node)
+"""
+_LISTENER = """
+import sys, time, rclpy
+from std_msgs.msg import String
+rclpy.init()
+node = rclpy.create_node("listener")
+heard = []
+node.create_subscription(String, "doctor", heard.append, 10)
+deadline = time.monotonic() + 20.0
+while not heard and time.monotonic() < deadline:
+    rclpy.spin_once(node, timeout_sec=0.5)
+sys.exit(None if heard else "nothing was heard of it within 20 s")
+"""
+DOMAIN = 101
+"""ROS domain of the nodes without a cell: the last that a trial would take."""
+
+
+def why_not_heard(ros: Ros, *, confined: bool) -> str | None:
+    """Let a node talk for up to 20 s; None if the other heard it, else the last that was said.
+
+    `confined`: it is in a cell, and the other outside of it.
+    """
+    with tempfile.TemporaryDirectory(prefix="grader-") as home:
+        if confined:
+            command, env = _talk_from_a_cell(ros), dict(os.environ)
+        else:
+            env = environment(ros, home=Path(home), domain=DOMAIN)
+            talker, listener = _talker_and_listener(ros, env)
+            command = ["sh", "-c", f"setpriv --pdeathsig=KILL {shlex.join(talker)} & exec {shlex.join(listener)}"]
+        try:
+            done = subprocess.run(
+                command, capture_output=True, text=True, timeout=60, check=False, stdin=subprocess.DEVNULL, env=env
+            )
+        except subprocess.TimeoutExpired:
+            return "no answer within 60 s"
+    if done.returncode == 0:
+        return None
+    return (done.stderr.strip().splitlines()[-1:] or [f"exit code {done.returncode}"])[0]
+
+
+def _talk_from_a_cell(ros: Ros) -> list[str]:
+    env = environment(ros, home=bubblewrap.HOME, domain=None)
+    view = bubblewrap.ros_view(ros, FASTDDS_PROFILE)
+    talker, listener = _talker_and_listener(ros, env)
+    confined = bubblewrap.cell(talker, view, env=env, network=True)
+    # The talker goes when the listener does: cells die with their parent.
+    script = f"{shlex.join(confined)} & exec {shlex.join(listener)}"
+    return bubblewrap.room(["sh", "-c", script], view, env=env)
+
+
+def _talker_and_listener(ros: Ros, env: Mapping[str, str]) -> tuple[list[str], list[str]]:
+    python = str(ros.python)
+    talker = interpreter("-c", _TALKER, python=python, env=env, searches=True)
+    return talker.argv, interpreter("-c", _LISTENER, python=python, env=env, searches=True).argv
