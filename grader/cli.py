@@ -97,7 +97,8 @@ def check(
 ) -> None:
     """Build and run one submission, and say what is right and what is not."""
     from grader.evidence import archive
-    from grader.grading.grade import Options, grade
+    from grader.grading.grade import grade
+    from grader.grading.options import Options
     from grader.report.files import check_writable
     from grader.report.progress import progress
     from grader.report.terminal import early
@@ -133,8 +134,8 @@ def regrade(
 ) -> None:
     """Judge a stored recording again; nothing of the student's is run."""
     from grader.checks.exercises import find_exercise, load_exercise
-    from grader.grading.grade import report_of
     from grader.report.files import check_writable
+    from grader.report.report import report_of
     from grader.submission.reader import read
 
     for file in (json, image, html):

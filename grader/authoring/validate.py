@@ -13,7 +13,8 @@ from grader.checks.outcome import Status
 from grader.common.words import a_list
 from grader.errors import UsageError
 from grader.exercise.model import catalogue, course_folder
-from grader.grading.grade import Options, grade
+from grader.grading.grade import grade
+from grader.grading.options import Options
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_answers, open_submission
 

@@ -40,7 +40,8 @@ from grader.checks.exercises import find_exercise
 from grader.checks.judge import judge
 from grader.checks.outcome import Status
 from grader.evidence.evidence import Evidence
-from grader.grading.grade import Options, grade
+from grader.grading.grade import grade
+from grader.grading.options import Options
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_submission
 from grader.tests.case import CASES, Case, make_submission, read_cases

@@ -37,7 +37,7 @@ from rich.console import Console
 from grader.evidence import archive
 from grader.checks.exercises import load_exercise
 from grader.checks.judge import judge
-from grader.grading.grade import report_of
+from grader.report.report import report_of
 from grader.report import json, terminal
 kept = archive.load(Path(sys.argv[1]), load_exercise)
 report = report_of(kept.evidence, judge(kept.evidence), kept.ros, {})

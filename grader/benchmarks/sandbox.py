@@ -26,7 +26,8 @@ _MOST = 0.5
 _GRADE = """
 import sys
 from grader.checks.exercises import find_exercise
-from grader.grading.grade import Options, grade
+from grader.grading.grade import grade
+from grader.grading.options import Options
 from grader.submission.package import open_submission
 options = Options(sys.argv[3] == "cell", "simulated")
 report = grade(find_exercise(sys.argv[1]), open_submission(sys.argv[2]), options).report

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.common.words import shorten
@@ -13,10 +13,42 @@ from grader.errors import MachineError, UnreadableError
 from grader.evidence.stage import STAGES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from grader.evidence.evidence import Evidence
-    from grader.exercise.model import CheckSpec
+    from grader.evidence.stage import Stage
+    from grader.exercise.model import CheckSpec, Exercise
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What the checks found so far.
+
+    `findings` has a finding for every check. Those of `settled` stand, whatever the next stages bring: the evidence
+    of their stage was complete. The others say that the node was not run, or that a needed check did not pass yet.
+    """
+
+    exercise: Exercise
+    findings: Mapping[str, Finding]
+    settled: Mapping[str, Finding]
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """The outcome of every check, in the order of the exercise."""
+        return tuple(_outcome(spec, self.findings[spec.id]) for spec in self.exercise.checks)
+
+    def of_trial(self, trial: str) -> tuple[Outcome, ...]:
+        """Return the outcomes of the checks that judge the recording of this trial (an id)."""
+        return tuple(
+            _outcome(spec, self.findings[spec.id]) for spec in self.exercise.checks if _judges_trial(spec, trial)
+        )
+
+    def wants(self, trial: str) -> bool:
+        """Return whether any check would use a recording of this trial (an id). If not, it does not have to run."""
+        return any(
+            _judges_trial(spec, trial) and not any(_blocks(self.findings[need]) for need in spec.needs)
+            for spec in self.exercise.checks
+        )
 
 
 def judge(evidence: Evidence) -> tuple[Outcome, ...]:
@@ -25,18 +57,30 @@ def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     A check is skipped when a check that it needs did not pass; its message names the first such check. A check whose
     evidence the machine could not produce (`evidence.fault`) is an `error`, and so is every check that needs it.
     """
-    specs = {spec.id: spec for spec in evidence.exercise.checks}
+    return judge_so_far(evidence, {}).outcomes
+
+
+def judge_so_far(evidence: Evidence, settled: Mapping[str, Finding]) -> Judgement:
+    """Judge the evidence of the stages that are done. Checks whose findings are `settled` are not run again."""
     findings: dict[str, Finding] = {}
     causes: dict[str, CheckSpec] = {}
-    for spec in _in_order(specs.values()):
+    stands = dict(settled)
+    for spec in _in_order(evidence.exercise.checks):
         cause = next((causes[need] for need in spec.needs if need in causes), None)
-        finding = (
-            _judge_one(evidence.from_trial(spec.trial), spec) if cause is None else _because(cause, findings[cause.id])
-        )
+        view = evidence.from_trial(spec.trial)
+        if spec.id in settled:
+            finding = settled[spec.id]
+        elif cause is not None:
+            finding = _because(cause, findings[cause.id])
+        else:
+            finding = _judge_one(view, spec)
         findings[spec.id] = finding
+        final = cause.id in stands if cause is not None else _is_complete(view, spec)
+        if final and finding.status is not Status.ERROR:
+            stands[spec.id] = finding
         if finding.status is not Status.PASSED and not KINDS[spec.kind].advice:
             causes[spec.id] = cause or spec
-    return tuple(_outcome(spec, findings[spec.id]) for spec in evidence.exercise.checks)
+    return Judgement(evidence.exercise, findings, stands)
 
 
 @dataclass(frozen=True)
@@ -49,7 +93,7 @@ class Early:
     def may_run(self, evidence: Evidence) -> bool:
         """Return whether the trial may still be needed: at least one of its checks is not blocked."""
         specs = evidence.exercise.checks
-        return any(_of_this_trial(evidence, spec) and spec.id not in self.blocked for spec in specs)
+        return any(_judges_trial(spec, evidence.trial.id) and spec.id not in self.blocked for spec in specs)
 
 
 def judge_early(evidence: Evidence) -> Early:
@@ -71,32 +115,12 @@ def judge_early(evidence: Evidence) -> Early:
     return Early(tuple(failed_), frozenset(blocked))
 
 
-def wants_trial(evidence: Evidence, outcomes: Iterable[Outcome]) -> bool:
-    """Return whether any check of this trial would use a recording. If not, the trial does not have to run."""
-    by_id = {outcome.id: outcome for outcome in outcomes}
-    return any(
-        _of_this_trial(evidence, spec) and not any(_blocked(by_id[need]) for need in spec.needs)
-        for spec in evidence.exercise.checks
-    )
+def _judges_trial(spec: CheckSpec, trial: str) -> bool:
+    return KINDS[spec.kind].stage == "trial" and spec.trial == trial
 
 
-def near_edge(outcomes: Iterable[Outcome]) -> bool:
-    """Return whether a measured value is so close to the edge of its tolerance that simulated time must not decide."""
-    return any(outcome.finding.near_edge for outcome in outcomes)
-
-
-def of_this_trial(evidence: Evidence, outcomes: Iterable[Outcome]) -> tuple[Outcome, ...]:
-    """Return those of all outcomes that judge the recording of this trial."""
-    specs = evidence.exercise.checks
-    return tuple(outcome for spec, outcome in zip(specs, outcomes, strict=True) if _of_this_trial(evidence, spec))
-
-
-def _of_this_trial(evidence: Evidence, spec: CheckSpec) -> bool:
-    return KINDS[spec.kind].stage == "trial" and spec.trial == evidence.trial.id
-
-
-def _blocked(outcome: Outcome) -> bool:
-    return outcome.status in (Status.FAILED, Status.SKIPPED)
+def _blocks(finding: Finding) -> bool:
+    return finding.status in (Status.FAILED, Status.SKIPPED)
 
 
 def _in_order(specs: Iterable[CheckSpec]) -> list[CheckSpec]:
@@ -110,17 +134,28 @@ def _in_order(specs: Iterable[CheckSpec]) -> list[CheckSpec]:
     return list(done.values())
 
 
+def _is_made(evidence: Evidence, stage: Stage) -> bool:
+    """Return whether the evidence of this stage is there."""
+    return {"source": True, "build": evidence.build is not None, "trial": evidence.run.recording is not None}[stage]
+
+
+def _is_complete(evidence: Evidence, spec: CheckSpec) -> bool:
+    """Return whether nothing more comes that this check would look at."""
+    stage = KINDS[spec.kind].stage
+    return _is_made(evidence, stage) or (stage == "trial" and evidence.run.overwhelmed is not None)
+
+
 def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
     kind = KINDS[spec.kind]
-    made = {"source": True, "build": evidence.build is not None, "trial": evidence.run.recording is not None}
+    made = _is_made(evidence, kind.stage)
     fault = evidence.fault
     if fault is not None and fault.stage == "source":
         return unreadable(fault.message)
-    if fault is not None and STAGES.index(kind.stage) >= STAGES.index(fault.stage) and not made[kind.stage]:
+    if fault is not None and STAGES.index(kind.stage) >= STAGES.index(fault.stage) and not made:
         return unreadable(fault.message) if fault.unreadable else Finding(Status.ERROR, fault.message)
     if kind.stage == "trial" and evidence.run.overwhelmed is not None:
         return _overwhelmed(evidence.run.overwhelmed)
-    if not made[kind.stage]:
+    if not made:
         return Finding(Status.SKIPPED, "Not judged, because the node was not run.")
     try:
         return kind.judge(evidence, spec.params)

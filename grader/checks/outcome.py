@@ -7,7 +7,7 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from grader.checks.causes.cause import Cause
+    from grader.checks.cause import Cause
     from grader.submission.where import Where
 
 

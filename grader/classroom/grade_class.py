@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from grader.classroom.found import Found
     from grader.classroom.order import Todo
     from grader.classroom.results import Result
-    from grader.grading.grade import ClockChoice
+    from grader.grading.clock import ClockChoice
 
 DASK = "dask://"
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from grader.classroom.results import Result, Results
     from grader.exercise.model import Exercise
     from grader.exercise.private_checks import Sources
-    from grader.grading.grade import ClockChoice
+    from grader.grading.clock import ClockChoice
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,15 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.exercises import exercise_from
 from grader.checks.outcome import Finding, Outcome, Status, failed
 from grader.classroom.key import grader_key
 from grader.errors import MachineError
-from grader.grading.grade import Graded, Options, grade, report_of
+from grader.grading.grade import Graded, grade
+from grader.grading.options import Options
 from grader.report.hidden import evidence_for_students, for_students
+from grader.report.report import report_of
 from grader.submission.package import Submission
 from grader.trial.trial import Trial
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
     from grader.exercise.model import Exercise
     from grader.exercise.private_checks import Sources
-    from grader.grading.grade import ClockChoice
+    from grader.grading.clock import ClockChoice
     from grader.report.report import Report
     from grader.trial.recording import Recording
 

@@ -7,100 +7,83 @@ submission's own failure: from then on every check of it is `unreadable`, and no
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from grader.checks.judge import Early, in_words, judge, judge_early
+from grader.checks.judge import Early, Judgement, in_words, judge_early, judge_so_far
 from grader.errors import UnreadableError
 from grader.evidence.evidence import Fault
+from grader.grading.clock import Clock, ClockChoice, first_clock
 from grader.submission.reader import read
-from grader.trial.clues import wall_clues
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from grader.checks.outcome import Outcome
+    from grader.checks.outcome import Finding
     from grader.evidence.evidence import Evidence
-    from grader.trial.recording import ClockName
 
-    Clocks = Mapping[str, tuple[ClockName, str]]
+    Findings = Mapping[str, Finding]
+    Clocks = Mapping[str, Clock]
+
+UNREAD = Clock("wall", "the source could not be read")
 
 
 @dataclass
 class Judging:
-    """What is known of one submission so far; the same evidence is judged once."""
+    """Judges one submission, and finds the clock under which each of its trials begins. `choice` is `--clock`."""
 
+    choice: ClockChoice
     fault: Fault | None = None
-    """That it could not be read."""
-    _judged: Evidence | None = None
-    _outcomes: tuple[Outcome, ...] = ()
-    _clocks: Clocks = dataclasses.field(default_factory=dict)
-    """The clock that each trial begins under, by its id, and why."""
+    """Why the submission could not be read."""
+    _clocks: Clocks = field(default_factory=dict)
+    """The first clock of each trial, by its id."""
 
     def early(self, evidence: Evidence) -> Early:
-        """What is certain from the files alone."""
+        """Return what is certain from the files alone."""
         try:
-            early, self._clocks = read(_early, evidence)
+            early, self._clocks = read(_early, evidence, self.choice)
         except UnreadableError as error:
-            self.fault = Fault("source", in_words(error), unreadable=True)
+            self._give_up(error)
             return Early((), frozenset(spec.id for spec in evidence.exercise.checks))
         return early
 
-    def outcomes(self, evidence: Evidence) -> tuple[Outcome, ...]:
-        """The outcome of every check by this evidence."""
-        self._judge(evidence)
-        return self._outcomes
+    def so_far(self, evidence: Evidence, settled: Findings) -> Judgement:
+        """Judge the evidence so far. Checks whose findings are `settled` are not run again."""
+        if self.fault is None:
+            if all(spec.id in settled for spec in evidence.exercise.checks):
+                return Judgement(evidence.exercise, settled, settled)
+            try:
+                findings, stand, clocks = read(_all, evidence, settled, self.choice)
+            except UnreadableError as error:
+                self._give_up(error)
+            else:
+                self._clocks = {**self._clocks, **clocks}
+                return Judgement(evidence.exercise, findings, stand)
+        return judge_so_far(self.known(evidence), {})
 
-    def first_clock(self, evidence: Evidence) -> tuple[ClockName, str]:
-        """The clock under which the trial begins that the evidence is looked at from, and why."""
-        if evidence.build is not None:
-            self._judge(evidence)
-        return self._clocks.get(evidence.trial.id, ("wall", "the source could not be read"))
+    def first_clock(self, evidence: Evidence) -> Clock:
+        """Return the clock under which this trial begins. After the build, the installed entry point decides."""
+        return self._clocks.get(evidence.trial.id, UNREAD)
 
     def known(self, evidence: Evidence) -> Evidence:
-        """The evidence, with the fault that it could not be read."""
+        """Return the evidence, with the fault that the submission could not be read."""
         return evidence if self.fault is None else dataclasses.replace(evidence, fault=self.fault)
 
-    def _judge(self, evidence: Evidence) -> None:
-        if self._judged is not None and _same(evidence, self._judged):
-            return
-        if self.fault is None:
-            try:
-                self._outcomes, self._clocks = read(_all, evidence)
-            except UnreadableError as error:
-                self.fault = Fault("source", in_words(error), unreadable=True)
-        if self.fault is not None:
-            self._outcomes = judge(self.known(evidence))
-        self._judged = evidence
+    def _give_up(self, error: UnreadableError) -> None:
+        self.fault = Fault("source", in_words(error), unreadable=True)
 
 
-def _same(one: Evidence, other: Evidence) -> bool:
-    """Whether they say the same, from whichever trial they are looked at."""
-    return one.build is other.build and one.runs is other.runs and one.fault is other.fault
+def _early(evidence: Evidence, choice: ClockChoice) -> tuple[Early, Clocks]:
+    return judge_early(evidence), _first_clocks(evidence, choice)
 
 
-def _early(evidence: Evidence) -> tuple[Early, Clocks]:
-    return judge_early(evidence), _first_clocks(evidence)
+def _all(evidence: Evidence, settled: Findings, choice: ClockChoice) -> tuple[Findings, Findings, Clocks]:
+    judgement = judge_so_far(evidence, settled)
+    clocks = {} if evidence.runs else _first_clocks(evidence, choice)
+    return judgement.findings, judgement.settled, clocks
 
 
-def _all(evidence: Evidence) -> tuple[tuple[Outcome, ...], Clocks]:
-    return judge(evidence), _first_clocks(evidence)
-
-
-def _first_clocks(evidence: Evidence) -> Clocks:
+def _first_clocks(evidence: Evidence, choice: ClockChoice) -> Clocks:
     if not evidence.exercise.package:
         return {}
-    views = (evidence.from_trial(spec.id) for spec in evidence.exercise.trials)
-    return {seen.trial.id: _first_clock(seen) for seen in views}
-
-
-def _first_clock(evidence: Evidence) -> tuple[ClockName, str]:
-    try:
-        entry = evidence.entry_point()
-        clues = wall_clues(evidence.submission.files, entry.partition(":")[0].strip() if entry else None)
-    except Exception as error:  # told by the checks that read the source, too
-        return "wall", f"the source could not be read ({in_words(error)}), so it may follow the wall's clock"
-    if clues:
-        first = clues[0]
-        return "wall", f"{first.name} at {first.file}:{first.line} may follow the wall's clock"
-    return "simulated", "the node waits only for ROS time and messages, so its seconds need not be waited for"
+    return {spec.id: first_clock(choice, evidence.from_trial(spec.id)) for spec in evidence.exercise.trials}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from grader.errors import GraderError, UsageError
-from grader.grading.grade import Options
+from grader.grading.options import Options
 from grader.learner import hints, steps
 from grader.learner.keys import single_keys
 from grader.learner.watch import Events, Watched

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Literal
 from watchfiles import DefaultFilter, watch
 
 from grader.errors import UsageError
-from grader.grading.grade import Graded, Options, grade
+from grader.grading.grade import Graded, grade
 from grader.learner.rebuild import Rebuild
 from grader.submission.package import open_answers, open_submission
 from grader.trial.trial import Plan, Trial
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.exercise.model import Exercise
+    from grader.grading.options import Options
     from grader.ros.installation import Ros
     from grader.submission.package import Submission
 

@@ -20,7 +20,8 @@ from grader.checks.judge import in_words
 from grader.checks.outcome import Status
 from grader.common.refusal import refusal
 from grader.errors import GraderError, MachineError
-from grader.grading.grade import Graded, Options, grade
+from grader.grading.grade import Graded, grade
+from grader.grading.options import Options
 from grader.notebook.mode import confined
 from grader.report.plain import plain_line
 from grader.sandbox import bubblewrap

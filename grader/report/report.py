@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import grader
 from grader.checks.outcome import Status
 
 if TYPE_CHECKING:
     from grader.checks.outcome import Outcome
+    from grader.evidence.evidence import Evidence
 
 
 @dataclass(frozen=True)
@@ -66,3 +68,35 @@ class Report:
             return 3
         missing = self.with_status(Status.FAILED) or self.with_status(Status.SKIPPED)
         return 1 if missing and not self.warnings else 0
+
+
+def report_of(
+    evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float], *, confined: bool = True
+) -> Report:
+    """Return the report on evidence that was judged. `ros` names the ROS 2, `seconds` is the time of each stage."""
+    recording = evidence.run.recording
+    return Report(
+        exercise=evidence.exercise.id,
+        exercise_title=evidence.exercise.title,
+        submission=evidence.submission.name,
+        digest=evidence.submission.digest,
+        grader=grader.__version__,
+        ros=ros,
+        clock=recording.clock if recording else "none",
+        clock_why=_why_this_clock(evidence),
+        seed=recording.seed if recording else None,
+        confined=confined,
+        outcomes=outcomes,
+        seconds=seconds,
+        exercise_digest=evidence.exercise.digest,
+    )
+
+
+def _why_this_clock(evidence: Evidence) -> str:
+    """Return why the first trial was judged under its clock, and which trials were judged under the other one."""
+    first = evidence.run.recording
+    if first is None:
+        return "The node was not run." if evidence.run.overwhelmed is None else "The trial could not be finished."
+    others = [(view.trial.executable, view.run.recording) for view in evidence.views()]
+    differ = [(name, other) for name, other in others if other is not None and other.clock != first.clock]
+    return "; ".join([first.why, *(f"{name} in {other.clock} time: {other.why}" for name, other in differ)])

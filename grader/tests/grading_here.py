@@ -12,7 +12,8 @@ from rich.console import Console
 from grader.checks.exercises import find_exercise
 from grader.colcon import workspace
 from grader.errors import UsageError
-from grader.grading.grade import Options, grade
+from grader.grading.grade import grade
+from grader.grading.options import Options
 from grader.learner.rebuild import renewed
 from grader.report import terminal
 from grader.report.json import to_data
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from grader.grading.grade import ClockChoice
+    from grader.grading.clock import ClockChoice
     from grader.ros.installation import Ros
     from grader.submission.package import Submission
     from grader.tests.case import Case

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.exercises import load_exercise
-from grader.grading.grade import Options, grade
+from grader.grading.grade import grade
+from grader.grading.options import Options
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_answers
 from grader.tests.case import copy_solution

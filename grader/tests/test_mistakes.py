@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from grader.grading.grade import ClockChoice
+    from grader.grading.clock import ClockChoice
 
     Grade = Callable[[Case, ClockChoice], Graded]
 

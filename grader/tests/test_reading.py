@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 READS = {
     "read_tree", "read_folder", "find_package", "read_code", "read_module", "read_manifest", "read_setup_py",
-    "read_answers", "read_tar", "read_entry_points", "wall_clues", "uses_of", "judge", "judge_early", "archive.load",
-    "parse_package_string", "read_payloads", "read_class", "read_notebook", "nbformat.read", "zipfile.ZipFile",
-    "tarfile.open", "tokenize.tokenize", "tomllib.loads", "ast.parse", "json.loads", "json.load", "ET.fromstring",
+    "read_answers", "read_tar", "read_entry_points", "wall_clues", "uses_of", "judge", "judge_so_far", "judge_early",
+    "archive.load", "parse_package_string", "read_class", "read_notebook", "nbformat.read", "zipfile.ZipFile",
+    "read_payloads", "tarfile.open", "tokenize.tokenize", "tomllib.loads", "ast.parse", "json.loads", "json.load", "ET.fromstring",
     "yaml.safe_load", "pickle.load", "pickle.loads",
 }  # fmt: skip
 """Functions that read what they are given, as the source calls them."""
@@ -31,7 +31,7 @@ BEHIND_THE_DOOR = {
     ("html_class", "read_class"): "html_class",
     ("judging", "_all"): "judging",
     ("judging", "_early"): "judging",
-    ("judging", "_first_clock"): "judging",
+    ("clock", "first_clock"): "judging",
     ("json", "from_json"): "html_class, and results of our own",
     ("put_together", "_together"): "put_together",
     ("put_together", "_with"): "put_together",
@@ -51,7 +51,7 @@ OURS = {
     ("conductor", "main"): "an order of trial.py",
     ("dask_engine", "perform_here"): "a task of the instructor's command",
     ("gradescope", "build_archive"): "our own archive, written",
-    ("judging", "_judge"): "a submission that is not read any more",
+    ("judging", "so_far"): "a submission that is not read any more",
     ("launcher", "main"): "an order of the conductor",
     ("node_process", "_find_pid"): "what bubblewrap says",
     ("progress", "_read"): "the learner's state",

@@ -6,8 +6,8 @@ import io
 import tokenize
 from typing import TYPE_CHECKING
 
+from grader.checks.cause import Cause
 from grader.checks.causes.bad_entry_point import bad_entry_point
-from grader.checks.causes.cause import Cause
 from grader.checks.outcome import Finding, failed
 from grader.common.words import nearest, shorten
 from grader.submission.code import module_file, read_code

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.outcome import Finding, failed
 from grader.common.words import shorten
 from grader.submission.package_xml import line_of

@@ -6,8 +6,8 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
-from grader.checks.causes.cause import Cause
 from grader.checks.causes.crash_scene import attributes_set, methods
 from grader.common.words import a_list, shorten
 from grader.submission.constants import dotted

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.causes.crash_scene import CrashScene
 from grader.checks.causes.why_calls import why_refused, why_type
 from grader.checks.causes.why_fields import why_field

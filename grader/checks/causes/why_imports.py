@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
-from grader.checks.causes.cause import Cause
 from grader.common.words import nearest, shorten
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
-from grader.checks.causes.cause import Cause
 from grader.checks.causes.timers import timer_fault
 from grader.checks.causes.why_ended import SPINS, named_only
 from grader.common.words import nearest, shorten

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.kind import Kind, NoParams, choice, number, string, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.tolerance import Band

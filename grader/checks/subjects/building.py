@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from grader.checks.cause import Cause
 from grader.checks.causes.bad_entry_point import bad_entry_point
-from grader.checks.causes.cause import Cause
 from grader.checks.causes.crash import read_tracebacks
 from grader.checks.causes.syntax import unreadable_observed, why_unreadable
 from grader.checks.kind import Kind, NoParams

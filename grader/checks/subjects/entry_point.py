@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.causes.no_entry_point import FORM, line, no_entry_point
 from grader.checks.causes.syntax import unreadable_finding
 from grader.checks.kind import Kind, NoParams

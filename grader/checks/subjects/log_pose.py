@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.common.lazy import np

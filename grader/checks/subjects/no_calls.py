@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.kind import Kind, string, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, shorten

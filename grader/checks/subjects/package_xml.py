@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.kind import Kind, NoParams, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten

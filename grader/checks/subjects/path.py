@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.causes.crash import ended_early
 from grader.checks.kind import Kind, NoParams, choice, number
 from grader.checks.outcome import Finding, Status, failed, passed

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.causes.too_soon import too_soon
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed

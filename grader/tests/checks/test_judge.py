@@ -2,19 +2,23 @@ from __future__ import annotations
 
 import random
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.checks.judge import judge, near_edge, wants_trial
+from grader.checks.judge import judge, judge_so_far
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Finding, Outcome, Status
 from grader.evidence.evidence import Evidence, Fault, Run
 from grader.report.report import Report
-from grader.tests.checks.made import BUILD, NODE_FILE, every, evidence, exercise, good, recording, submission
+from grader.tests.checks.made import BUILD, NODE_FILE, evidence, exercise, good, recording, submission
 from grader.tests.checks.shapes import SHAPES
 from grader.trial.recording import Command, Output
+
+if TYPE_CHECKING:
+    from grader.checks.kind import Kind
 
 NO_BUILD = replace(BUILD, exit_code=1, executables=(), entry_points={}, installed=())
 FULL_DISK = "The disk is full: make room."
@@ -117,13 +121,32 @@ def test_what_breaks_a_check_could_not_be_read_and_the_others_are_judged(monkeyp
 
 
 def test_a_trial_is_wanted_only_where_it_would_be_judged() -> None:
-    for seen, wanted in ((evidence(None), True), (evidence(None, build=NO_BUILD), False)):
-        assert wants_trial(seen, judge(seen)) is wanted
+    assert judge_so_far(evidence(None), {}).wants("circle")
+    assert not judge_so_far(evidence(None, build=NO_BUILD), {}).wants("circle")
 
 
-def test_a_value_near_an_edge_asks_for_wall_time() -> None:
-    assert near_edge(judge(evidence(recording(every(0.475, 2.0, 1.0)))))
-    assert not near_edge(judge(evidence(good())))
+def test_a_settled_finding_stands_and_the_others_follow_the_new_evidence(monkeypatch: pytest.MonkeyPatch) -> None:
+    run: list[str] = []
+
+    def counted(kind: Kind[Any]) -> Kind[Any]:
+        def check(given: Evidence, params: object) -> Finding:
+            run.append(kind.name)
+            return kind.check(given, params)
+
+        return replace(kind, check=check)
+
+    monkeypatch.setattr("grader.checks.judge.KINDS", {name: counted(kind) for name, kind in KINDS.items()})
+    before = judge_so_far(evidence(None), {})
+    assert run
+    after = judge_so_far(evidence(good()), before.settled)
+    assert len(run) == len(exercise().checks)
+    assert after.outcomes == judge(evidence(good()))
+    assert set(after.settled) == {spec.id for spec in exercise().checks}
+
+
+def test_what_the_machine_could_not_judge_is_judged_again() -> None:
+    broken = judge_so_far(evidence(None, fault=Fault("trial", FULL_DISK)), {})
+    assert judge_so_far(evidence(good()), broken.settled).outcomes == judge(evidence(good()))
 
 
 @pytest.mark.parametrize("shape", sorted(SHAPES))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from dataclasses import dataclass, field, replace
 from threading import Barrier
 from typing import TYPE_CHECKING, Any
@@ -10,10 +11,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.checks.exercises import find_exercise
+from grader.checks.kinds import KINDS
 from grader.checks.outcome import Status
 from grader.colcon.workspace import Built
 from grader.errors import MachineError
-from grader.grading.grade import Options, grade
+from grader.grading.grade import grade
+from grader.grading.options import Options
 from grader.submission.package import open_submission
 from grader.tests.case import ROOT
 from grader.tests.checks.made import BUILD, good
@@ -23,6 +26,9 @@ from grader.tests.waiting import HANG_S, until
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from grader.checks.kind import Kind
+    from grader.checks.outcome import Finding
+    from grader.evidence.evidence import Evidence
     from grader.grading.grade import Graded
     from grader.trial.recording import ClockName, Recording
     from grader.trial.trial import Plan
@@ -101,10 +107,10 @@ def test_all_are_begun_where_they_may_run_side_by_side(at_once: int, begun: int)
     assert {outcome.status for outcome in made.report.outcomes} == {Status.PASSED, Status.ERROR}
 
 
-def test_the_longest_run_first_and_side_by_side_and_one_by_the_walls_clock_when_they_have_ended() -> None:
-    trials = Trials()
+def built_solution() -> Built:
+    """What colcon makes of the solution, without the files."""
     scripts = (ROOT / "solutions" / STEP / PACKAGE / PACKAGE).glob("*.py")
-    built = replace(
+    build = replace(
         BUILD,
         installed=(
             *BUILD.installed,
@@ -114,8 +120,30 @@ def test_the_longest_run_first_and_side_by_side_and_one_by_the_walls_clock_when_
         executables=NODES,
         entry_points={node: f"{PACKAGE}.{node}:main" for node in NODES},
     )
-    made = graded(trials, 2, lambda *_, **__: Built(built, b""), b"\nimport time\n\ntime.sleep(0.0)\n")
+    return Built(build, b"")
+
+
+def test_the_longest_run_first_and_side_by_side_and_one_by_the_walls_clock_when_they_have_ended() -> None:
+    trials = Trials()
+    made = graded(trials, 2, lambda *_, **__: built_solution(), b"\nimport time\n\ntime.sleep(0.0)\n")
     assert set(trials.begun[:2]) == LONGEST
     assert trials.ended == ["simulated", "simulated", "simulated", "wall"]
     assert made.report.clock == "simulated"
     assert "; figure_eight in wall time: " in made.report.clock_why
+
+
+def test_each_check_is_judged_once_when_its_stage_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    judged: Counter[tuple[str, str]] = Counter()
+
+    def counted(kind: Kind[Any]) -> Kind[Any]:
+        def check(given: Evidence, params: object) -> Finding:
+            judged[kind.name, f"{given.trial.id} {params}"] += given.build is not None
+            return kind.check(given, params)
+
+        return replace(kind, check=check)
+
+    monkeypatch.setattr("grader.submission.reader._Child.inside", True)  # (a child could not count for us)
+    monkeypatch.setattr("grader.checks.judge.KINDS", {name: counted(kind) for name, kind in KINDS.items()})
+    graded(Trials(), 2, lambda *_, **__: built_solution())
+    assert set(+judged) >= {("node_starts", f"{trial.id} NoParams()") for trial in find_exercise(STEP).trials}
+    assert set((+judged).values()) == {1}

@@ -11,7 +11,9 @@ import pytest
 from grader.checks.outcome import Status
 from grader.colcon.workspace import Built
 from grader.grading import turns
-from grader.grading.grade import WALL_TRIALS, Options, grade
+from grader.grading.clock import WALL_TRIALS
+from grader.grading.grade import grade
+from grader.grading.options import Options
 from grader.tests.checks.made import BUILD, every, exercise, good, recording, submission
 from grader.tests.no_ros import without_ros
 

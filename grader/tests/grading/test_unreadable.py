@@ -11,8 +11,9 @@ from grader.checks.outcome import Status
 from grader.colcon.workspace import Built
 from grader.errors import MachineError
 from grader.evidence import evidence as of_evidence
-from grader.grading import judging as of_grading
-from grader.grading.grade import Options, grade
+from grader.grading import clock as of_clock
+from grader.grading.grade import grade
+from grader.grading.options import Options
 from grader.report import html, html_notebook
 from grader.tests.checks.made import BUILD, exercise, good, submission
 from grader.tests.grading.test_starved import Trials
@@ -84,7 +85,7 @@ def test_a_source_that_breaks_its_reader_fails_and_the_node_is_run_in_wall_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(of_evidence, "read_code", breaks(RecursionError("too deep")))
-    monkeypatch.setattr(of_grading, "wall_clues", breaks(RecursionError("too deep")))
+    monkeypatch.setattr(of_clock, "wall_clues", breaks(RecursionError("too deep")))
     trials = Trials([good()])
     found = graded(trial=trials)
     assert len(trials.alone) == 1

@@ -17,7 +17,7 @@ from rich.console import Console
 
 from grader.checks.exercises import find_exercise
 from grader.errors import UsageError
-from grader.grading.grade import Options
+from grader.grading.options import Options
 from grader.learner.rebuild import Rebuild
 from grader.learner.screen import _Screen
 from grader.learner.watch import Events, Watched

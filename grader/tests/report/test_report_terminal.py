@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from grader.checks.causes.cause import Cause
+from grader.checks.cause import Cause
 from grader.checks.outcome import Status, failed, passed
 from grader.report.terminal import render
 from grader.report.verdict import UNCONFINED

@@ -1,0 +1,114 @@
+"""Which clock judges a trial, and when a trial is repeated.
+
+The rules, in the order in which they are applied:
+
+1. `--clock simulated` or `--clock wall` decides.
+2. Without these options, a trial begins in simulated time: nothing has to wait, and no other program can disturb it.
+   If the source contains a sign that the node may follow wall time, the trial begins in wall time (grader.trial.clues).
+3. A trial in simulated time ends at the first sign that the node follows wall time after all: a thread sleeps, commands
+   arrive while the clock is held, or the node never rests (grader.trial.simulated). Wall time decides then.
+4. If a measured value is near the edge of its tolerance, or the node did not stop, wall time decides too.
+5. A trial in wall time that fails while other programs use the processors is repeated, without other gradings beside
+   it. A busy machine can make a right node look wrong, but not a wrong node right. So the first trial that passes
+   counts. If none of WALL_TRIALS passes, the one that was disturbed least counts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from grader.checks.judge import in_words
+from grader.checks.outcome import Status
+from grader.trial.clues import wall_clues
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from grader.checks.judge import Judgement
+    from grader.checks.outcome import Outcome
+    from grader.evidence.evidence import Evidence
+    from grader.trial.recording import ClockName
+    from grader.trial.trial import WallTimeNeeded
+
+ClockChoice = Literal["auto", "simulated", "wall"]
+
+WALL_TRIALS = 3
+"""The most trials in wall time that are made because the machine is busy."""
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The clock of a trial. `why` is the reason that the report gives."""
+
+    name: ClockName
+    why: str
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """One run of a trial: the evidence with its recording, and what the checks found in it."""
+
+    evidence: Evidence
+    judgement: Judgement
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """The outcomes of the checks of this trial."""
+        return self.judgement.of_trial(self.evidence.trial.id)
+
+    @property
+    def passed(self) -> bool:
+        """Whether all checks of this trial passed."""
+        return all(outcome.status is Status.PASSED for outcome in self.outcomes)
+
+    @property
+    def disturbance(self) -> tuple[bool, float]:
+        """How other programs disturbed it: whether they took the processors, and how long it stood still (s)."""
+        return self.evidence.recording.crowded, self.evidence.recording.stalled_s
+
+
+ALONE = Clock("simulated", "the simulator ran by itself, and says the same at any pace")
+"""The clock of a trial without a node."""
+
+
+def first_clock(choice: ClockChoice, evidence: Evidence) -> Clock:
+    """Return the clock under which this trial begins (rules 1 and 2)."""
+    if choice != "auto":
+        return Clock(choice, f"asked for with --clock {choice}")
+    try:
+        entry = evidence.entry_point()
+        clues = wall_clues(evidence.submission.files, entry.partition(":")[0].strip() if entry else None)
+    except Exception as error:  # (the checks that read the source report it)
+        return Clock("wall", f"the source could not be read ({in_words(error)}), so it may follow the wall's clock")
+    if clues:
+        return Clock("wall", f"{clues[0].name} at {clues[0].file}:{clues[0].line} may follow the wall's clock")
+    return Clock("simulated", "the node waits only for ROS time and messages, so its seconds need not be waited for")
+
+
+def stops_at_doubt(choice: ClockChoice) -> bool:
+    """Return whether a trial in simulated time ends when the node may follow wall time (rule 3)."""
+    return choice == "auto"
+
+
+def after_doubt(doubt: WallTimeNeeded) -> Clock:
+    """Return the clock of the trial after one that ended at a doubt (rule 3)."""
+    return Clock("wall", str(doubt))
+
+
+def after_simulated(choice: ClockChoice, attempt: Attempt) -> Clock | None:
+    """Return the clock that decides after a trial in simulated time (rule 4); None if that trial counts."""
+    if choice == "simulated" or not any(outcome.finding.near_edge for outcome in attempt.outcomes):
+        return None
+    return Clock("wall", "a measured value lies near the edge of what is allowed, where only the wall's clock decides")
+
+
+def wants_another(attempts: Sequence[Attempt]) -> bool:
+    """Return whether a trial in wall time is repeated after these (rule 5)."""
+    last = attempts[-1]
+    return len(attempts) < WALL_TRIALS and last.disturbance > (False, 0.0) and not last.passed
+
+
+def that_counts(attempts: Sequence[Attempt]) -> Attempt:
+    """Return the trial in wall time that counts (rule 5)."""
+    return attempts[-1] if attempts[-1].passed else min(attempts, key=lambda attempt: attempt.disturbance)

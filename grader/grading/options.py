@@ -1,0 +1,23 @@
+"""Options: how a submission is graded."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from grader.grading.clock import ClockChoice
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to grade: `in_cell` confines the student's code (grader.sandbox).
+
+    `trials_at_once` trials of an exercise run at the same time. Use one if other gradings keep the processors busy.
+    """
+
+    in_cell: bool
+    clock: ClockChoice = "auto"
+    seed: int | None = None
+    trials_at_once: int = field(default_factory=lambda: len(os.sched_getaffinity(0)))

@@ -1,0 +1,49 @@
+"""The plan of a trial: its clock, its start and inputs, drawn from the seed, and the topics that the checks need."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.checks.kinds import KINDS
+from grader.grading.clock import stops_at_doubt
+from grader.trial.inputs import draw_inputs
+from grader.trial.start import start_pose
+from grader.trial.trial import Plan
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from grader.evidence.evidence import Evidence
+    from grader.exercise.model import CheckSpec
+    from grader.grading.clock import ClockChoice
+    from grader.trial.recording import ClockName
+
+USUAL_RADIUS_M = 2.0
+"""A random start leaves room for a circle of this radius, unless a check needs another."""
+DEFAULT_SEED = 1
+"""The seed of scenarios that vary, if the user gave none."""
+
+
+def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: int | None) -> Plan:
+    """Return the plan of this trial. `seed` is the user's, `choice` the value of `--clock`."""
+    scenario = evidence.trial.scenario
+    checks = [check for check in evidence.exercise.checks if check.trial == evidence.trial.id]
+    radii = [KINDS[check.kind].radius(check.params) for check in checks]
+    radius = max((each for each in radii if each is not None), default=USUAL_RADIUS_M)
+    start = start_pose(DEFAULT_SEED if seed is None and scenario.anywhere else seed, radius)
+    return Plan(
+        clock=clock,
+        start=start,
+        seed=seed,
+        duration_s=scenario.duration_s,
+        alone=not evidence.exercise.package,
+        inputs=draw_inputs(scenario, start, DEFAULT_SEED if seed is None else seed),
+        stop_at_doubt=stops_at_doubt(choice),
+        judged=_topics(checks),
+    )
+
+
+def _topics(checks: Sequence[CheckSpec]) -> tuple[str, ...]:
+    """Return the topics that these checks need: every string that begins with a slash, since some are topics."""
+    names = {value for check in checks for value in check.params.values() if isinstance(value, str)}
+    return tuple(sorted(name for name in names if name.startswith("/")))

@@ -1,0 +1,153 @@
+"""The trials of one grading: started beside the build, run, and repeated where the policy of the clock says so."""
+
+from __future__ import annotations
+
+import dataclasses
+from contextlib import nullcontext
+from typing import TYPE_CHECKING
+
+from grader.common.words import printable
+from grader.evidence.evidence import Run
+from grader.grading import clock as policy
+from grader.grading.clock import ALONE, Attempt
+from grader.grading.plan import plan_of
+from grader.trial.trial import OverwhelmedError, WallTimeNeeded
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from grader.checks.outcome import Finding
+    from grader.evidence.evidence import Evidence
+    from grader.grading.clock import Clock
+    from grader.grading.judging import Judging
+    from grader.grading.options import Options
+    from grader.grading.stopwatch import Stopwatch
+    from grader.grading.turns import Turns
+    from grader.ros.installation import Ros
+    from grader.trial.ahead import Ahead, Runs
+    from grader.trial.recording import ClockName
+    from grader.trial.trial import Trial
+
+
+class Trials:
+    """Makes and runs the trials of one submission. `tree` is its install tree (a tar stream)."""
+
+    def __init__(
+        self,
+        make: Callable[..., Trial],
+        ros: Ros,
+        options: Options,
+        judging: Judging,
+        ahead: Ahead,
+        turns: Turns,
+        stopwatch: Stopwatch,
+        tell: Callable[[str], None],
+    ) -> None:
+        self._make = make
+        self._ros = ros
+        self._options = options
+        self._judging = judging
+        self._ahead = ahead
+        self._turns = turns
+        self._stopwatch = stopwatch
+        self._tell = tell
+        self._started: dict[str, ClockName] = {}
+        self.tree = b""
+
+    def start(self, views: Iterable[Evidence]) -> None:
+        """Start simulator and launcher of these trials while the submission is built."""
+        for view in views:
+            name = self._started[view.trial.id] = self._judging.first_clock(view).name
+            self._ahead.start(view.trial.id, self._trial(view, name))
+
+    def run_ahead(self, views: Iterable[Evidence]) -> None:
+        """Start the nodes of those trials that were started in simulated time. `run` waits for their recordings."""
+        for view in views:
+            if self._judging.first_clock(view).name == "simulated" and self._begun(view) is not None:
+                self._ahead.run(view.trial.id, _package(view), view.trial.executable, self.tree)
+
+    def run(self, evidence: Evidence, settled: Mapping[str, Finding]) -> Attempt:
+        """Run this trial. Return the evidence with the recording that counts, judged after the `settled` findings.
+
+        A node that brings the simulator down once may have met a fault of the machine. If it happens twice, the node is
+        the cause. A node that kept the simulator busy for minutes has no second trial: a class would wait too long.
+        """
+        clock, begun = self._judging.first_clock(evidence), self._begun(evidence)
+        try:
+            with nullcontext(begun) if begun else self._trial(evidence, clock.name) as trial:
+                return self._decide(evidence, trial, clock, settled)
+        except OverwhelmedError as error:
+            if error.hung:
+                return self._overwhelmed(evidence, error, settled)
+            self._tell(f"The simulator was brought down ({printable(str(error))}): once more")
+        try:
+            with self._trial(evidence, clock.name) as trial:
+                return self._decide(evidence, trial, clock, settled)
+        except OverwhelmedError as error:
+            return self._overwhelmed(evidence, error, settled)
+
+    def run_alone(self, evidence: Evidence) -> Attempt:
+        """Run the simulator without a node."""
+        with self._stopwatch.stage("trial"), self._trial(evidence, ALONE.name) as trial:
+            recording = trial.run_alone()
+        return self._attempt(evidence.with_run(Run(dataclasses.replace(recording, why=ALONE.why))), {})
+
+    def _begun(self, evidence: Evidence) -> Runs | None:
+        """Return the trial that was started beside the build; None if there is none with the right clock."""
+        fits = self._started.get(evidence.trial.id) == self._judging.first_clock(evidence).name
+        return self._ahead.trial(evidence.trial.id) if fits else None
+
+    def _decide(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:
+        """Run the trial under its clock, and in wall time if that one must decide."""
+        if clock.name == "simulated":
+            try:
+                attempt = self._run(evidence, trial, clock, settled)
+            except WallTimeNeeded as doubt:
+                wall = policy.after_doubt(doubt)
+            else:
+                after = policy.after_simulated(self._options.clock, attempt)
+                if after is None:
+                    return attempt
+                wall = after
+            with self._trial(evidence, wall.name) as again:
+                first = self._run(evidence, again, wall, settled)
+        else:
+            wall = clock
+            first = self._run(evidence, trial, wall, settled)
+        attempts = [first]
+        while policy.wants_another(attempts):
+            self._tell("The machine was too busy for wall time: once more")
+            with self._turns.alone(), self._trial(evidence, wall.name) as again:
+                attempts.append(self._run(evidence, again, wall, settled))
+        return policy.that_counts(attempts)
+
+    def _run(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:
+        duration_s = evidence.trial.scenario.duration_s
+        if clock.name == "simulated":
+            self._tell(f"Running {duration_s:g} s of simulated time")
+        else:
+            self._ahead.settle()
+            self._tell(f"Running {duration_s:g} s ({clock.why})")
+        with self._stopwatch.stage("trial"):
+            recording = trial.run(_package(evidence), evidence.trial.executable, self.tree)
+        for part, seconds in recording.seconds.items():
+            if part != "start":
+                self._stopwatch.add(part, seconds)
+        return self._attempt(evidence.with_run(Run(dataclasses.replace(recording, why=clock.why))), settled)
+
+    def _trial(self, evidence: Evidence, clock: ClockName) -> Trial:
+        plan = plan_of(evidence, clock, choice=self._options.clock, seed=self._options.seed)
+        return self._make(plan, self._ros, in_cell=self._options.in_cell)
+
+    def _attempt(self, evidence: Evidence, settled: Mapping[str, Finding]) -> Attempt:
+        return Attempt(evidence, self._judging.so_far(evidence, settled))
+
+    def _overwhelmed(self, evidence: Evidence, error: OverwhelmedError, settled: Mapping[str, Finding]) -> Attempt:
+        return self._attempt(evidence.with_run(Run(overwhelmed=str(error))), settled)
+
+
+def _package(evidence: Evidence) -> str:
+    build = evidence.build
+    assert build is not None
+    assert build.package is not None
+    return build.package
