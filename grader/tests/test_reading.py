@@ -17,8 +17,8 @@ READS = {
     "read_tree", "read_folder", "find_package", "read_code", "read_module", "read_manifest", "read_setup_py",
     "read_answers", "read_tar", "read_entry_points", "wall_clues", "uses_of", "judge", "judge_so_far", "judge_early",
     "archive.load", "parse_package_string", "read_class", "read_notebook", "nbformat.read", "zipfile.ZipFile",
-    "read_payloads", "tarfile.open", "tokenize.tokenize", "tomllib.loads", "ast.parse", "json.loads", "json.load", "ET.fromstring",
-    "yaml.safe_load", "pickle.load", "pickle.loads",
+    "read_payloads", "tarfile.open", "tokenize.tokenize", "tomllib.loads", "ast.parse", "json.loads", "json.load",
+    "ET.fromstring", "yaml.safe_load", "pickle.load", "pickle.loads",
 }  # fmt: skip
 """Functions that read what they are given, as the source calls them."""
 NO_SUBMISSIONS = {"benchmarks", "exercise", "graph", "ros", "ros2", "setup", "turtlesim", "view"}
