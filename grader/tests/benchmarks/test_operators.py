@@ -1,4 +1,4 @@
-"""The mistakes that the benchmark of causes makes: each can be made, is the same for the same seed, and changes one place."""
+"""The mistakes that the benchmark of causes makes: each can be made, is the same for a seed, and changes one place."""
 
 from __future__ import annotations
 
