@@ -2,7 +2,7 @@
 
     python -m grader.benchmarks.causes [--count 200] [--seed 1] [--only OPERATOR ...] [--keep FOLDER]
 
-Makes right packages wrong by the operators of grader/benchmarks/operators, two at once in a third of them, and judges
+Makes right packages wrong by the operators of grader/tests/operators, two at once in a third of them, and judges
 them in simulated time. The right packages are the solutions and those cases of tests/unusual that follow ROS time. A
 package that passes all the same was not made wrong, and is left out. Printed are, of the others:
 
@@ -16,8 +16,8 @@ What is missed is listed. `--keep` stores the recordings, and `--again` judges t
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import pickle
-import random
 import re
 import tempfile
 import time
@@ -26,46 +26,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.benchmarks.operators import (
-    package_xml,
-    places,
-    setup_py,
-    source_calls,
-    source_names,
-    source_syntax,
-    source_values,
-)
-from grader.benchmarks.operators.operator import Package
 from grader.checks.exercises import find_exercise
 from grader.checks.judge import judge
 from grader.checks.outcome import Status
-from grader.evidence.evidence import Evidence
 from grader.grading.grade import grade
 from grader.grading.options import Options
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_submission
-from grader.tests.case import CASES, Case, make_submission, read_cases
 from grader.tests.grading_here import Builds
-from grader.trial.clues import wall_clues
+from grader.tests.operators.made import OPERATORS, Made, bases, make
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable
 
-    from grader.benchmarks.operators.operator import Change, Operator
     from grader.checks.outcome import Outcome
+    from grader.evidence.evidence import Evidence
 
-OPERATORS: tuple[Operator, ...] = (
-    *source_names.OPERATORS,
-    *source_calls.OPERATORS,
-    *source_values.OPERATORS,
-    *source_syntax.OPERATORS,
-    *setup_py.OPERATORS,
-    *package_xml.OPERATORS,
-    *places.OPERATORS,
-)
-STEPS = ("01-first-node", "03-circle-publisher", "04-package-files", "06-pose-subscriber")
-"""The solutions that are made wrong; each stands for as many packages as there are unusual ones together."""
-TWO_AT_ONCE = 1 / 3
 OBSERVATIONS = frozenset(
     {
         "ended-early", "ends-at-once", "wrong-rate", "uneven-rate", "late-start", "stopped-early", "published-once",
@@ -76,21 +52,6 @@ OBSERVATIONS = frozenset(
     }
 )  # fmt: skip
 """Diagnoses that repeat what was observed, and claim no cause."""
-
-
-@dataclass(frozen=True)
-class Made:
-    """A package made wrong: of which right one, by which operators, and where."""
-
-    name: str
-    exercise: str
-    files: Mapping[str, str]
-    mistakes: tuple[tuple[Operator, Change], ...]
-
-    @property
-    def operators(self) -> str:
-        """The names of the operators."""
-        return " + ".join(operator.name for operator, _ in self.mistakes)
 
 
 @dataclass(frozen=True)
@@ -143,49 +104,6 @@ def is_false(outcome: Outcome, made: Made) -> bool:
     return finding.diagnosis not in says | OBSERVATIONS
 
 
-def bases(folder: Path) -> list[tuple[str, Package]]:
-    """The right packages, each with its exercise: (exercise, package)."""
-    unusual = [case for case in read_cases(CASES.parent / "unusual") if case.result == "passed"]
-    found = [_read(case, folder) for case in unusual if case.exercise and not case.exercise.startswith(("02", "07"))]
-    right = [each for each in found if each is not None]
-    for step in STEPS:
-        own = _read(Case(name=step, why="", result="passed", base=step), folder)
-        assert own is not None
-        right += [own] * max(1, len(right) // len(STEPS))
-    return right
-
-
-def _read(case: Case, folder: Path) -> tuple[str, Package] | None:
-    """The package of a case; None where it follows wall time or is not all text."""
-    submission = open_submission(make_submission(case, folder / case.name))
-    exercise = find_exercise(case.exercise or case.base)
-    evidence = Evidence(exercise, submission)
-    source = evidence.node_file
-    entry = evidence.entry_point()
-    if source is None or wall_clues(submission.files, entry.partition(":")[0].strip() if entry else None):
-        return None
-    try:
-        return exercise.id, Package({path: data.decode() for path, data in submission.files.items()}, source)
-    except UnicodeDecodeError:
-        return None
-
-
-def make(right: Sequence[tuple[str, Package]], number: int, seed: int, operators: Sequence[Operator]) -> Made:
-    """The wrong package with this number: the same for the same seed."""
-    draw = random.Random(f"{seed} {number}")
-    amount = 2 if draw.random() < TWO_AT_ONCE and len(operators) > 1 else 1
-    while True:
-        exercise, package = draw.choice(right)
-        mistakes: list[tuple[Operator, Change]] = []
-        for operator in draw.sample(operators, min(amount, len(operators))):
-            seen = Package(mistakes[-1][1].files if mistakes else package.files, package.source)
-            change = operator.make(seen, draw) if seen.source in seen.files else None
-            if change is not None:
-                mistakes.append((operator, change))
-        if len(mistakes) == amount:
-            return Made(f"{number:04}", exercise, mistakes[-1][1].files, tuple(mistakes))
-
-
 def judged(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judged:
     """Judge a wrong package in simulated time."""
     package = folder / made.name / "my_robot_controller"
@@ -198,7 +116,7 @@ def judged(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judge
     graded = grade(find_exercise(made.exercise), open_submission(folder / made.name), options, build=builds)
     seconds = time.monotonic() - begun
     if keep is not None:
-        (keep / f"{made.name}.pickle").write_bytes(pickle.dumps(graded.evidence))
+        (keep / f"{made.name}.pickle").write_bytes(pickle.dumps(dataclasses.replace(graded.evidence)))
     return Judged(made, graded.report.outcomes, seconds)
 
 
@@ -206,7 +124,8 @@ def again(made: Made, keep: Path) -> Judged:
     """Judge a stored recording anew."""
     evidence: Evidence = pickle.loads((keep / f"{made.name}.pickle").read_bytes())
     begun = time.monotonic()
-    return Judged(made, judge(evidence), time.monotonic() - begun)
+    # Without what the properties have kept of the source, which may be read otherwise now.
+    return Judged(made, judge(dataclasses.replace(evidence)), time.monotonic() - begun)
 
 
 def tell(all_: Iterable[Judged]) -> None:
@@ -254,7 +173,7 @@ def main() -> None:
         mades = [make(right, number, wanted.seed, operators) for number in range(wanted.count)]
         begun = time.monotonic()
         if wanted.again:
-            found = [again(made, wanted.again) for made in mades]
+            found = [again(made, wanted.again) for made in mades if (wanted.again / f"{made.name}.pickle").is_file()]
         else:
             if wanted.keep:
                 wanted.keep.mkdir(parents=True, exist_ok=True)

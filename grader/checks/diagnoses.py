@@ -100,6 +100,8 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "name-misspelt": "a name is almost that of something that exists",
         "name-undefined": "a name is not defined anywhere",
         "local-name": "a function reads a variable before it assigns to it, as with a global counter",
+        "name-too-early": "a variable is used before the line that sets it",
+        "module-prefix": "a function of a module is used without the name of the module",
         "attribute-misspelt": "the name of an attribute or method is almost right",
         "attribute-missing": "the attribute or method does not exist",
         "attribute-too-early": "an attribute is used before it is set",
@@ -111,6 +113,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "none-before-message": "an attribute is used while it is still None, before the first message arrived",
     },
     "Calls": {
+        "init-misspelt": "the method that creates the object is not called __init__",
         "super-init-missing": "__init__ does not call super().__init__",
         "super-init-late": "the node is used before super().__init__ is called",
         "node-name-missing": "super().__init__ is called without a node name",

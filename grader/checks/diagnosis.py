@@ -86,6 +86,8 @@ Diagnosis = Literal[
     "name-misspelt",
     "name-undefined",
     "local-name",
+    "name-too-early",
+    "module-prefix",
     "attribute-misspelt",
     "attribute-missing",
     "attribute-too-early",
@@ -96,6 +98,7 @@ Diagnosis = Literal[
     "node-publishes",
     "none-before-message",
     # Calls
+    "init-misspelt",
     "super-init-missing",
     "super-init-late",
     "node-name-missing",

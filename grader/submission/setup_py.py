@@ -41,6 +41,8 @@ class SetupPy:
     data_files: tuple[tuple[str, tuple[str, ...]], ...] | None = None
     finds_packages: bool = False
     """packages=find_packages(...)"""
+    packages_line: int | None = None
+    """The line of the packages argument."""
     setup_line: int | None = None
     groups: tuple[str, ...] = ()
     """The names of the groups in entry_points."""
@@ -75,6 +77,7 @@ def read_setup_py(data: bytes) -> SetupPy:
         entry_points=points,
         data_files=_data_files(call, module),
         finds_packages=isinstance(packages, ast.Call) and _last(packages.func) == "find_packages",
+        packages_line=None if packages is None else packages.lineno,
         setup_line=call.node.lineno,
         groups=tuple(groups or ()),
         required=tuple(_texts(call.argument(99, "install_requires"), module)),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from grader.common.words import shorten
 from grader.evidence.activity import ended_at_start
+from grader.submission.code import import_path
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 START = "Traceback (most recent call last):"
+IGNORED = "Exception ignored in"
+"""Python's words before the traceback of an exception that ended nothing, as one in a destructor."""
+PACKAGES = ("site-packages", "dist-packages")
+"""Folders that hold what is installed: a module beside setup.py lies directly in one of them."""
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
 ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
 GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument types are supported:.*")
@@ -132,10 +137,15 @@ def read_tracebacks(text: str, files: Mapping[str, bytes]) -> Iterable[tuple[boo
 
 
 def _blocks(lines: list[str]) -> Iterable[tuple[bool, list[str]]]:
-    """Yield the lines of each traceback after its first, and whether another exception was being handled."""
+    """Yield the lines of each traceback after its first, and whether another exception was being handled.
+
+    Tracebacks of exceptions that Python ignored are left out: they did not end the node.
+    """
     starts = [index for index, line in enumerate(lines) if line.strip() == START]
     for index, start in enumerate(starts):
         stop = starts[index + 1] if index + 1 < len(starts) else len(lines)
+        if start and lines[start - 1].startswith(IGNORED):
+            continue
         before = " ".join(lines[max(start - 3, 0) : start])
         chained = "another exception occurred" in before or "the direct cause of the following" in before
         yield chained, lines[start + 1 : stop]
@@ -160,8 +170,18 @@ def _crash(lines: list[str], files: Mapping[str, bytes]) -> Crash | None:
 def _own_file(path: str, files: Mapping[str, bytes]) -> str | None:
     """Return the file of the submission that was installed or linked at this path: the longest path that matches."""
     tail = f"/{path}"
-    ends = [file for file in files if tail.endswith(f"/{file}")]
+    ends = [
+        file
+        for file in files
+        if tail.endswith((f"/{file}", f"/{import_path(file)}")) and ("/" in file or _is_beside(path))
+    ]
     return max(ends, key=len) if ends else None
+
+
+def _is_beside(path: str) -> bool:
+    """Return whether a file that lies beside setup.py may be at this path: rclpy has a node.py, too."""
+    folders = path.split("/")[:-1]
+    return not any(name in folders for name in PACKAGES) or folders[-1] in PACKAGES
 
 
 def _signal_name(number: int) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from grader.submission.code import read_module
 from grader.submission.constants import dotted
 from grader.submission.where import Where
 
@@ -30,8 +31,11 @@ class CrashScene:
     @cached_property
     def module(self) -> Module | None:
         """The module that contains the line."""
-        where = self.crash.where
-        return next((each for each in self.evidence.code.modules if where and each.file == where.file), None)
+        where, files = self.crash.where, self.evidence.submission.files
+        if where is None:
+            return None
+        known = (each for each in self.evidence.code.modules if each.file == where.file)
+        return next(known, None) or (read_module(where.file, files[where.file]) if where.file in files else None)
 
     @property
     def line(self) -> int:
@@ -71,6 +75,21 @@ class CrashScene:
         inside = [each for each in self.classes if each.lineno <= self.line <= _end(each)]
         return inside[-1] if inside else None
 
+    @property
+    def function(self) -> Function | None:
+        """The innermost function that contains the line, or None."""
+        inside = [node for node in self.nodes if isinstance(node, Function) and node.lineno <= self.line <= _end(node)]
+        return max(inside, key=lambda node: node.lineno, default=None)
+
+    def function_around(self, node: ast.AST) -> Function | None:
+        """Return the innermost function that contains the node, or None."""
+        around = [each for each in self.nodes if isinstance(each, Function) and _contains(each, node)]
+        return max(around, key=lambda each: each.lineno, default=None)
+
+    def class_around(self, node: ast.AST) -> ast.ClassDef | None:
+        """Return the class that the node is a direct member of, or None."""
+        return next((each for each in self.classes if node in each.body), None)
+
     def top_functions(self) -> list[Function]:
         """Return the functions at the top level of the module."""
         return [node for node in (self.module.body if self.module is not None else []) if isinstance(node, Function)]
@@ -96,6 +115,11 @@ def attributes_set(of: ast.ClassDef) -> Iterator[tuple[str, int]]:
     for node in ast.walk(of):
         if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store) and dotted(node) == f"self.{node.attr}":
             yield node.attr, node.lineno
+
+
+def _contains(outer: ast.AST, node: ast.AST) -> bool:
+    line = getattr(node, "lineno", 0)
+    return outer is not node and getattr(outer, "lineno", 0) <= line <= _end(outer)
 
 
 def _end(node: ast.AST) -> int:

@@ -102,6 +102,14 @@ def _comment(source: bytes, executable: str) -> int | None:
 
 
 def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
+    executable, files = evidence.trial.executable, evidence.submission.files
+    for point in points:
+        file = module_file((point.target or "").partition(":")[0], files)
+        if file is not None and file.rpartition("/")[2] == f"{executable}.py":
+            text = (
+                f"The entry point of {file} has another name, {shorten(point.name)}. The name stands before the = sign."
+            )
+            return Cause("entry-point-name", text, Where("setup.py", point.line))
     file = evidence.node_file or _looks_like_a_node(evidence, [point.target for point in points])
     if file is not None:
         text = f"{shorten(file)} is there, but setup.py has no entry point for it."

@@ -20,6 +20,9 @@ MODULE_OF = {
     "Float32": "std_msgs.msg",
     "Int32": "std_msgs.msg",
     "Empty": "std_srvs.srv",
+    "setup": "setuptools",
+    "find_packages": "setuptools",
+    "glob": "glob",
 }
 """Class -> the module that it is usually imported from."""
 

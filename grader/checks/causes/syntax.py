@@ -61,22 +61,38 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
     (r"instead of '='|cannot assign", "equals", "= gives a value to a name. == compares two values."),
 )
 """(pattern of Python's message, diagnosis, cause). The first pattern that matches counts."""
+NOT_CLOSED = re.compile(r"does not match opening parenthesis '(?P<bracket>.)' on line (?P<line>\d+)")
+ENTRY_POINT = re.compile(r"\s*\w+\s*=\s*[\w.]+:\w+\s*,?\s*")
 CONFLICT = r"^(<<<<<<<|=======|>>>>>>>)"
 OTHERWISE = "The mistake is often at the end of the line before: a bracket, a colon or the indentation."
 
 
-def why_unreadable(unreadable: Unreadable, data: bytes) -> Cause:
-    """Return the cause of a SyntaxError."""
+def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
+    """Return the cause of a SyntaxError, with the line to look at if it is another one than Python's."""
     conflict = line_of(data, CONFLICT)
     if conflict is not None:
         text = (
             "Git left both versions in the file, between <<<<<<< and >>>>>>>. Keep one version and delete the markers."
         )
         return Cause("merge-conflict", text)
+    unquoted = _unquoted(unreadable, data)
+    if unquoted:
+        return Cause("syntax-error", "An entry point is a string, so it needs quotation marks.", Where(file, unquoted))
+    other = NOT_CLOSED.search(unreadable.message)
+    if other is not None:
+        text = f"The bracket {other['bracket']} of line {other['line']} is still open in line {unreadable.line}."
+        return Cause("bracket-open", text, Where(file, int(other["line"])))
     for pattern, diagnosis, text in CAUSES:
         if re.search(pattern, unreadable.message):
             return Cause(diagnosis, text)
     return Cause("syntax-error", OTHERWISE)
+
+
+def _unquoted(unreadable: Unreadable, data: bytes) -> int | None:
+    """Return the line of Python's message if it is an entry point without quotation marks, else None."""
+    lines = data.decode("utf-8", "replace").splitlines()
+    line = lines[unreadable.line - 1] if unreadable.line and unreadable.line <= len(lines) else ""
+    return unreadable.line if ENTRY_POINT.fullmatch(line) else None
 
 
 def unreadable_observed(file: str, unreadable: Unreadable) -> str:
@@ -87,6 +103,6 @@ def unreadable_observed(file: str, unreadable: Unreadable) -> str:
 
 def unreadable_finding(file: str, unreadable: Unreadable, data: bytes) -> Finding:
     """Return a failed finding about a file that Python cannot read."""
-    cause = why_unreadable(unreadable, data)
+    cause = why_unreadable(file, unreadable, data)
     observed = unreadable_observed(file, unreadable)
     return failed(observed, EXPECTED, cause.at(Where(file, unreadable.line)))

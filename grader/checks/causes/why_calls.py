@@ -107,8 +107,11 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
     if "'property' object is not iterable" in text:
         spun = next(iter(scene.calls_on_line("spin")), None)
         name = ast.unparse(spun.args[0]) if spun is not None and spun.args else "It"
+        set_to = scene.module.names.get(name) if scene.module is not None else None
         text = f"rclpy.spin was called with {shorten(name)}, which is a class. {CREATE_OBJECT}"
-        return Cause("class-for-object", text)
+        return Cause("class-for-object", text, scene.at(set_to))
+    if "descriptor '__init__'" in text and "'super'" in text:
+        return Cause("not-called", "super is a function. Write super().__init__, with parentheses after super.")
     if STRING_AND_NUMBER.search(text):
         return Cause(
             "string-and-number", "A string and a number cannot be added. Use an f-string to put a number into a string."
@@ -120,7 +123,7 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
 
 def _too_few(scene: CrashScene, function: str, names: str) -> Cause:
     if function == "__init__" and "node_name" in names:
-        return Cause("node-name-missing", "Pass the node name, a string, to super().__init__.")
+        return _init_misspelt(scene) or Cause("node-name-missing", "Pass the node name, a string, to super().__init__.")
     own = scene.functions(function)
     if own:
         text = (
@@ -131,6 +134,20 @@ def _too_few(scene: CrashScene, function: str, names: str) -> Cause:
     if function in TAKES:
         return Cause("argument-missing", f"{function} takes {TAKES[function]}.")
     return Cause("argument-missing", f"{function} needs more arguments: {shorten(names)}.")
+
+
+def _init_misspelt(scene: CrashScene) -> Cause | None:
+    """Return the cause if a class has a method that looks like __init__ but is not called so, else None."""
+    for own in scene.classes:
+        names = {each.name: each for each in methods(own)}
+        found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]
+        if "__init__" not in names and found:
+            text = (
+                f"The class has a method {found[0]}, but Python only runs __init__ when it creates the object: "
+                "init with two underscores on each side."
+            )
+            return Cause("init-misspelt", text, scene.at(names[found[0]]))
+    return None
 
 
 def _too_many(scene: CrashScene, function: str) -> Cause | None:

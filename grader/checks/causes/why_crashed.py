@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.crash_scene import CrashScene
+from grader.checks.causes.why_attributes import why_no_attribute
 from grader.checks.causes.why_calls import why_refused, why_type
 from grader.checks.causes.why_fields import why_field
 from grader.checks.causes.why_imports import why_no_import
-from grader.checks.causes.why_names import why_no_attribute, why_no_name, why_unbound
+from grader.checks.causes.why_names import why_no_name, why_unbound
 from grader.checks.outcome import Finding, failed
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Why a name or an attribute was missing: NameError, UnboundLocalError and AttributeError in a student's node."""
+"""Why a name was missing: NameError and UnboundLocalError in a student's node."""
 
 from __future__ import annotations
 
@@ -7,54 +7,116 @@ import builtins
 import math
 import random
 import re
-import time
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
-from grader.checks.causes.why_calls import CREATE_OBJECT
-from grader.common.words import a_list, nearest, shorten
-from grader.submission.constants import dotted
+from grader.common.words import nearest, shorten
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterator
 
     from grader.checks.causes.crash_scene import CrashScene
 
 UNBOUND = re.compile(r"local variable '(?P<name>\w+)'")
 NO_NAME = re.compile(r"name '(?P<name>\w+)' is not defined")
-NO_ATTRIBUTE = re.compile(
-    r"(?:'(?P<object>\w+)' object|type object '(?P<type>\w+)'|module '(?P<module>[\w.]+)')"
-    r" has no attribute '(?P<name>\w+)'"
-)
-MODULES_READ = {"math": math, "time": time, "random": random}
-WELL_KNOWN = ("rclpy", "math", "time", "random", "os", "sys")
+WELL_KNOWN = ("rclpy", "math", "time", "random", "os", "sys", "json", "threading", "datetime", "functools")
+MEMBERS = {
+    "math": frozenset(name for name in dir(math) if not name.startswith("_")),
+    "rclpy": frozenset(ros_names.RCLPY) - {"node"},
+    "time": frozenset({"sleep", "perf_counter", "monotonic"}),
+    "random": frozenset(name for name in dir(random) if name.islower() and not name.startswith("_")),
+}
+"""Module -> what learners use of it, and forget to say that it belongs there."""
+CONSTANTS = {"true": "True", "false": "False", "none": "None", "null": "None", "TRUE": "True", "FALSE": "False"}
 
 
 def why_no_name(scene: CrashScene) -> Cause | None:
-    """Return the cause of a NameError: self is missing, an import is missing, or the name is misspelt."""
+    """Return the cause of a NameError: self or an import is missing, or the name is misspelt or local elsewhere."""
     match = NO_NAME.search(scene.crash.message)
     if match is None:
         return None
     name = match["name"]
-    own = scene.own_class
-    if own is not None and name in {*(each.name for each in methods(own)), *(each for each, _ in attributes_set(own))}:
-        return Cause("missing-self", f"{name} belongs to the object. Inside a method, write self.{name}.")
+    return (
+        _of_self(scene, name)
+        or _of_import(scene, name)
+        or _bound_elsewhere(scene, name)
+        or _alike(scene, name)
+        or Cause(
+            "name-undefined",
+            "Nothing defines this name before this line. If it should be a string, it needs quotation marks.",
+        )
+    )
+
+
+def _of_self(scene: CrashScene, name: str) -> Cause | None:
     if name == "self":
         return Cause("self-parameter", "A method can use self only if self is its first parameter.")
+    own = scene.own_class
+    if own is None:
+        return None
+    known = {*(each.name for each in methods(own)), *(each for each, _ in attributes_set(own))}
+    if name in known or (name in ros_names.NODE and _is_called(scene, name)):
+        return Cause("missing-self", f"{name} belongs to the object. Inside a method, write self.{name}.")
+    return None
+
+
+def _is_called(scene: CrashScene, name: str) -> bool:
+    return any(isinstance(call.func, ast.Name) for call in scene.calls_on_line(name))
+
+
+def _of_import(scene: CrashScene, name: str) -> Cause | None:
     if name in ros_names.MODULE_OF:
         module = ros_names.MODULE_OF[name]
         return Cause("missing-import", f"The file does not import {name}. It is in the module {module}.")
     if name in WELL_KNOWN:
         return Cause("missing-import", f"The file does not import the module {name}.")
-    guess = nearest(name, _bound(scene), alike=0.8)
+    for module, members in MEMBERS.items():
+        if name in members:
+            if module in _imported(scene):
+                return Cause("module-prefix", f"{name} belongs to the module {module}. Write {module}.{name}.")
+            if module != "rclpy":
+                return Cause("missing-import", f"The file does not import {name}. It is in the module {module}.")
+    return None
+
+
+def _bound_elsewhere(scene: CrashScene, name: str) -> Cause | None:
+    """Return the cause if a later line or another function sets the name, else None."""
+    inside = scene.function
+    for line, function in sorted(_stores(scene, name), key=lambda each: each[0]):
+        if function is None and line > scene.line:
+            return Cause("name-too-early", f"{name} gets its value in line {line}, after this line.")
+        if function is not None and function is not inside:
+            text = f"{name} is a local variable of {function.name} (line {line}). It does not exist in other functions."
+            return Cause("local-name", text)
+    return None
+
+
+def _stores(scene: CrashScene, name: str) -> Iterator[tuple[int, Function | None]]:
+    """Yield each line that gives the name a value or a meaning, with the function that it is local to."""
+    for node in scene.nodes:
+        stored = isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
+        defined = isinstance(node, Function | ast.ClassDef) and node.name == name
+        if (stored or defined) and not (defined and scene.class_around(node) is not None):
+            yield getattr(node, "lineno", 0), scene.function_around(node)
+
+
+def _alike(scene: CrashScene, name: str) -> Cause | None:
+    if name in CONSTANTS:
+        return Cause("name-misspelt", f"Python spells it {CONSTANTS[name]}. Upper and lower case matter.")
+    guess = nearest(name, _bound(scene) - {name}, alike=0.8)
+    if guess is None and _is_called(scene, name):
+        plain = {each.lower(): each for each in _bound(scene)}
+        guess = plain.get(name.lower())
     if guess is not None:
         return Cause("name-misspelt", f"There is a name {shorten(guess)}. Compare the two names letter by letter.")
-    return Cause(
-        "name-undefined",
-        "Nothing defines this name before this line. If it should be a string, it needs quotation marks.",
-    )
+    return None
+
+
+def _imported(scene: CrashScene) -> set[str]:
+    imports = [node for node in scene.nodes if isinstance(node, ast.Import)]
+    return {alias.asname or alias.name.partition(".")[0] for node in imports for alias in node.names}
 
 
 def _bound(scene: CrashScene) -> set[str]:
@@ -67,131 +129,22 @@ def _bound(scene: CrashScene) -> set[str]:
 
 
 def why_unbound(scene: CrashScene) -> Cause:
-    """Return the cause of an UnboundLocalError: the function assigns to the name later, or it is an attribute."""
+    """Return the cause of an UnboundLocalError: the function sets the name later, or the name is an attribute."""
     match = UNBOUND.search(scene.crash.message)
+    name = match["name"] if match is not None else ""
     own = scene.own_class
-    if match is not None and own is not None and match["name"] in {name for name, _ in attributes_set(own)}:
-        text = f"{match['name']} belongs to the object. Inside a method, write self.{match['name']}."
-        return Cause("missing-self", text)
+    if own is not None and name in {each for each, _ in attributes_set(own)}:
+        return Cause("missing-self", f"{name} belongs to the object. Inside a method, write self.{name}.")
+    stores = list(_stores(scene, name))
+    local = sorted(line for line, function in stores if function is not None and function is scene.function)
+    if name in _imported(scene) and local:
+        text = f"Line {local[0]} gives {name} another value, so in this function {name} is not the module any more."
+        return Cause("local-name", text, scene.at(local[0]))
+    outside = any(function is None for _, function in stores)
+    if local and local[0] > scene.line and not outside:
+        return Cause("name-too-early", f"{name} gets its value in line {local[0]}, after this line.")
     return Cause(
         "local-name",
         "A variable that a function assigns to is local to that function. "
         "Store a value that must survive the call in self.",
     )
-
-
-def why_no_attribute(scene: CrashScene) -> Cause | None:
-    """Return the cause of an AttributeError, depending on the type of the object."""
-    match = NO_ATTRIBUTE.search(scene.crash.message)
-    if match is None:
-        return None
-    name = match["name"]
-    if match["module"]:
-        return _of_module(match["module"], name)
-    owner = match["object"] or match["type"]
-    if owner in ("property", "function", "method", "builtin_function_or_method", "NoneType"):
-        return _of_a_wrong_thing(scene, owner, name)
-    if match["type"] or owner.startswith("Metaclass_"):
-        return _class_for_object(owner.removeprefix("Metaclass_"))
-    if scene.class_named(owner) is not None:
-        return _of_own_class(scene, owner, name)
-    if owner in ros_names.FIELDS:
-        fields = ros_names.FIELDS[owner]
-        guess = nearest(name, fields)
-        more = f" Did you mean {guess}?" if guess else ""
-        return Cause("message-field", f"A {owner} has {a_list(fields)}.{more}")
-    if owner in ros_names.OTHERS:
-        return _misspelt(name, ros_names.OTHERS[owner]) or Cause(
-            "attribute-missing", f"A {owner} has no attribute or method with that name."
-        )
-    return None
-
-
-def _of_module(module: str, name: str) -> Cause | None:
-    if module == "rclpy" and name in ros_names.MODULE_OF:
-        return Cause("import-wrong-place", f"{name} is in the module {ros_names.MODULE_OF[name]}.")
-    known: Iterable[str] = (
-        ros_names.RCLPY if module == "rclpy" else dir(MODULES_READ[module]) if module in MODULES_READ else ()
-    )
-    return _misspelt(name, known) or Cause(
-        "attribute-missing", f"The module {shorten(module)} has nothing with that name."
-    )
-
-
-def _misspelt(name: str, known: Iterable[str]) -> Cause | None:
-    plain = {each.lower(): each for each in known}
-    guess = plain.get(name.lower()) or nearest(name, known)
-    if guess is None:
-        return None
-    return Cause(
-        "attribute-misspelt", f"There is {guess}. Compare the two letter by letter, including upper and lower case."
-    )
-
-
-def _class_for_object(name: str) -> Cause:
-    return Cause("class-for-object", f"{shorten(name)} is a class. {CREATE_OBJECT}")
-
-
-def _of_a_wrong_thing(scene: CrashScene, owner: str, name: str) -> Cause | None:
-    if owner == "property":
-        made = next((node for node in scene.nodes if isinstance(node, ast.Assign) and _is_message(node.value)), None)
-        return _class_for_object(ast.unparse(made.value) if made is not None else "It").at(scene.at(made))
-    if owner == "NoneType":
-        return _of_none(scene, name)
-    return Cause("not-called", "The function is named but not called: the parentheses are missing.")
-
-
-def _is_message(value: ast.expr) -> bool:
-    return (dotted(value) or "").rpartition(".")[2] in ros_names.FIELDS
-
-
-def _of_none(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause if a value is None: no message has set it yet, or rclpy.spin was called with None."""
-    holders = [dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name]
-    for holder in filter(None, holders):
-        values = [node for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)]
-        if any(isinstance(each.value, ast.Constant) and each.value.value is None for each in values):
-            text = f"{shorten(holder)} is None until the first message arrives. Check for None before you use it."
-            return Cause("none-before-message", text)
-    if name == "executor":
-        return Cause("no-object", "rclpy.spin was called with None instead of a node.")
-    return None
-
-
-def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
-    own = scene.class_named(owner)
-    assert own is not None
-    made = next((each for each in methods(own) if each.name == "__init__"), None)
-    if name.startswith("_") and made is not None:
-        base = [node for node in ast.walk(made) if isinstance(node, ast.Call) and (_attr(node.func) == "__init__")]
-        if not base:
-            text = "__init__ never calls super().__init__, which creates the node."
-            return Cause("super-init-missing", text, scene.at(made))
-        text = "super().__init__ creates the node. You cannot use the node before that line."
-        return Cause("super-init-late", text)
-    lines = [line for attribute, line in attributes_set(own) if attribute == name]
-    if lines:
-        text = f"self.{shorten(name)} is set in line {min(lines)}, which has not run yet."
-        return Cause("attribute-too-early", text)
-    outside = next((each for each in scene.top_functions() if each.name == name), None)
-    if outside is not None:
-        text = f"{name} is outside the class. Indent it like the other methods."
-        return Cause("method-outside-class", text, scene.at(outside))
-    inside = next((each for method in methods(own) for each in ast.walk(method) if _is_function(each, name)), None)
-    if inside is not None:
-        text = f"{name} is indented too far. It is inside another method, so self.{name} does not exist."
-        return Cause("method-in-method", text, scene.at(inside))
-    if name == "publish":
-        return Cause("node-publishes", "A node has no method publish. Call publish on the publisher instead.")
-    known = {*ros_names.NODE, *(each.name for each in methods(own)), *(each for each, _ in attributes_set(own))}
-    return _misspelt(name, known) or Cause(
-        "attribute-missing", f"Nothing sets self.{shorten(name)}, and the class has no method with that name."
-    )
-
-
-def _is_function(node: ast.AST, name: str) -> bool:
-    return isinstance(node, Function) and node.name == name
-
-
-def _attr(function: ast.expr) -> str:
-    return function.attr if isinstance(function, ast.Attribute) else ""

@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.bad_entry_point import bad_entry_point
 from grader.checks.causes.crash import read_tracebacks
 from grader.checks.causes.syntax import unreadable_observed, why_unreadable
+from grader.checks.causes.why_crashed import why_crashed
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, shorten
@@ -25,7 +26,7 @@ SETUP_PY_FRAME = re.compile(r"(?P<before>, in run_setup\n.*\n(?:[ ^~]+\n)?\s+Fil
 """How setup.py appears in a traceback when colcon runs it to read the arguments of setup()."""
 UNREAD_SETUP = "return ast.literal_eval(output)"
 """The line of colcon that reads the arguments of setup()."""
-NO_FILE = re.compile(r"can't copy .*: doesn't exist")
+NO_FILE = re.compile(r"can't copy '?(?P<file>[^':]*)'?: doesn't exist")
 EXPECTED = "`colcon build` succeeds and installs the package."
 
 
@@ -71,9 +72,10 @@ def early(evidence: Evidence, _: NoParams) -> Finding | None:
         return failed("There is no setup.py next to package.xml.", EXPECTED, Cause("setup-py-missing", cause, where))
     if setup.unreadable is None:
         return None
-    why = why_unreadable(setup.unreadable, evidence.submission.files["setup.py"])
+    why = why_unreadable("setup.py", setup.unreadable, evidence.submission.files["setup.py"])
     observed = unreadable_observed("setup.py", setup.unreadable)
-    return failed(observed, EXPECTED, Cause("setup-py-syntax", why.text, Where("setup.py", setup.unreadable.line)))
+    where = why.where or Where("setup.py", setup.unreadable.line)
+    return failed(observed, EXPECTED, Cause("setup-py-syntax", why.text, where))
 
 
 def _broken(evidence: Evidence) -> Finding:
@@ -86,9 +88,8 @@ def _broken(evidence: Evidence) -> Finding:
     crashes = [crash for _, crash in read_tracebacks(log, evidence.submission.files) if crash.where is not None]
     if crashes:
         crash = crashes[0]
-        return failed(
-            f"setup.py failed: {crash.observed}.", EXPECTED, Cause("setup-py-raises", crash.meaning, crash.where)
-        )
+        why = why_crashed(evidence, crash).at(crash.where)
+        return failed(f"setup.py failed: {crash.observed}.", EXPECTED, Cause("setup-py-raises", why.text, why.where))
     where = Where("setup.py", _setup_line(evidence))
     if UNREAD_SETUP in build.log:
         observed = "colcon could not read the arguments of setup() in setup.py."
@@ -96,9 +97,11 @@ def _broken(evidence: Evidence) -> Finding:
         return failed(observed, EXPECTED, Cause("setup-py-output", cause, where))
     words = [line for line in LAST_WORDS.findall(build.log) if "CalledProcessError" not in line]
     message = f": {shorten(words[-1], 150)}" if words else f" (exit code {build.exit_code})"
-    if words and NO_FILE.search(words[-1]):
+    missing = NO_FILE.search(words[-1]) if words else None
+    if missing is not None:
         cause = "data_files in setup.py names a file that does not exist in the package."
-        return failed(f"`colcon build` failed{message}.", EXPECTED, Cause("data-file-missing", cause, where))
+        diagnosis: Diagnosis = "package-xml-missing" if missing["file"] == "package.xml" else "data-file-missing"
+        return failed(f"`colcon build` failed{message}.", EXPECTED, Cause(diagnosis, cause, where))
     return failed(f"`colcon build` failed{message}.", EXPECTED, Cause("build-failed", _other_type(evidence), where))
 
 
@@ -128,7 +131,9 @@ def _modules(evidence: Evidence) -> Finding:
     if missing:
         observed = "`colcon build` finished but installed none of the Python files."
         cause = _other_type(evidence) or "The packages argument of setup() lists the folders to install."
-        return failed(observed, EXPECTED, Cause("nothing-installed", cause, Where("setup.py", _setup_line(evidence))))
+        setup = evidence.setup_py
+        line = (setup.packages_line if setup is not None else None) or _setup_line(evidence)
+        return failed(observed, EXPECTED, Cause("nothing-installed", cause, Where("setup.py", line)))
     return passed("`colcon build` built and installed the package.")
 
 

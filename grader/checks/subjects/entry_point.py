@@ -14,6 +14,7 @@ from grader.checks.subjects.building import INSTALLED_MODULE, is_linked
 from grader.common.words import nearest, shorten
 from grader.submission.code import import_path, module_file, read_module
 from grader.submission.constants import dotted
+from grader.submission.package_xml import line_of
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -41,7 +42,10 @@ def entry_point(evidence: Evidence, _: NoParams) -> Finding:
             cause = "setup.cfg is missing."
         elif build.package not in (None, evidence.exercise.package):
             cause = "The folder name must be the package name in package.xml."
-        where = Where("setup.cfg" if "setup.cfg" in evidence.submission.files else "setup.py")
+        where = Where("setup.py")
+        if "setup.cfg" in evidence.submission.files:
+            setup_cfg = evidence.submission.files["setup.cfg"]
+            where = Where("setup.cfg", line_of(setup_cfg, "^install[_-]scripts"))
         return failed(observed, expected, Cause("setup-cfg", cause, where))
     module, _colon, attribute = target.partition(":")
     return _resolve(evidence, module.strip(), attribute.split("[")[0].strip())
@@ -77,11 +81,18 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
     if module_name.endswith(".py"):
         cause = "Write the module name without the ending .py."
         return failed(observed, expected, Cause("entry-point-py", cause, line(evidence)))
+    outer, _dot, last = module_name.rpartition(".")
+    file = module_file(outer, files) if outer else None
+    if file is not None and any(_bindings(read_module(file, files[file]), last)):
+        cause = f"{shorten(last)} is a function in {file}. Between module and function there is a colon, not a dot."
+        return failed(observed, f"{FORM}.", Cause("entry-point-no-function", cause, line(evidence)))
     if module_name in evidence.exercise.package or "." not in module_name:
         cause = "Write the folder first, then a dot, then the file name without .py."
     else:
         guess = nearest(module_name, modules)
         cause = f"There is a module {shorten(guess)}." if guess else "Compare it with the names of your files."
+        if f"{last}.py" in files:
+            cause = f"{last}.py is beside setup.py. It belongs in the folder {shorten(outer)}."
     return failed(observed, expected, Cause("entry-point-module", cause, line(evidence)))
 
 
@@ -133,7 +144,10 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
         cause = f"{name} is indented, so it belongs to the class above it. Remove the indentation."
         return failed(observed, expected, Cause("main-in-class", cause, Where(module.file, inside.lineno)))
     guess = nearest(name, [node.name for node in functions if node.col_offset == 0])
-    cause = f"It has a function {shorten(guess)}." if guess else "Nothing at the top level of the file has that name."
+    top = [node.name for node in functions if node.col_offset == 0]
+    cause = "Nothing at the top level of the file has that name."
+    if guess or len(top) == 1:
+        cause = f"It has a function {shorten(guess or top[0])}."
     return failed(observed, expected, Cause("entry-point-function", cause, line(evidence)))
 
 

@@ -43,6 +43,9 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     trajectory = evidence.trajectory
     away = np.hypot(trajectory.x - params.x_m, trajectory.y - params.y_m)
     end, nearest = float(away[-1]), float(away.min())
+    late = trajectory.t_s >= trajectory.t_s[-1] - REST_S
+    drift = float(trajectory.steps[late].sum())
+    rests = drift <= REST_M
     close = Band.at_most(params.tolerance_m)
     near = close.near(end)
     if not close.holds(end):
@@ -51,6 +54,13 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
             observed += f" On the way it came within {nearest:.2f} m of the goal."
             cause = "The turtle does not stop at the goal. Near the goal, publish a command with all values 0."
             return failed(observed, expected, Cause("goes-on", cause, where), near_edge=near)
+        last = evidence.commands[-1] if evidence.commands else None
+        if last is not None and rests and not (last.linear[0] or last.angular[2]):
+            cause = (
+                "The last command has all values 0, as if the turtle had arrived. "
+                "Compare the numbers of the goal in the code with those of the task."
+            )
+            return failed(observed, expected, Cause("not-there", cause, where), near_edge=near)
         if end >= away[0] - MOVED_M:
             cause = "The direction to the goal is atan2(goal_y - y, goal_x - x). The direction of the turtle is theta."
             return failed(observed, expected, Cause("away-from-goal", cause, where), near_edge=near)
@@ -58,9 +68,7 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
         if trajectory.wall.any():
             cause = "The turtle ran into a wall. Keep the angle between -pi and pi with atan2(sin(a), cos(a))."
         return failed(observed, expected, Cause("not-there", cause, where), near_edge=near)
-    late = trajectory.t_s >= trajectory.t_s[-1] - REST_S
-    drift = float(trajectory.steps[late].sum())
-    if not drift <= REST_M:
+    if not rests:
         observed = f"The turtle is still moving at the end: {drift:.2f} m in the last {REST_S:g} s."
         cause = "Near the goal, publish a command with all values 0."
         return failed(observed, expected, Cause("still-moving", cause, where))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -17,6 +18,7 @@ from grader.checks.subjects.rate import Rate, Subject, rate_of
 from grader.common.words import shorten
 from grader.evidence import lines
 from grader.evidence.arrivals import measure_arrivals
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -78,7 +80,10 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
     observed = f'The last log line is "{shorten(line, 90)}".'
     why = Cause("log-format", "Compare it letter by letter: capital letters, spaces and dots count.")
     pattern = lines.Format(params.format).pattern()
-    if re.fullmatch(pattern.pattern, line, re.IGNORECASE | re.ASCII):
+    if re.search(r"\{[\w.:]+\}", line):
+        text = "The braces are in the line as they are in the code. Only in an f-string do they stand for a value."
+        why = Cause("log-numbers", text)
+    elif re.fullmatch(pattern.pattern, line, re.IGNORECASE | re.ASCII):
         why = Cause("log-capitals", "Upper and lower case matter.")
     elif re.search(rf"{pattern.pattern}(?!\.?\d)", line, re.ASCII):  # (not only the first digits of a number)
         why = Cause("log-more", "The line contains more than it should.")
@@ -129,8 +134,10 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
     steps = [later - earlier for earlier, later in pairwise(numbers)]
     if not any(steps):
         observed = f"The number is always {numbers[0]:.0f}."
-        cause = "Store the counter as an attribute of self and increase it in every call."
-        return failed(observed, expected, Cause("counter-stuck", cause, where))
+        why = _thrown_away(evidence) or Cause(
+            "counter-stuck", "Store the counter as an attribute of self and increase it in every call.", where
+        )
+        return failed(observed, expected, why)
     if any(step != 1.0 for step in steps):
         at = next(index for index, step in enumerate(steps) if step != 1.0)
         observed = f"The number after {numbers[at]:.0f} is {numbers[at + 1]:.0f}."
@@ -146,6 +153,16 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
         )
         return failed(observed, expected, Cause("counter-start", cause, where))
     return passed(f"The counter starts at {params.first:.0f} and increases by one per line.")
+
+
+def _thrown_away(evidence: Evidence) -> Cause | None:
+    """Return the cause if a line calculates a value that nothing keeps, else None."""
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.Expr) and isinstance(node.value, ast.BinOp | ast.Compare):
+                text = f"This line calculates {shorten(ast.unparse(node.value), 40)} and keeps the result nowhere."
+                return Cause("counter-stuck", text, Where(module.file, node.lineno))
+    return None
 
 
 LOG_LINES = Kind(

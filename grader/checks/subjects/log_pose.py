@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -10,7 +11,10 @@ from grader.checks.cause import Cause
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.common.lazy import np
+from grader.common.words import shorten
 from grader.evidence import lines
+from grader.submission.constants import dotted
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -98,11 +102,10 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     where = evidence.place("hypot", "sqrt", "dist", "info")
     numbers = [line.numbers["distance"] for line in logged]
     if not any(numbers):
-        return failed(
-            observed,
-            expected,
-            Cause("distance-zero", "The distance stays 0. Add a step to it each time a pose arrives.", where),
+        why = _overwritten(evidence) or Cause(
+            "distance-zero", "The distance stays 0: each time a pose arrives, the step from the last pose to it counts."
         )
+        return failed(observed, expected, why.at(where))
     if holds(
         np.hypot(frames.x - recording.start.x, frames.y - recording.start.y), lambda line: line.numbers["distance"]
     ):
@@ -128,6 +131,24 @@ def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
         "The distance is the sum of these steps."
     )
     return failed(observed, expected, Cause("wrong-distance", cause, where))
+
+
+def _overwritten(evidence: Evidence) -> Cause | None:
+    """Return the cause if a method replaces the last pose before it calculates the step from it, else None."""
+    for module in evidence.code.modules:
+        for method in (node for node in module.nodes if isinstance(node, ast.FunctionDef)):
+            given = {argument.arg for argument in method.args.args} - {"self"}
+            inside = list(ast.walk(method))
+            for kept in inside:
+                if not (isinstance(kept, ast.Assign) and isinstance(kept.value, ast.Name) and kept.value.id in given):
+                    continue
+                name = dotted(kept.targets[0]) or ""
+                steps = [node for node in inside if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Sub)]
+                reads = [node.lineno for node in steps if f"{name}." in ast.unparse(node)]
+                if name.startswith("self.") and reads and kept.lineno < min(reads):
+                    text = f"Line {kept.lineno} replaces {shorten(name)} before the step from it is calculated."
+                    return Cause("distance-zero", text, Where(module.file, kept.lineno))
+    return None
 
 
 def _trusted(recording: Recording, format_: str) -> list[Line]:

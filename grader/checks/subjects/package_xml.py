@@ -108,7 +108,9 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
     if late:
         cause = "<build_depend> and <test_depend> do not count when the node runs. <depend> covers everything."
         observed = f"{FILE} declares {a_list(late)} only for building or testing."
-        return failed(observed, expected, Cause("depend-kind", cause, where))
+        return failed(
+            observed, expected, Cause("depend-kind", cause, _line(evidence, rf">\s*{re.escape(late[0])}\s*<"))
+        )
     observed = f"{FILE} does not declare {a_list(missing)}."
     guess = nearest(missing[0], set(manifest.run_depends) - set(params.packages))
     if guess is not None:
@@ -123,7 +125,7 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
     if setup is not None and missing[0] in setup.required:
         cause = f"install_requires in setup.py is for pip packages. ROS 2 reads {FILE}."
         return failed(observed, expected, Cause("depend-in-setup-py", cause, where))
-    cause = "The node still runs here, because the package is installed. On another computer it may be missing."
+    cause = "On a computer without this package, nothing would install it together with yours."
     return failed(observed, expected, Cause("missing-depend", cause, where))
 
 

@@ -13,6 +13,22 @@ from grader.trial.recording import Output
 CRASHED, LOOK = "# crashed", "# look"
 """Comments in a source: the line of the exception; the line that the learner is to be led to, if it is another one."""
 
+DRIVER = """\
+from rclpy.node import Node
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.count = 0
+
+    def send(self, step=1):
+        {line}  # crashed
+
+def outside():
+    pass
+"""
+"""A node with one line to fill in, which crashes."""
+
 
 @dataclass(frozen=True)
 class Told:

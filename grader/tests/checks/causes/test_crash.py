@@ -108,6 +108,10 @@ def test_an_error_has_a_meaning(crash: Crash, meaning: str) -> None:
         ),
         (f"another exception occurred\n{traceback('KeyError: b')}", "KeyError", 14),
         (traceback("ValueError: a", 3) + "\n" + START + "\nnot an error!\n", "ValueError", 3),
+        (traceback("ValueError: a", 3) + f"Exception ignored in: <x>\n{traceback('KeyError: b', 9)}", "ValueError", 3),
+        (f"Exception ignored in: <x>\n{traceback('KeyError: b', 9)}", None, None),
+        (traceback("ValueError: a", 3, "/opt/site-packages/rclpy/helper.py"), "ValueError", None),
+        (traceback("ValueError: a", 3, "/ws/site-packages/helper.py"), "ValueError", 3),
     ],
 )
 def test_the_exception_is_the_root_of_the_last_chain(text: str, error: str | None, line: int | None) -> None:

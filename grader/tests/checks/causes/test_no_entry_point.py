@@ -180,7 +180,7 @@ def leads_to(target: str) -> Build:
         (
             "my_robot_controller.draw_circle:send_it",
             "entry-point-function",
-            "Nothing at the top level of the file has that name.",
+            "It has a function main.",
         ),
         ("my_robot_controller.draw_circle:", "entry-point-no-function", "After the module comes a colon,"),
     ],

@@ -66,8 +66,8 @@ NO_MARKER = "error: can't copy 'resource/my_robot_controller': doesn't exist or 
         (setup_py(":main", ""), replace(NOTHING, exit_code=1), "entry-point-no-function", "setup.py:14"),
         ({INIT: None}, BARE, "missing-init", "setup.py:5"),
         ({INIT: None}, LINKED, "missing-init", "setup.py:5"),
-        ({}, BARE, "nothing-installed", "setup.py:5"),
-        ({}, replace(NOTHING, installed=()), "nothing-installed", "setup.py:5"),
+        ({}, BARE, "nothing-installed", "setup.py:7"),
+        ({}, replace(NOTHING, installed=()), "nothing-installed", "setup.py:7"),
     ],
 )
 def test_each_fault_of_the_build(files: Files, build: Build, diagnosis: str, where: str) -> None:

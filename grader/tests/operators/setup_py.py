@@ -4,14 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.benchmarks.operators.operator import Change, Make, Operator, Package, misspelt, remove_line, replace
+from grader.tests.operators.operator import (
+    Change,
+    Make,
+    Operator,
+    Package,
+    anywhere,
+    misspelt,
+    remove_line,
+    replace,
+)
 
 if TYPE_CHECKING:
     import re
     from random import Random
 
-    from grader.benchmarks.operators.operator import Replacement
     from grader.checks.diagnosis import Diagnosis
+    from grader.tests.operators.operator import Replacement
 
 FILE = "setup.py"
 POINT = (
@@ -55,9 +64,9 @@ OPERATORS = (
     _in_setup("group-misspelt", r"console_scripts(?=[\"'] *:)", "console_script", "entry-point-group"),
     _in_setup("setup-py-other-name", r"^package_name = .*$", 'package_name = "my_robot_controler"', "package-name"),
     _in_setup("no-packages", r"packages=(?:find_packages\(.*\)|\[.*\])", "packages=[]", "nothing-installed"),
-    _in_setup("marker-not-listed", r"^ *\(.*resource_index.*$", "", "resource-marker"),
-    _in_setup("package-xml-not-listed", r"^ *\(.*package\.xml.*$", "", "package-xml-not-installed"),
-    _in_setup("bracket-left-open", r"\],$", ",", "setup-py-syntax"),
+    _in_setup("marker-not-listed", r"^ *\(.*resource_index.*\),?$", "", "resource-marker"),
+    _in_setup("package-xml-not-listed", r"^ *\(.*package\.xml.*\),?$", "", "package-xml-not-installed"),
+    Operator("bracket-left-open", anywhere(replace(r"\],$", ",", file=FILE)), frozenset({"setup-py-syntax"})),
     _in_setup(
         "setup-py-comma-left-out", r"^( *(?:version|description|license|zip_safe)=.*),$", r"\1", "setup-py-syntax"
     ),
@@ -67,8 +76,8 @@ OPERATORS = (
         r"\1,",
         "setup-py-syntax",
     ),
-    _in_setup("import-left-out", r"^from setuptools import .*$", "", "setup-py-raises"),
-    _in_setup("name-undefined", r"^package_name = .*$", "", "setup-py-raises"),
+    Operator("import-left-out", remove_line(r"^from setuptools import", file=FILE), frozenset({"setup-py-raises"})),
+    Operator("name-undefined", remove_line(r"^package_name = ", file=FILE), frozenset({"setup-py-raises"})),
     _in_setup("prints", r"^setup\(", 'print("building")\nsetup(', "setup-py-output"),
     _in_setup(
         "file-that-is-not-there", r"\[\"package\.xml\"\]", '["package.xml", "launch/all.py"]', "data-file-missing"

@@ -1,4 +1,4 @@
-"""The mistakes that the benchmark of causes makes: each can be made, is the same for a seed, and changes one place."""
+"""The mistakes that the benchmark of causes makes: each can be made, and is the same for the same seed."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.benchmarks.causes import OPERATORS, bases, make
+from grader.tests.operators.made import OPERATORS, bases, make
 
 if TYPE_CHECKING:
-    from grader.benchmarks.operators.operator import Operator, Package
+    from grader.tests.operators.operator import Operator, Package
 
 
 @pytest.fixture(scope="module")

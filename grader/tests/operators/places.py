@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.benchmarks.operators.operator import Change, Make, Operator, Package, edited, replace
+from grader.tests.operators.operator import Change, Make, Operator, Package, edited, replace
 
 if TYPE_CHECKING:
     from random import Random

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from grader.benchmarks.operators.operator import Change, Make, Operator, Package, edited, line_at, replace
+from grader.tests.operators.operator import Change, Make, Operator, Package, edited, line_at, replace
 
 if TYPE_CHECKING:
     from random import Random
 
-    from grader.benchmarks.operators.operator import Replacement
     from grader.checks.diagnosis import Diagnosis
+    from grader.tests.operators.operator import Replacement
 
 BLOCK = r"^( *(?:def|class|if|try|except|finally|for|while|else)\b.*):(?= *(?:#.*)?$)"
 
@@ -50,6 +50,12 @@ def _main_in_class(package: Package, _: Random) -> Change | None:
     )
 
 
+def _main_renamed(package: Package, draw: Random) -> Change | None:
+    """A report names the other side: the line of setup.py that asks for main."""
+    change = replace(r"^def main\(", "def run(")(package, draw)
+    return change and Change(change.files, "setup.py")
+
+
 SYNTAX: tuple[Diagnosis, ...] = ("syntax-error",)
 OPERATORS = (
     _source("colon-left-out", BLOCK, r"\1", "colon-missing"),
@@ -72,5 +78,5 @@ OPERATORS = (
     Operator("method-outside-class", _method_moved(-1), frozenset({"method-outside-class"})),
     Operator("method-in-method", _method_moved(1), frozenset({"method-in-method"})),
     Operator("main-in-class", _main_in_class, frozenset({"main-in-class"})),
-    _source("main-renamed", r"^def main\(", "def run(", "entry-point-function"),
+    Operator("main-renamed", _main_renamed, frozenset({"entry-point-function"})),
 )

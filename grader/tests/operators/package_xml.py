@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.benchmarks.operators.operator import Change, Make, Operator, Package, edited, line_at, misspelt, replace
+from grader.tests.operators.operator import (
+    Change,
+    Make,
+    Operator,
+    Package,
+    edited,
+    line_at,
+    misspelt,
+    remove_line,
+    replace,
+)
 
 if TYPE_CHECKING:
     from random import Random
@@ -38,18 +48,20 @@ def _text_after_the_end(package: Package, draw: Random) -> Change | None:
 
 
 OPERATORS = (
-    _in_xml("dependency-left-out", rf"^ *{DEPEND}$", "", "missing-depend"),
+    Operator("dependency-left-out", remove_line(DEPEND, file=FILE), frozenset({"missing-depend"})),
     Operator("dependency-misspelt", _misspelt_dependency, frozenset({"depend-misspelt"})),
     _in_xml("dependency-in-a-comment", DEPEND, r"<!-- \g<0> -->", "depend-commented-out"),
     _in_xml("dependency-for-building", DEPEND, r"<build_depend>\g<name></build_depend>", "depend-kind"),
-    _in_xml("build-type-left-out", r"<build_type>.*</build_type>", "", "build-type"),
+    Operator("build-type-left-out", remove_line(r"<build_type>.*</build_type>", file=FILE), frozenset({"build-type"})),
     _in_xml("build-type-cmake", r"ament_python", "ament_cmake", "build-type"),
     _in_xml("other-name", r"<name>.*</name>", "<name>robot_controller</name>", "package-name", also=("setup-cfg",)),
     _in_xml(
         "name-with-dashes", r"<name>.*</name>", "<name>my-robot-controller</name>", "package-name", also=("setup-cfg",)
     ),
-    _in_xml("no-license", r"^ *<license>.*</license>", "", "package-xml-invalid"),
-    _in_xml("no-maintainer", r"^ *<maintainer.*</maintainer>", "", "package-xml-invalid"),
+    Operator("no-license", remove_line(r"<license>.*</license>", file=FILE), frozenset({"package-xml-invalid"})),
+    Operator(
+        "no-maintainer", remove_line(r"<maintainer.*</maintainer>", file=FILE), frozenset({"package-xml-invalid"})
+    ),
     _in_xml("old-tag", DEPEND, r"<run_depend>\g<name></run_depend>", "package-xml-old-tag"),
     _in_xml(
         "catkin", r"<export>(?:.|\n)*</export>", "<buildtool_depend>catkin</buildtool_depend>", "ros-1-package-xml"

@@ -86,6 +86,16 @@ def replace(pattern: str, by: Replacement, *, file: str = "") -> Make:
     return make
 
 
+def anywhere(make: Make) -> Make:
+    """The same operator, where a report may name any line of the file."""
+
+    def made(package: Package, draw: Random) -> Change | None:
+        change = make(package, draw)
+        return change and Change(change.files, change.file)
+
+    return made
+
+
 def remove_line(pattern: str, *, file: str = "") -> Make:
     """An operator that empties one line with the pattern; in the place of a statement stands `pass`, or nothing."""
     is_code = not file

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from grader.benchmarks.operators.operator import (
+from grader.tests.operators.operator import (
     Change,
     Operator,
     Package,
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from random import Random
 
-    from grader.benchmarks.operators.operator import Replacement
     from grader.checks.diagnosis import Diagnosis
+    from grader.tests.operators.operator import Replacement
 
 MISSPELT: tuple[Diagnosis, ...] = ("attribute-misspelt", "name-misspelt", "message-field", "import-name")
 METHODS = r"create_publisher|create_timer|create_subscription|get_logger|publish|info"
@@ -122,8 +122,8 @@ OPERATORS = (
         remove_line(r"^from (rclpy\.node|\w+\.msg) import \w+$"),
         frozenset({"missing-import"}),
     ),
-    _source("without-math", r"math\.(pi|hypot|atan2|sqrt|cos|sin)\b", r"\1", "missing-import"),
-    _source("class-without-its-module", r"\b(rclpy\.)(init|spin)\(", r"\2(", "missing-import"),
+    _source("without-math", r"math\.(pi|hypot|atan2|sqrt|cos|sin)\b", r"\1", "module-prefix"),
+    _source("class-without-its-module", r"\b(rclpy\.)(init|spin)\(", r"\2(", "module-prefix"),
     _source("topic-without-quotes", r"[\"']/turtle1/(cmd_vel|pose)[\"']", r"\1", "name-undefined"),
     _source("node-name-without-quotes", r"(super\(\).__init__\()[\"'](\w+)[\"']", r"\1\2", "name-undefined"),
     _source(

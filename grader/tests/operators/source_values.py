@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.benchmarks.operators.operator import Operator, misspelt, remove_line, replace
+from grader.tests.operators.operator import Operator, misspelt, remove_line, replace
 
 if TYPE_CHECKING:
     import re
     from random import Random
 
-    from grader.benchmarks.operators.operator import Change, Package, Replacement
     from grader.checks.diagnosis import Diagnosis
+    from grader.tests.operators.operator import Change, Package, Replacement
 
 NUMBER = r"(?P<number>\d+\.\d+)"
 FIELD = rf"(?P<field>\.(?:linear\.x|angular\.z) = ){NUMBER}"

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.benchmarks.operators.operator import Change, Operator, Package, edited, line_at, remove_line, replace
+from grader.tests.operators.operator import Change, Operator, Package, edited, line_at, remove_line, replace
 
 if TYPE_CHECKING:
     from random import Random
 
-    from grader.benchmarks.operators.operator import Replacement
     from grader.checks.diagnosis import Diagnosis
+    from grader.tests.operators.operator import Replacement
 
 PUBLISHER = r"create_publisher\((?P<type>\w+), (?P<topic>[^,\n]+), (?P<queue>\d+)\)"
 SUBSCRIPTION = r"create_subscription\((?P<type>\w+), (?P<topic>[^,\n]+), (?P<callback>[\w.]+), (?P<queue>\d+)\)"
@@ -111,15 +111,9 @@ OPERATORS = (
     _source("topic-with-space", r"[\"']/turtle1/\w+[\"']", '"/turtle1/cmd vel"', "topic-name-invalid"),
     _source("init-twice", r"^( +)(rclpy\.init\(.*\))$", r"\1\2; \2", "init-twice"),
     _source("asks-for-a-number", r"^( +)node = ", r'\1input("Speed? ")' + "; node = ", "needs-stdin"),
-    _source(
-        "waits-in-init",
-        r"^( +)(self\.\w+ = self\.create_timer\()",
-        r"\1while rclpy.ok(): pass" + "\n" + r"\1\2",
-        "blocks-in-init",
-    ),
     _source("divides-by-zero", r"^( +)(self\.\w+)\.publish\(", r"\1rate = 1.0 / 0" + "\n" + r"\1\2.publish(", "crash"),
     Operator("super-init-last", _super_init_last, frozenset({"super-init-late"})),
-    Operator("spin-before-node", _spin_before_node, frozenset({"local-name"})),
+    Operator("spin-before-node", _spin_before_node, frozenset({"name-too-early"})),
     _removes("super-init-left-out", r"super\(\)\.__init__\(", "super-init-missing"),
     _removes("init-left-out", r"^ +rclpy\.init\(", "no-init"),
     _removes("spin-left-out", r"rclpy\.spin\(", "no-spin"),

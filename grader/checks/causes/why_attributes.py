@@ -1,0 +1,196 @@
+"""Why an attribute was missing: AttributeError in a student's node."""
+
+from __future__ import annotations
+
+import ast
+import math
+import random
+import re
+import time
+from typing import TYPE_CHECKING
+
+from grader.checks.causes import ros_names
+from grader.checks.causes.cause import Cause
+from grader.checks.causes.crash_scene import Function, attributes_set, methods
+from grader.checks.causes.why_calls import CREATE_OBJECT
+from grader.common.words import a_list, nearest, shorten
+from grader.submission.constants import dotted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from grader.checks.causes.crash_scene import CrashScene
+
+NO_ATTRIBUTE = re.compile(
+    r"(?:'(?P<object>\w+)' object|type object '(?P<type>\w+)'|module '(?P<module>[\w.]+)')"
+    r" has no attribute '(?P<name>\w+)'"
+)
+PLAIN = {
+    "str": "a string",
+    "int": "an integer",
+    "float": "a number",
+    "bool": "True or False",
+    "tuple": "a tuple (values with a comma between them)",
+    "list": "a list",
+    "dict": "a dictionary",
+    "set": "a set",
+}
+"""Python's own types -> what a beginner calls such a value."""
+MOST_LETTERS = 2
+"""A typing error makes a name longer or shorter by no more than this."""
+MODULES_READ = {"math": math, "time": time, "random": random}
+
+
+def why_no_attribute(scene: CrashScene) -> Cause | None:
+    """Return the cause of an AttributeError, depending on the type of the object."""
+    match = NO_ATTRIBUTE.search(scene.crash.message)
+    if match is None:
+        return None
+    name = match["name"]
+    if match["module"]:
+        return _of_module(match["module"], name)
+    owner = match["object"] or match["type"]
+    if owner in ("property", "function", "method", "builtin_function_or_method", "NoneType"):
+        return _of_a_wrong_thing(scene, owner, name)
+    if match["type"] or owner.startswith("Metaclass_"):
+        return _class_for_object(owner.removeprefix("Metaclass_"))
+    if scene.class_named(owner) is not None:
+        return _of_own_class(scene, owner, name)
+    if owner in ros_names.FIELDS:
+        fields = ros_names.FIELDS[owner]
+        guess = nearest(name, fields)
+        more = f" Did you mean {guess}?" if guess else ""
+        return Cause("message-field", f"A {owner} has {a_list(fields)}.{more}")
+    if owner in ros_names.OTHERS:
+        return _misspelt(name, ros_names.OTHERS[owner]) or Cause(
+            "attribute-missing", f"A {owner} has no attribute or method with that name."
+        )
+    if owner in PLAIN:
+        return Cause("attribute-missing", f"This value is {PLAIN[owner]}, and that has no {shorten(name)}.")
+    return None
+
+
+def _of_module(module: str, name: str) -> Cause | None:
+    if module == "rclpy" and name in ros_names.MODULE_OF:
+        return Cause("import-wrong-place", f"{name} is in the module {ros_names.MODULE_OF[name]}.")
+    known: Iterable[str] = (
+        ros_names.RCLPY if module == "rclpy" else dir(MODULES_READ[module]) if module in MODULES_READ else ()
+    )
+    return _misspelt(name, known) or Cause(
+        "attribute-missing", f"The module {shorten(module)} has nothing with that name."
+    )
+
+
+def _misspelt(name: str, known: Iterable[str]) -> Cause | None:
+    plain = {each.lower(): each for each in known}
+    guess = plain.get(name.lower()) or nearest(
+        name, [each for each in known if abs(len(each) - len(name)) <= MOST_LETTERS]
+    )
+    if guess is None:
+        return None
+    return Cause(
+        "attribute-misspelt", f"There is {guess}. Compare the two letter by letter, including upper and lower case."
+    )
+
+
+def _class_for_object(name: str) -> Cause:
+    return Cause("class-for-object", f"{shorten(name)} is a class. {CREATE_OBJECT}")
+
+
+def _of_a_wrong_thing(scene: CrashScene, owner: str, name: str) -> Cause | None:
+    if owner == "property":
+        made = next((node for node in scene.nodes if isinstance(node, ast.Assign) and _is_message(node.value)), None)
+        cause = _class_for_object(ast.unparse(made.value) if made is not None else "It")
+        return Cause(cause.diagnosis, cause.text, scene.at(made))
+    if owner == "NoneType":
+        return _of_none(scene, name)
+    return Cause("not-called", "The function is named but not called: the parentheses are missing.")
+
+
+def _is_message(value: ast.expr) -> bool:
+    return (dotted(value) or "").rpartition(".")[2] in ros_names.FIELDS
+
+
+def _of_none(scene: CrashScene, name: str) -> Cause | None:
+    """Return the cause if a value is None: no message has set it yet, or rclpy.spin was called with None."""
+    holders = [dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name]
+    for holder in filter(None, holders):
+        values = [node for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)]
+        if any(isinstance(each.value, ast.Constant) and each.value.value is None for each in values):
+            text = f"{shorten(holder)} is None until the first message arrives. Check for None before you use it."
+            return Cause("none-before-message", text)
+    if name == "executor":
+        return Cause("no-object", "rclpy.spin was called with None instead of a node.")
+    known = [holder for holder in holders if holder]
+    what = f"{shorten(known[0])} is None here, so it" if len(known) == 1 else "The value is None here, which"
+    return Cause("attribute-missing", f"{what} has no attribute {shorten(name)}. A function without return gives None.")
+
+
+def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
+    own = scene.class_named(owner)
+    assert own is not None
+    made = next((each for each in methods(own) if each.name == "__init__"), None)
+    if name.startswith("_") and made is not None:
+        base = [node for node in ast.walk(made) if isinstance(node, ast.Call) and (_attr(node.func) == "__init__")]
+        if not base:
+            text = "__init__ never calls super().__init__, which creates the node."
+            return Cause("super-init-missing", text, scene.at(made))
+        text = "super().__init__ creates the node. You cannot use the node before that line."
+        return Cause("super-init-late", text)
+    lines = [line for attribute, line in attributes_set(own) if attribute == name]
+    if lines:
+        text = f"self.{shorten(name)} is set in line {min(lines)}, which has not run yet."
+        return Cause("attribute-too-early", text)
+    return _never_set(scene, own, name)
+
+
+def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
+    compared = [each for each in scene.on_line if isinstance(each, ast.Expr) and isinstance(each.value, ast.Compare)]
+    if compared:
+        return Cause("equals", "== compares two values. = gives a value to a name.", scene.at(compared[0]))
+    local = [node for node in ast.walk(own) if isinstance(node, ast.Name) and _is_store(node) and node.id == name]
+    if local:
+        text = f"Line {local[0].lineno} sets {name} without self, so it is not an attribute. Write self.{name} there."
+        return Cause("missing-self", text, scene.at(local[0]))
+    outside = next((each for each in scene.top_functions() if each.name == name), None)
+    if outside is not None:
+        text = f"{name} is outside the class. Indent it like the other methods."
+        return Cause("method-outside-class", text, scene.at(outside))
+    inside = next((each for method in methods(own) for each in ast.walk(method) if _is_function(each, name)), None)
+    if inside is not None:
+        text = f"{name} is indented too far. It is inside another method, so self.{name} does not exist."
+        return Cause("method-in-method", text, scene.at(inside))
+    if name == "publish":
+        return Cause("node-publishes", "A node has no method publish. Call publish on the publisher instead.")
+    return _misspelt(name, {*ros_names.NODE, *_members(scene, own)}) or Cause(
+        "attribute-missing", f"Nothing sets self.{shorten(name)}, and the class has no method with that name."
+    )
+
+
+def _members(scene: CrashScene, own: ast.ClassDef) -> set[str]:
+    """Return the methods and attributes of a class and of those of its base classes that the node's files have."""
+    nodes = [node for module in scene.evidence.code.modules for node in module.nodes]
+    known = {node.name: node for node in nodes if isinstance(node, ast.ClassDef)}
+    family, waiting = [own], [own]
+    while waiting:
+        names = [(dotted(base) or "").rpartition(".")[2] for base in waiting.pop().bases]
+        found = [known[name] for name in names if name in known and known[name] not in family]
+        family += found
+        waiting += found
+    return {
+        name
+        for each in family
+        for name in (*(method.name for method in methods(each)), *(attribute for attribute, _ in attributes_set(each)))
+    }
+
+
+def _is_store(node: ast.Name) -> bool:
+    return isinstance(node.ctx, ast.Store)
+
+
+def _is_function(node: ast.AST, name: str) -> bool:
+    return isinstance(node, Function) and node.name == name
+
+
+def _attr(function: ast.expr) -> str:
+    return function.attr if isinstance(function, ast.Attribute) else ""

@@ -1,0 +1,200 @@
+"""Why an attribute was not there."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.tests.checks.crashes import DRIVER, to_look_at, told
+
+
+@pytest.mark.parametrize(
+    ("error", "diagnosis", "words"),
+    [
+        ("module 'rclpy' has no attribute 'Node'", "import-wrong-place", "Node is in the module rclpy.node."),
+        ("module 'math' has no attribute 'Node'", "attribute-missing", "The module math has nothing with that name."),
+        ("module 'rclpy' has no attribute 'spni'", "attribute-misspelt", "There is spin."),
+        ("module 'rclpy' has no attribute 'Spin'", "attribute-misspelt", "There is spin."),
+        (
+            "module 'rclpy' has no attribute 'turtle'",
+            "attribute-missing",
+            "The module rclpy has nothing with that name.",
+        ),
+        ("module 'math' has no attribute 'PI'", "attribute-misspelt", "There is pi."),
+        ("module 'time' has no attribute 'sleeep'", "attribute-misspelt", "There is sleep."),
+        ("module 'cv2' has no attribute 'imred'", "attribute-missing", "The module cv2 has nothing with that name."),
+        ("type object 'Twist' has no attribute 'linear'", "class-for-object", "Twist is a class."),
+        ("'Metaclass_Twist' object has no attribute 'linear'", "class-for-object", "Twist is a class."),
+        ("'function' object has no attribute 'now'", "not-called", "the parentheses are missing"),
+        (
+            "'Twist' object has no attribute 'liner'",
+            "message-field",
+            "A Twist has linear and angular. Did you mean linear?",
+        ),
+        ("'Twist' object has no attribute 'speed'", "message-field", "A Twist has linear and angular."),
+        ("'Publisher' object has no attribute 'publsh'", "attribute-misspelt", "There is publish."),
+        (
+            "'Publisher' object has no attribute 'send'",
+            "attribute-missing",
+            "A Publisher has no attribute or method with that name.",
+        ),
+        ("'RcutilsLogger' object has no attribute 'Info'", "attribute-misspelt", "There is info."),
+        ("'str' object has no attribute 'speed'", "attribute-missing", "This value is a string,"),
+        ("no attribute at all", "crash", ""),
+    ],
+)
+def test_an_unknown_attribute_is_explained_by_what_it_was_looked_for_in(error: str, diagnosis: str, words: str) -> None:
+    source = DRIVER.format(line="self.drive()")
+    found = told(source, f"AttributeError: {error}")
+    assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
+    assert words in found.cause
+    assert ("meant?" in found.cause) == ("meant?" in words)
+    assert "Metaclass" not in found.cause
+
+
+def test_a_message_made_without_parentheses_is_told_where_it_was_made() -> None:
+    source = "count = 3\nmsg = geometry_msgs.msg.Twist  # look\nmsg.linear.x = 2.0  # crashed\n"
+    found = told(source, "AttributeError: 'property' object has no attribute 'x'")
+    assert (found.diagnosis, found.line) == ("class-for-object", 2)
+    assert "geometry_msgs.msg.Twist is a class." in found.cause
+
+
+def test_a_class_that_was_made_nowhere_is_told_where_it_crashed() -> None:
+    found = told("count = 3\nmsg.linear.x = 2.0  # crashed\n", "AttributeError: 'property' object has no attribute 'x'")
+    assert (found.diagnosis, found.line) == ("class-for-object", 2)
+    assert "It is a class." in found.cause
+
+
+def none_error(name: str) -> str:
+    return f"AttributeError: 'NoneType' object has no attribute '{name}'"
+
+
+@pytest.mark.parametrize(
+    ("first", "diagnosis"),
+    [
+        ("self.pose = None", "none-before-message"),
+        ("self.pose = 3", "attribute-missing"),
+        ("self.pose = look_up()", "attribute-missing"),
+        ("self.other = None", "attribute-missing"),
+    ],
+)
+def test_what_no_message_has_filled_is_none(first: str, diagnosis: str) -> None:
+    source = f"class Driver:\n    def __init__(self):\n        {first}\n    def send(self):\n"
+    source += "        self.other.y = make().x + self.pose.x  # crashed\n"
+    found = told(source, none_error("x"))
+    assert found.diagnosis == diagnosis
+    assert ("self.pose is None until" in found.cause) == (diagnosis == "none-before-message")
+
+
+def test_spin_wants_a_node() -> None:
+    assert told("rclpy.spin(make())  # crashed\n", none_error("executor")).diagnosis == "no-object"
+
+
+LOCAL = """\
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        speed = 2.0  # look
+
+    def send(self):
+        print(self.speed)  # crashed
+"""
+COMPARED = """\
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.speed == 2.0  # crashed
+"""
+BASE = """\
+class Base(Node):
+    def start_again(self):
+        pass
+
+class Driver(Base):
+    def send(self):
+        self.start_agian()  # crashed
+"""
+
+
+def test_a_value_that_is_none_is_told_as_none() -> None:
+    found = told("def drive():\n    publisher.publish(1)  # crashed\n", none_error("publish"))
+    assert "publisher is None here" in found.cause
+
+
+OWN = "AttributeError: 'Driver' object has no attribute '{}'"
+TOO_EARLY = """\
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.send()
+        self.count = 0
+    def send(self):
+        self.count += 1  # crashed
+    def again(self):
+        self.count = 2
+"""
+OUTSIDE = """\
+class Driver(Node):
+    def __init__(self):
+        self.create_timer(0.5, self.send)  # crashed
+
+def send(self):  # look
+    pass
+"""
+INSIDE = """\
+class Driver(Node):
+    def __init__(self):
+        self.create_timer(0.5, self.send)  # crashed
+
+        def send(self):  # look
+            pass
+"""
+ELSEWHERE = """\
+class Driver(Node):
+    def __init__(self):
+        self.create_timer(0.5, self.send)  # crashed
+
+class Other(Node):
+    def send(self):
+        pass
+"""
+NO_SUPER = """\
+class Driver(Node):
+    def send(self):
+        pass
+    def __init__(self):  # look
+        print("driver")
+        self.create_timer(0.5, self.send)  # crashed
+"""
+LATE_SUPER = """\
+class Driver(Node):
+    def __init__(self):
+        self.create_timer(0.5, self.send)  # crashed
+        super().__init__("driver")
+"""
+NO_INIT = "class Driver(Node):\n    def send(self):\n        print(self._x)  # crashed\n"
+
+
+@pytest.mark.parametrize(
+    ("source", "name", "diagnosis", "words"),
+    [
+        (TOO_EARLY, "count", "attribute-too-early", "self.count is set in line 5,"),
+        (OUTSIDE, "send", "method-outside-class", "send is outside the class."),
+        (INSIDE, "send", "method-in-method", "send is indented too far"),
+        (ELSEWHERE, "send", "attribute-missing", "Nothing sets self.send,"),
+        (NO_SUPER, "_timers", "super-init-missing", "never calls super().__init__"),
+        (LATE_SUPER, "_timers", "super-init-late", "before that line"),
+        (NO_INIT, "_x", "attribute-missing", "Nothing sets self._x,"),
+        (ELSEWHERE, "publish", "node-publishes", "A node has no method publish"),
+        (ELSEWHERE, "create_timmer", "attribute-misspelt", "There is create_timer."),
+        (TOO_EARLY, "agian", "attribute-misspelt", "There is again."),
+        (TOO_EARLY, "conut", "attribute-misspelt", "There is count."),
+        (LOCAL, "speed", "missing-self", "Line 4 sets speed without self"),
+        (COMPARED, "speed", "equals", "== compares two values."),
+        (BASE, "start_agian", "attribute-misspelt", "There is start_again."),
+        (TOO_EARLY, "velocity", "attribute-missing", "Nothing sets self.velocity,"),
+    ],
+)
+def test_what_a_node_lacks_is_explained_by_its_class(source: str, name: str, diagnosis: str, words: str) -> None:
+    found = told(source, OWN.format(name))
+    assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
+    assert words in found.cause
