@@ -9,8 +9,8 @@ import re
 import time
 from typing import TYPE_CHECKING
 
+from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
-from grader.checks.causes.cause import Cause
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
 from grader.checks.causes.why_calls import CREATE_OBJECT
 from grader.common.words import a_list, nearest, shorten
