@@ -219,6 +219,7 @@ def missing_of_tests(path: str) -> List[Need]:
     tools = {
         BROWSERS: Need("a browser", "chromium", "the tests of the pages do not run"),
         ("shellcheck",): Need("shellcheck", "shellcheck", "the test of the shell scripts does not run"),
+        ("zsh",): Need("zsh", "zsh", "the tests of setup.zsh do not run"),
     }
     search = os.pathsep.join([path, *SYSTEM_PATH])
     return [need for names, need in tools.items() if not any(shutil.which(name, path=search) for name in names)]

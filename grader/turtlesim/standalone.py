@@ -33,6 +33,11 @@ if TYPE_CHECKING:
 
 _MOST_AT_ONCE = 200
 """Callbacks handled before a frame: a flood of messages must not stop the turtle."""
+_NO_WINDOW = (
+    "This turtlesim has no window. To see the turtle, stop it with Ctrl-C and start it with --view (a page in the "
+    "browser) or --view terminal."
+)
+"""Said at a terminal only: what other programs read is what the real turtlesim writes."""
 
 
 class Feed(Protocol):
@@ -85,6 +90,8 @@ def main(open_view: OpenView, args: Sequence[str] | None = None) -> int:
             rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
             stack.callback(rclpy.try_shutdown)
             node = _node(view)
+            if view is None and sys.stderr.isatty():
+                print(_NO_WINDOW, file=sys.stderr, flush=True)
             spin(node, stop, view)
     except (InvalidParameterValueException, InvalidParameterTypeException, RuntimeError) as error:
         return _wrong(_first_line(error))

@@ -11,6 +11,7 @@ import pytest
 
 from grader.errors import MachineError, UsageError
 from grader.ros import installation, shell
+from grader.tests.lacking import give_up
 
 HERE = installation.find_ros()
 BIN = str(Path(sys.prefix, "bin"))
@@ -171,9 +172,20 @@ def test_an_error_reaches_whoever_sources_it() -> None:
 
 
 @pytest.mark.parametrize("name", ["bash", "zsh"])
+def test_what_grader_env_prints_is_understood(tmp_path: Path, name: str) -> None:
+    if shutil.which(name) is None:
+        give_up(name, name)
+    env = {"PATH": f"{BIN}:/usr/bin:/bin", "HOME": str(tmp_path)}
+    env["XDG_CACHE_HOME"] = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    what = "source <(grader env --domain 57) && echo $ROS_DISTRO $ROS_DOMAIN_ID"
+    done = subprocess.run([name, "-c", what], cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("jazzy 57\n", "")
+
+
+@pytest.mark.parametrize("name", ["bash", "zsh"])
 def test_one_line_from_any_folder_brings_ros_2_and_our_commands(tmp_path: Path, name: str) -> None:
     if shutil.which(name) is None:
-        pytest.skip(f"{name} is not installed")
+        give_up(name, name)
     env = {"PATH": "/usr/bin:/bin", "HOME": str(tmp_path), "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME", "")}
     env["XDG_CACHE_HOME"] = env["XDG_CACHE_HOME"] or str(Path.home() / ".cache")
     what = f"source {sys.prefix}/setup.{name} && echo $ROS_DISTRO && command -v ros2 grader"

@@ -170,6 +170,11 @@ def test_ros2_works_in_a_shell_that_nobody_prepared(terminals: list[Terminal]) -
     assert terminals[0].type("ros2 interface show turtlesim/msg/Color") == golden("interface_show_color").stdout
 
 
+def test_a_turtlesim_without_a_window_says_where_to_look(terminals: list[Terminal]) -> None:
+    terminals[0].begin("grader sim", "or --view terminal.")
+    assert "Traceback" not in terminals[0].ctrl_c()
+
+
 def test_grader_shell(terminals: list[Terminal]) -> None:
     terminal = terminals[0]
     terminal.begin("SHELL=/bin/bash grader shell --domain 57", "in domain 57")

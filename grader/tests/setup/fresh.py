@@ -11,6 +11,10 @@ import shutil
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import signal
 
 ROOT = Path(__file__).parents[3]
 SET_UP_S = 900
@@ -25,6 +29,10 @@ class Clone:
 
     folder: Path
     home: Path
+    within: tuple[str, ...] = ()
+    """What each command is started by: another user, another view of the disks."""
+    settings: tuple[tuple[str, str], ...] = ()
+    """Variables that it has besides."""
 
     def run(self, command: str, *, ends: int = 0, cwd: Path | None = None, **environment: str) -> str:
         """Run a line of bash; returns all that it printed.
@@ -33,8 +41,8 @@ class Clone:
             AssertionError: it did not end with this exit code.
         """
         done = subprocess.run(
-            ["bash", "-c", command],
-            cwd=cwd or self.folder,
+            [*self.within, "bash", "-c", f'cd "$0" && {command}', cwd or self.folder],
+            cwd="/",
             env={**self.environment(), **environment},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
@@ -46,6 +54,34 @@ class Clone:
         )
         assert done.returncode == ends, f"{command}: {done.returncode}\n{done.stdout}"
         return done.stdout
+
+    def stop(self, command: str, at: str, number: signal.Signals) -> str:
+        """Run a command and send the signal to it and all its children once it prints `at`; returns what it printed.
+
+        Raises:
+            AssertionError: it ended without having printed that.
+        """
+        started = subprocess.Popen(
+            [*self.within, "bash", "-c", command],
+            cwd=self.folder,
+            env=self.environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+            text=True,
+            errors="replace",
+        )
+        with started:
+            printed = ""
+            for line in started.stdout or ():
+                printed += line
+                if at in line:
+                    os.killpg(started.pid, number)
+                    break
+            else:
+                raise AssertionError(printed)
+            return printed + (started.stdout.read() if started.stdout else "")
 
     def make(self, target: str) -> str:
         """Make the target, and see that all that it installed fits together; returns what it printed."""
@@ -68,6 +104,7 @@ class Clone:
             "UV_CACHE_DIR": str(cache / "uv"),
             **network,
             "HOME": str(self.home),
+            **dict(self.settings),
         }
 
 

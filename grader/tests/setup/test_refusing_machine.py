@@ -1,0 +1,54 @@
+"""The set-up on a machine that refuses it something, really tried: one sentence with what to do, and no traceback."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.setup.refused import MACHINE_BROKEN
+from grader.tests.setup.fresh import Clone, clone
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+MB = 10**6
+SEES = ("bwrap", "--dev-bind", "/", "/")
+NOTHING_KEPT = (("PIP_CACHE_DIR", "/nowhere/pip"), ("UV_CACHE_DIR", "/nowhere/uv"))
+
+
+def refused(course: Clone, said: str) -> None:
+    """`make demo` ends with this sentence."""
+    printed = course.run("make demo", ends=2)  # make's own, whatever its command ended with
+    assert f"Error {MACHINE_BROKEN}" in printed
+    (sentence,) = [line for line in printed.splitlines() if said in line]
+    assert sentence.endswith(".")
+    assert "Traceback" not in printed
+
+
+def test_without_a_network(tmp_path: Path) -> None:
+    course = replace(clone(tmp_path), within=(*SEES, "--unshare-net"), settings=NOTHING_KEPT)
+    refused(course, "This machine does not reach the packages of Python")
+
+
+def test_in_a_folder_that_cannot_be_written_to(tmp_path: Path) -> None:
+    course = clone(tmp_path)
+    there = str(course.folder)
+    refused(replace(course, within=(*SEES, "--ro-bind", there, there)), ".venv cannot be written to (Read-only")
+
+
+@pytest.mark.parametrize("room", [20 * MB, pytest.param(60 * MB, marks=[pytest.mark.exhaustive, pytest.mark.door])])
+def test_on_a_full_disk(tmp_path: Path, room: int) -> None:
+    course = on_a_disk(clone(tmp_path), room)
+    refused(course, f"The disk is full for {course.folder}/.venv: make room there")
+
+
+def on_a_disk(course: Clone, room: int) -> Clone:
+    """The clone on a disk of its own with so much room (bytes), anew for each command."""
+    original = course.folder.with_name("original")
+    course.folder.rename(original)
+    course.folder.mkdir()
+    copy = f'cp -r "{original}/." "{course.folder}" && exec "$@"'
+    within = (*SEES, "--size", str(room), "--tmpfs", str(course.folder), "bash", "-c", copy, "copy")
+    return replace(course, within=within)
