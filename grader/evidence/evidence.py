@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from grader.evidence import activity
+from grader.evidence.arrivals import Measured, measure_arrivals
 from grader.evidence.trajectory import Trajectory, trajectory_of
 from grader.submission.answers import Answers, read_answers
 from grader.submission.code import Code, module_file, read_code
@@ -132,6 +133,11 @@ class Evidence:
     def commands(self) -> tuple[Command, ...]:
         """The commands that arrived before SIGINT."""
         return activity.commands(self.recording)
+
+    @cached_property
+    def command_arrivals(self) -> Measured:
+        """The arrivals of these commands, and the intervals between them."""
+        return measure_arrivals(self.recording, (command.t_s for command in self.commands))
 
     @cached_property
     def trajectory(self) -> Trajectory:

@@ -10,18 +10,16 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.checks.subjects.rate import measure
-from grader.checks.subjects.values import FIELDS
 from grader.common.words import number
 from grader.evidence import activity
 from grader.report.requested import requested_interval, requested_values
 from grader.report.svg import coordinate, picture, points, tag, words
+from grader.trial.recording import FIELDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from grader.evidence.evidence import Evidence
-    from grader.trial.recording import Command
 
 WIDTH = 440.0
 LEFT, RIGHT, TOP, BOTTOM = 58.0, 12.0, 24.0, 34.0
@@ -112,7 +110,7 @@ def thin(series: Series, end_s: float, bins: int = BINS) -> Series:
 
 def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> Chart | None:
     """The time since the command before, for each one, with the band that is allowed; None with fewer than two."""
-    measured = measure(evidence)
+    measured = evidence.command_arrivals
     if not measured.intervals:
         return None
     wanted = requested_interval(evidence)
@@ -154,21 +152,23 @@ def _s(seconds: float) -> str:
 
 
 def values(evidence: Evidence, name: str = "values", bins: int = BINS) -> Chart | None:
-    """What the commands said over time: the fields that were asked for and those that ever were not 0."""
+    """The values of the commands over time: the fields that the exercise requests, and those that were not always 0."""
     commands = evidence.commands
     if not commands:
         return None
-    asked = requested_values(evidence)
-    wanted = asked or (0.0,) * 6
+    requested = requested_values(evidence)
+    wanted = requested or (0.0,) * 6
     end_s = _end_s(evidence)
     rows, captions = [], []
-    shown = [i for i in range(6) if wanted[i] or i in (0, 5) or any(six(command)[i] for command in commands)]
+    shown = [i for i in range(6) if wanted[i] or i in (0, 5) or any(command.values[i] for command in commands)]
     for row, index in enumerate(shown):
-        series = tuple((command.t_s, six(command)[index]) for command in commands)
+        series = tuple((command.t_s, command.values[index]) for command in commands)
         unit = "m/s" if index < 3 else "rad/s"
         top = TOP + row * (HEIGHT + GAP)
-        rows.append(_steps(series, wanted[index] if asked else None, f"{FIELDS[index]} ({unit})", end_s, (top, bins)))
-        captions.append(_said(series, FIELDS[index], unit, wanted[index] if asked else None))
+        rows.append(
+            _steps(series, wanted[index] if requested else None, f"{FIELDS[index]} ({unit})", end_s, (top, bins))
+        )
+        captions.append(_in_words(series, FIELDS[index], unit, wanted[index] if requested else None))
     height = TOP + len(shown) * HEIGHT + (len(shown) - 1) * GAP + BOTTOM
     caption = " ".join(captions)
     svg = picture(
@@ -182,11 +182,6 @@ def values(evidence: Evidence, name: str = "values", bins: int = BINS) -> Chart 
         name=name,
     )
     return Chart(svg, caption)
-
-
-def six(command: Command) -> tuple[float, ...]:
-    """A command's six values in the order of FIELDS."""
-    return (*command.linear, *command.angular)
 
 
 def _end_s(evidence: Evidence) -> float:
@@ -214,20 +209,20 @@ def _steps(series: Series, wanted: float | None, label: str, end_s: float, where
     return "".join(parts)
 
 
-def _said(series: Series, field: str, unit: str, wanted: float | None) -> str:
+def _in_words(series: Series, field: str, unit: str, wanted: float | None) -> str:
     """One field in words."""
     found = [value for _, value in series]
     wrong = sum(not math.isfinite(value) for value in found)
     finite = [value for value in found if math.isfinite(value)]
     if finite and min(finite) == max(finite):
-        told = f"{field} was {number(finite[0])} {unit}"
+        text = f"{field} was {number(finite[0])} {unit}"
     elif finite:
-        told = f"{field} was {number(min(finite))} to {number(max(finite))} {unit}"
+        text = f"{field} was {number(min(finite))} to {number(max(finite))} {unit}"
     else:
-        told = f"{field} was never a finite number"
+        text = f"{field} was never a finite number"
     if wrong and finite:
-        told += f", and no finite number in {wrong} of {len(found)} commands"
-    return f"{told}; asked for: {number(wanted)}." if wanted is not None else f"{told}."
+        text += f", and no finite number in {wrong} of {len(found)} commands"
+    return f"{text}; asked for: {number(wanted)}." if wanted is not None else f"{text}."
 
 
 def _dot(area: Area, t_s: float, value: float, *, good: bool) -> str:

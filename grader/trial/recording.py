@@ -45,6 +45,10 @@ class Message:
     mono_s: float
 
 
+FIELDS = ("linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z")
+"""The fields of a command: three in m/s, three in rad/s."""
+
+
 @dataclass(frozen=True)
 class Command:
     """A geometry_msgs/msg/Twist that reached the turtle on /turtle1/cmd_vel; m/s and rad/s, x, y, z each."""
@@ -53,6 +57,11 @@ class Command:
     mono_s: float
     linear: tuple[float, float, float]
     angular: tuple[float, float, float]
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The six values in the order of FIELDS."""
+        return (*self.linear, *self.angular)
 
 
 @dataclass(frozen=True)

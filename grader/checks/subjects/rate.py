@@ -16,10 +16,10 @@ from grader.checks.requested import Interval, Requested
 from grader.checks.tolerance import Band
 from grader.common.words import count
 from grader.evidence import activity
-from grader.evidence.arrivals import Measured, measure_arrivals
 from grader.submission.constants import number as constant
 
 if TYPE_CHECKING:
+    from grader.evidence.arrivals import Measured
     from grader.evidence.evidence import Evidence
 
 FEWEST = 3
@@ -63,14 +63,9 @@ class Subject:
 COMMAND = Subject("command", "publish")
 
 
-def measure(evidence: Evidence) -> Measured:
-    """Return the arrivals of the commands before SIGINT."""
-    return measure_arrivals(evidence.recording, (command.t_s for command in evidence.commands))
-
-
 def rate(evidence: Evidence, params: Rate) -> Finding:
     """The commands arrive at the rate: on average and each one, from soon after the start until the end."""
-    return rate_of(evidence, params, COMMAND, measure(evidence))
+    return rate_of(evidence, params, COMMAND, evidence.command_arrivals)
 
 
 def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured) -> Finding:

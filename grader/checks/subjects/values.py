@@ -14,6 +14,7 @@ from grader.checks.requested import Requested
 from grader.checks.tolerance import Band
 from grader.common.words import a_list
 from grader.common.words import number as shown
+from grader.trial.recording import FIELDS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,9 +22,7 @@ if TYPE_CHECKING:
     from grader.checks.diagnosis import Diagnosis
     from grader.evidence.evidence import Evidence
     from grader.submission.where import Where
-    from grader.trial.recording import Command
 
-FIELDS = ("linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z")
 Six = tuple[float, ...]
 """The values of a command in the order of FIELDS: three in m/s, three in rad/s."""
 
@@ -57,7 +56,7 @@ class Values:
 def values(evidence: Evidence, params: Values) -> Finding:
     """Every command before SIGINT has the right value in all six fields."""
     bands = params.bands
-    amounts = Counter(_six(command) for command in evidence.commands)
+    amounts = Counter(command.values for command in evidence.commands)
     near = any(band.near(value) for six in amounts for band, value in zip(bands, six, strict=True))
     expected = _expected(params.wanted)
     wrong = [six for six in amounts if not _all_hold(bands, six)]
@@ -88,10 +87,6 @@ def _expected(wanted: Six) -> str:
 def _field(index: int, value: str) -> str:
     """Return a field with its value and unit."""
     return f"{FIELDS[index]} {value} {'m/s' if FIELDS[index].startswith('linear') else 'rad/s'}"
-
-
-def _six(command: Command) -> Six:
-    return (*command.linear, *command.angular)
 
 
 def _all_hold(bands: tuple[Band, ...], six: Six) -> bool:

@@ -10,6 +10,7 @@ from rclpy.expand_topic_name import expand_topic_name
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
 from grader.graph.discovery import published, settle
+from grader.graph.look import types_of
 from grader.ros import values
 from grader.ros.failure import Ros2Error, did_you_mean
 
@@ -46,7 +47,7 @@ def type_of(node: Node, topic: str, asked: str) -> Any | None:  # noqa: ANN401
     Raises:
         Ros2Error: nodes disagree about its type, or the type is not installed.
     """
-    types: list[str] = next((types for name, types in node.get_topic_names_and_types() if name == topic), [])
+    types = types_of(tuple(node.get_topic_names_and_types()), topic)
     if not types:
         return None
     if len(types) > 1:
