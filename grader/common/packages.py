@@ -85,7 +85,12 @@ MANAGERS = (
         update="",
         install="pacman -S --needed --noconfirm",
         quiet="",
-        names={"g++": "gcc"},
+        names={
+            "g++": "gcc",
+            "python3-numpy": "python-numpy",
+            "python3-empy": "python-empy",
+            "python3-lark": "python-lark-parser",
+        },
         python="python",
         headers="python",
     ),

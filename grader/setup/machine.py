@@ -28,8 +28,9 @@ CONTAINER = """\
           bash -c "apt-get update && apt-get install -y make python3 && CI=true make demo; exec bash"
   - a ROS 2 Jazzy of your own, on any Linux: source /opt/ros/jazzy/setup.bash, then run make again."""
 
-LEFT_TO_ROS = {"numpy": "python3-numpy", "em": "python3-empy"}
-"""Modules that the set-up leaves to a sourced ROS 2 (lock.SOURCED_BRINGS), and the Debian packages that bring them."""
+LEFT_TO_ROS = {"numpy": "python3-numpy", "em": "python3-empy", "lark": "python3-lark"}
+"""Modules that the set-up leaves to a sourced ROS 2 (lock.SOURCED_BRINGS and its part `ros`), and the Debian packages
+that bring them."""
 _IMPORTS = """
 import importlib, json, sys
 def lacks(name):
