@@ -1,1 +1,1 @@
-"""A whole class: many submissions, graded side by side, each result kept as it comes."""
+"""Grade a whole class: many submissions side by side, with each result saved as soon as it is ready."""

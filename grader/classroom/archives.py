@@ -1,4 +1,4 @@
-"""An archive as a student handed it in, unpacked for a moment: unpack.py does it, here are its limits."""
+"""Unpack an archive of a student into a temporary folder: unpack.py does the work, this module sets its limits."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 ENDINGS = (".zip", ".tar.gz", ".tgz", ".tar")
 OTHER_ENDINGS = (".7z", ".rar", ".tar.xz", ".tar.bz2", ".tar.zst", ".gz", ".xz", ".bz2")
-"""What students hand in as well, and what is not unpacked."""
+"""Other archive formats that students hand in. They are not unpacked."""
 MOST_PACKED = 100 * 1024 * 1024
 _SCRIPT = Path(__file__).with_name("unpack.py")
 _MIB = 1024 * 1024
@@ -28,34 +28,34 @@ _LIMITS = ("prlimit", f"--cpu={_CPU_S}", f"--as={1024 * _MIB}", f"--fsize={128 *
 
 
 class NotUnpackedError(Exception):
-    """Why the archive cannot be unpacked: the student's doing, a part of a sentence that begins with its name."""
+    """The student's archive cannot be unpacked. The message is the end of a sentence that begins with its name."""
 
 
 def stem(name: str) -> str | None:
-    """The name of an archive without its ending; None for what is none."""
+    """Return the name of an archive without its ending, or None if the name is not that of an archive."""
     ending = next((each for each in (*ENDINGS, *OTHER_ENDINGS) if name.lower().endswith(each)), None)
     return name[: -len(ending)] or None if ending else None
 
 
 @contextmanager
 def unpacked(archive: Path) -> Iterator[Path]:
-    """A folder with what is in the archive, gone afterwards.
+    """Yield a temporary folder with the content of the archive.
 
     Raises:
-        NotUnpackedError: it cannot be unpacked, or would take more than a submission may.
-        DiskError: the disk failed that it is unpacked on.
+       NotUnpackedError: the archive cannot be unpacked, or is larger than a submission may be.
+       DiskError: the disk failed on which it is unpacked.
     """
     if not archive.name.lower().endswith(ENDINGS):
-        message = "is no archive that is unpacked here: hand in a .zip or a .tar.gz"
+        message = "is not a supported archive: hand in a .zip or a .tar.gz"
         raise NotUnpackedError(message)
     if not os.access(archive, os.R_OK):
-        message = "may not be read (its permissions forbid it)"
+        message = "cannot be read (its permissions forbid it)"
         raise NotUnpackedError(message)
     if archive.stat().st_size > MOST_PACKED:
-        message = f"has more than {MOST_PACKED // _MIB} MiB"
+        message = f"is larger than {MOST_PACKED // _MIB} MiB"
         raise NotUnpackedError(message)
     with tempfile.TemporaryDirectory(prefix="grader-unpacked-") as folder:
-        # Its own process: what is made to take for ever, or all memory, takes this one only.
+        # In a process of its own, so that an archive that takes for ever, or takes all memory, harms only that process.
         start = interpreter("-S", str(_SCRIPT), str(archive.absolute()), folder)
         try:
             done = subprocess.run(

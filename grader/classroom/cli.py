@@ -1,4 +1,4 @@
-"""The instructor's verbs of the command `grader`: grade, gradescope build. No logic."""
+"""The instructor's commands: `grader grade` and `grader gradescope build`. This module has no logic."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ gradescope = typer.Typer(name="gradescope", help="Grade with Gradescope.", no_ar
 
 
 class Clock(str, Enum):
-    """Which clock judges."""
+    """The clock by which submissions are judged."""
 
     auto = "auto"
     simulated = "simulated"
@@ -25,7 +25,7 @@ class Clock(str, Enum):
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add these verbs to the command."""
+    """Add these commands to `app`."""
     app.command(
         rich_help_panel=PANEL,
         epilog="Example: grader grade submitted --exercise 03-circle-publisher --out grades  (then open "
@@ -41,54 +41,66 @@ def grade(
     submissions: Annotated[
         list[Path],
         typer.Argument(
-            help="A folder with a folder or an archive (.zip, .tar.gz) of each student; nbgrader's submitted/; or a "
+            help="A folder with one folder or archive (.zip, .tar.gz) per student; nbgrader's submitted/; or a "
             "folder of classroom clones."
         ),
     ],
     exercise: Annotated[
         Optional[str],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
-        typer.Option(help="Which exercise; in nbgrader's tree it follows from the folder.", metavar="ID"),
+        typer.Option(help="The exercise. Not needed for nbgrader's submitted/.", metavar="ID"),
     ] = None,
     jobs: Annotated[
         Optional[int],  # noqa: UP045
-        typer.Option(min=1, help="How many at once; as many as processors and memory allow when left out."),
+        typer.Option(
+            min=1, help="Number of submissions graded at once. [default: as many as processors and memory allow]"
+        ),
     ] = None,
     engine: Annotated[
-        str, typer.Option(help="local, or Dask's scheduler: dask://HOST:PORT.", metavar="local|dask://HOST:PORT")
+        str,
+        typer.Option(
+            help="Grade on this machine (local) or with Dask (dask://HOST:PORT).", metavar="local|dask://HOST:PORT"
+        ),
     ] = "local",
     out: Annotated[
-        Path, typer.Option(help="Where the results go; what stands there is not graded again.", metavar="DIR")
+        Path,
+        typer.Option(
+            help="Folder for the results. Submissions that have a result in it are not graded again.", metavar="DIR"
+        ),
     ] = Path("grades"),
     fail_under: Annotated[
         Optional[float],  # noqa: UP045
-        typer.Option(min=0, max=100, help="Exit code 1 if any submission gets less than so many percent.", metavar="N"),
+        typer.Option(min=0, max=100, help="Exit with code 1 if a submission gets less than N percent.", metavar="N"),
     ] = None,
     checks: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Option(help="Your own hidden checks, laid out as course/.", metavar="DIR", exists=True, file_okay=False),
+        typer.Option(
+            help="Folder with your own hidden checks, laid out like course/.",
+            metavar="DIR",
+            exists=True,
+            file_okay=False,
+        ),
     ] = None,
     roster: Annotated[
         Optional[Path],  # noqa: UP045
         typer.Option(
-            help="A CSV with the columns submission and student, where folders are not called after students' ids.",
+            help="CSV with the columns submission and student, for folders that are not named after student ids.",
             metavar="FILE.csv",
         ),
     ] = None,
-    clock: Annotated[
-        Clock, typer.Option(help="auto: simulated time, and wall time where that may misjudge.")
-    ] = Clock.auto,
-    seed: Annotated[Optional[int], typer.Option(help="Start the turtle at a place drawn from this number.")] = None,  # noqa: UP045
+    clock: Annotated[Clock, typer.Option(help="auto: simulated time, and wall time in doubtful cases.")] = Clock.auto,
+    seed: Annotated[Optional[int], typer.Option(help="Seed for a random start pose of the turtle.")] = None,  # noqa: UP045
     trusted: Annotated[
         bool,
         typer.Option(
-            "--trust-submissions", help="Run them even where there is no sandbox: all of this user's is theirs."
+            "--trust-submissions",
+            help="Run submissions even without a sandbox. They can then read and change all files of this user.",
         ),
     ] = False,
     repository_folder: Annotated[
-        str, typer.Option(help="Where the package is in a repository, for GitHub's annotations.", metavar="PATH")
+        str, typer.Option(help="Path of the package in the repository, for GitHub's annotations.", metavar="PATH")
     ] = "",
 ) -> None:
-    """Grade a class: every submission, several at once; stopped and started again it goes on where it was."""
+    """Grade a class, several submissions at once. If you stop it, the same command continues where it was."""
     from grader.classroom.grade_class import Asked, exit_code, grade_class
 
     asked = Asked(
@@ -107,32 +119,37 @@ def grade(
     try:
         graded = grade_class(asked, typer.echo, lambda text: typer.echo(f"{text} ...", err=True))
     except KeyboardInterrupt:
-        typer.echo(f"\nStopped. What was graded is in {out}, and the same command goes on from there.", err=True)
+        typer.echo(f"\nStopped. The results so far are in {out}. The same command continues from there.", err=True)
         raise
     typer.echo(f"Marks: {out / 'summary.csv'}\nThe class: {out / 'index.html'}")
     raise typer.Exit(exit_code(graded, fail_under))
 
 
 def build(
-    exercise: Annotated[str, typer.Argument(help="Which exercise.", metavar="ID")],
-    file: Annotated[Path, typer.Argument(help="The archive to write.", metavar="FILE.zip")] = Path("autograder.zip"),
+    exercise: Annotated[str, typer.Argument(help="The exercise.", metavar="ID")],
+    file: Annotated[Path, typer.Argument(help="Archive to write.", metavar="FILE.zip")] = Path("autograder.zip"),
     checks: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Option(help="Your own hidden checks, laid out as course/.", metavar="DIR", exists=True, file_okay=False),
+        typer.Option(
+            help="Folder with your own hidden checks, laid out like course/.",
+            metavar="DIR",
+            exists=True,
+            file_okay=False,
+        ),
     ] = None,
     trusted: Annotated[
         bool,
         typer.Option(
             "--trust-submissions",
-            help="Run submissions even where Gradescope allows no sandbox: one could then write its own mark.",
+            help="Run submissions even if Gradescope allows no sandbox. A submission could then write its own mark.",
         ),
     ] = False,
 ) -> None:
-    """Make the archive that Gradescope takes as an autograder."""
+    """Make the archive to upload to Gradescope as an autograder."""
     from grader.classroom.gradescope import build_archive
 
     if file.is_dir() or file.suffix != ".zip":
-        message = f"{file}: name a file that ends in .zip."
+        message = f"{file} does not end in .zip. Name a .zip file."
         raise UsageError(message)
     build_archive(exercise, file, checks, trusted=trusted)
-    typer.echo(f"Upload {file} at Gradescope: your assignment, Configure Autograder.")
+    typer.echo(f"Upload {file} to Gradescope: open your assignment, then Configure Autograder.")

@@ -1,4 +1,4 @@
-"""What a submission holds: its package read, from a folder or an archive, or the reason why there is none."""
+"""Read the package of a submission from a folder or an archive, or find the reason why there is none."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise
 
 MOST_DEEP = 4
-"""Folders that may lie around answers.toml."""
+"""Folders that may be next to answers.toml."""
 
 
 @dataclass(frozen=True)
 class Refused:
-    """Nothing can be graded, and why: for the student to read.
+    """There is nothing to grade; `reason` is a text for the student.
 
-    `of_the_machine`: the machine failed while it was read. That stops nobody else's grading.
+    `of_the_machine` is true if the machine failed while the submission was read. Other submissions are still graded.
     """
 
     reason: str
@@ -37,10 +37,10 @@ class Refused:
 
 
 def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused:
-    """The submission as it is graded; `student` is who handed it in.
+    """Return the submission to be graded; `student` is the person who handed it in.
 
     Raises:
-        DiskError: the disk failed that archives are unpacked on.
+       DiskError: the disk failed on which archives are unpacked.
     """
     if found.refused:
         return Refused(found.refused)
@@ -49,7 +49,7 @@ def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused
             try:
                 opened = reader.read(_open, folder, exercise)
             except UsageError as error:
-                # No path of this machine: a student reads it.
+                # Students read this, so it must not contain a path of this machine.
                 return Refused(str(error).replace(shown(str(folder)), shown(found.name)))
     except archives.NotUnpackedError as error:
         return Refused(f"{shown(found.path.name)} {error}.")
@@ -64,10 +64,12 @@ def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused
 
 
 def fingerprint(found: Found, exercise: Exercise) -> str:
-    """sha256 of all that is read of a submission, or of why it cannot be; an archive is not unpacked for that.
+    """Return the sha256 of all files that count in a submission, or of the reason why they cannot be read.
+
+    An archive is not unpacked for this.
 
     Raises:
-        DiskError: the disk failed that archives are unpacked on.
+       DiskError: the disk failed on which archives are unpacked.
     """
     archive = None if found.refused else _archive(found.path)
     if archive is not None:
@@ -86,7 +88,7 @@ def _of_archive(archive: Path) -> str:
             while data := file.read(1024 * 1024):
                 whole.update(data)
     except OSError as error:
-        whole.update(f"cannot be read: {error.errno}".encode())  # `read` tells it
+        whole.update(f"cannot be read: {error.errno}".encode())  # `read` reports it
     return whole.hexdigest()
 
 
@@ -101,7 +103,7 @@ def _folder(found: Found) -> Iterator[Path]:
 
 
 def _archive(path: Path) -> Path | None:
-    """The archive that holds the submission: itself, or all that lies in the folder (as Moodle makes them)."""
+    """Return the archive with the submission: the path itself, or (as with Moodle) the only file in the folder."""
     try:
         if not path.is_dir():
             return path
@@ -109,7 +111,7 @@ def _archive(path: Path) -> Path | None:
         if len(inside) != 1 or inside[0].is_symlink() or not inside[0].is_file():
             return None
     except OSError:
-        return None  # reading it as a folder will tell why
+        return None  # reading the folder will report the reason
     return inside[0] if archives.stem(inside[0].name) else None
 
 

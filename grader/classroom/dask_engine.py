@@ -1,11 +1,9 @@
-"""Engine: Dask's workers, on as many machines as there are.
+"""An engine that grades with Dask's workers, on one or many machines.
 
-They need this project and nothing else: submissions travel to them as bytes.
-
-What runs inside a Dask worker is one of our worker processes (worker.py) for each of its threads: what kills that
-process leaves the Dask worker alive. Which of them gets what is decided here, one submission a thread and no queues
-behind them, so that where a machine goes away it is known which submissions went with it, and none is blamed for
-another's.
+The machines need only this project. Submissions travel to them as bytes. Each thread of a Dask worker runs one of our
+worker processes (worker.py), so that a submission that kills this process leaves the Dask worker alive. This module
+decides which thread gets which submission: one at a time, without queues. So it always knows which submissions a lost
+machine had, and no submission is blamed for another one.
 """
 
 from __future__ import annotations
@@ -29,11 +27,11 @@ if TYPE_CHECKING:
 
 CONNECT_S = 10.0
 WORKERS_S = 60.0
-"""How long to wait for the first worker, or for another one when all have gone."""
+"""How long to wait for the first worker, or for a new one when all are gone (s)."""
 LOOK_S = 1.0
-"""How often it is looked at which workers are there."""
+"""The interval for looking which workers are there (s)."""
 
-# Of the Dask worker's process: they outlive a task, so that the next one finds them warm.
+# These belong to the process of the Dask worker. They outlive a task, so the next task finds a warm process.
 _idle: list[Worker] = []
 _lock = Lock()
 
@@ -41,9 +39,9 @@ _lock = Lock()
 def perform_here(packed: bytes) -> tuple[str, object]:
     """Grade a pickled task in a process of its own; runs in a thread of a Dask worker.
 
-    Returns ("done", Done), ("fails", text): this machine cannot grade, or ("died", text): the process is gone.
+    Returns ("done", Done), ("fails", text) if this machine cannot grade, or ("died", text) if the process is gone.
     """
-    task = pickle.loads(packed)  # (from the instructor's own command)
+    task = pickle.loads(packed)  # (the instructor's command decides about Ctrl-C)
     with _lock:
         worker = _idle.pop() if _idle else Worker()
     worker.send(task)
@@ -67,21 +65,21 @@ class _Running:
 
 
 class DaskEngine:
-    """Gives each thread of each worker one submission at a time."""
+    """Give each thread of each worker one submission at a time."""
 
     def __init__(self, address: str, jobs: int | None) -> None:
         try:
             from distributed import Client
         except ImportError as error:
-            message = "Dask is not installed here: `make cluster` in the course's folder installs it."
+            message = "Dask is not installed. Run `make cluster` in the course's folder to install it."
             raise UsageError(message) from error
         try:
-            # Dask tells no types.
+            # Dask has no types.
             self._client: Any = Client(f"tcp://{address}", timeout=CONNECT_S, set_as_default=False)  # type: ignore[no-untyped-call]
         except (OSError, ValueError) as error:
             message = (
                 f"No Dask scheduler answers at {address}: start it with `python -I -m dask scheduler`, "
-                "or mend HOST:PORT."
+                "or correct HOST:PORT."
             )
             raise UsageError(message) from error
         self._most = jobs
@@ -104,7 +102,7 @@ class DaskEngine:
             self._client.close(timeout=5)
 
     def has_room(self) -> bool:
-        """Whether a worker's thread is free."""
+        """Return whether a thread of a worker is free."""
         return (self._most is None or len(self._running) < self._most) and self._free() is not None
 
     def start(self, task: Task) -> None:
@@ -112,7 +110,7 @@ class DaskEngine:
         where = self._free()
         assert where is not None
         key = f"grade-{uuid.uuid4().hex}"
-        # As bytes, which the scheduler passes on without unpacking them.
+        # The scheduler passes bytes on without unpacking them.
         packed = pickle.dumps(task)
         future = self._client.submit(
             perform_here, packed, key=key, workers=[where], allow_other_workers=False, pure=False, retries=0
@@ -121,7 +119,7 @@ class DaskEngine:
         future.add_done_callback(lambda ended: self._ended.put(ended.key))
 
     def events(self, timeout_s: float) -> list[Event]:
-        """What has happened; see Engine."""
+        """Return what happened since the last call; see Engine."""
         happened: list[Event] = []
         try:
             first = self._ended.get(timeout=timeout_s)
@@ -138,7 +136,7 @@ class DaskEngine:
     def _event(self, ended: _Running) -> Event:
         try:
             kind, what = ended.future.result(timeout=CONNECT_S)
-        except Exception as error:  # a worker that died, whatever Dask calls it; anything else it could not send
+        except Exception as error:  # Dask has several exceptions for a worker that died
             return Died(ended.task, f"{type(error).__name__}: {error}")
         if kind == "done":
             done: Done = what
@@ -148,19 +146,22 @@ class DaskEngine:
         return Died(ended.task, str(what))
 
     def _free(self) -> str | None:
-        """The worker with the most free threads."""
+        """Return the worker with the most free threads."""
         busy = [each.where for each in self._running.values()]
         free = {where: threads - busy.count(where) for where, threads in self._threads.items()}
         best = max(free, key=lambda where: free[where], default=None)
         return best if best is not None and free[best] > 0 else None
 
     def _look(self) -> list[Event]:
-        """See which workers are there; what the others had is lost."""
+        """Look which workers are there. The tasks of lost workers are lost."""
         self._looked = time.monotonic()
         try:
             self._threads = dict(self._client.nthreads())
         except Exception as error:
-            message = f"Dask's scheduler was lost ({error}). What was graded is kept; the same command goes on."
+            message = (
+                f"The connection to Dask's scheduler was lost ({error}). The results so far are kept. "
+                "The same command continues."
+            )
             raise MachineError(message) from error
         if self._threads:
             self._last_seen = time.monotonic()

@@ -1,4 +1,4 @@
-"""What runs tasks: processes of this machine (local.py), or Dask's workers on many (dask_engine.py)."""
+"""An engine runs tasks: in processes of this machine (local.py), or with Dask on many machines (dask_engine.py)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Tells:
-    """What is being done with a task."""
+    """The current state of a task, in words."""
 
     task: Task
     text: str
@@ -29,7 +29,7 @@ class Finished:
 
 @dataclass(frozen=True)
 class Died:
-    """The worker that had the task is gone: killed, out of memory, or a machine that went away."""
+    """The worker of a task is gone: it was killed, had no memory left, or its machine was lost."""
 
     task: Task
     why: str
@@ -39,7 +39,14 @@ Event = Tells | Finished | Died
 
 
 class Engine(Protocol):
-    """A context manager; leaving it ends all that runs."""
+    """A context manager that runs tasks. Leaving it ends all of them.
+
+    with engine:
+        while engine.has_room():
+            engine.start(task)
+        for event in engine.events(0.5):
+            ...
+    """
 
     def __enter__(self) -> Engine:  # noqa: PYI034 - typing.Self is Python 3.11's
         ...
@@ -49,14 +56,14 @@ class Engine(Protocol):
     ) -> None: ...
 
     def has_room(self) -> bool:
-        """Whether one more task may be started now."""
+        """Return whether another task can be started now."""
 
     def start(self, task: Task) -> None:
-        """Begin a task, where there is room."""
+        """Begin a task. Call it only if there is room."""
 
     def events(self, timeout_s: float) -> list[Event]:
-        """What has happened since the last call; waits for something, but no longer than that.
+        """Return what happened since the last call; wait at most `wait_s` for something to happen.
 
         Raises:
-            MachineError: nothing can be graded any more, whatever the submission.
+           MachineError: this machine cannot grade any submission any more.
         """

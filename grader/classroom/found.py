@@ -1,10 +1,10 @@
-"""Where the submissions of a class are: which student handed in what, for which exercise.
+"""Find the submissions of a class: which student handed in what, for which exercise.
 
-Three trees are known, and may be mixed: a folder or an archive a student; nbgrader's submitted/STUDENT/EXERCISE; a
-folder of classroom clones, each with the course's exercises/EXERCISE in it.
+Three layouts are known and can be mixed: one folder or archive per student; nbgrader's submitted/STUDENT/EXERCISE; and
+a folder of classroom clones, each with exercises/EXERCISE of the course in it.
 
-Nobody vanishes: each folder and archive becomes a submission, if only with the reason why it is not graded. Functions
-of os.path say of a place that cannot be looked at that nothing is there; those of pathlib raise.
+No student is lost: each folder and archive becomes a submission, even if it only has a reason why it is not graded.
+This module uses os.path, whose functions return False for a path that cannot be accessed. Those of pathlib raise.
 """
 
 # ruff: noqa: PTH110, PTH112, PTH114
@@ -29,39 +29,39 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
 UNKNOWN = ""
-"""The exercise of a folder that does not tell it."""
+"""The exercise of a folder that does not say for which exercise it is."""
 OWN = "exercises"
-"""The folder of a clone that holds what the student works on."""
+"""The folder of a clone in which the student works."""
 
 
 @dataclass(frozen=True)
 class Found:
-    """What a student handed in for an exercise: a folder, or an archive."""
+    """A folder or an archive that a student handed in for an exercise."""
 
     student: str
     exercise: str
     path: Path
     refused: str = ""
-    """Why it cannot be graded, where whoever found it could not read it."""
+    """Why it cannot be graded, if it could not be read when it was found."""
 
     @property
     def name(self) -> str:
-        """As reports and messages call it."""
+        """The name of the submission in reports and messages."""
         return self.student
 
 
 def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Path) -> tuple[Found, ...]:
-    """All submissions in the folders, archives and packages `given`, by student; `leave_out` is passed over.
+    """Return all submissions in the folders, archives and packages `given`, sorted by student, without `leave_out`.
 
     Raises:
-        UsageError: there is none, or nothing says which exercise it is.
+       UsageError: there is none, or the exercise is not known.
     """
     wanted = find_exercise(exercise).id if exercise else None
     found = [each for path in given for each in _in(path, wanted, leave_out)]
     if not found:
         message = (
-            f"There is no submission in {a_list([shown(str(path)) for path in given])}: give the folder that holds a "
-            "folder or an archive (.zip, .tar.gz) of each student."
+            f"There is no submission in {a_list([shown(str(path)) for path in given])}. Give the folder with one "
+            "folder or archive (.zip, .tar.gz) per student."
         )
         raise UsageError(message)
     alike: dict[tuple[str, str], list[Found]] = {}
@@ -72,10 +72,10 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
 
 
 def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
-    """The same; a folder of which nobody knows the exercise counts for each that others were found for.
+    """Yield the same submissions. One of an unknown exercise is repeated for each exercise of the others.
 
     Raises:
-        UsageError: no exercise is known.
+       UsageError: no exercise is known.
     """
     known = sorted({each.exercise for each in found} - {UNKNOWN})
     for each in found:
@@ -84,27 +84,28 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
             continue
         if not known:
             message = (
-                f"Which exercise is {shown(str(each.path))} for? Say it with --exercise, one of: "
-                f"{', '.join(catalogue())}. (In nbgrader's tree, submitted/STUDENT/EXERCISE, it follows from the "
-                "folder.)"
+                f"Which exercise is {shown(str(each.path))} for? Name it with --exercise, one of: "
+                f"{', '.join(catalogue())}. (In nbgrader's tree, submitted/STUDENT/EXERCISE, the folder names "
+                "it.)"
             )
             raise UsageError(message)
         for exercise in known:
-            yield replace(each, exercise=exercise, refused=f"{shown(each.student)} holds no folder {exercise}.")
+            yield replace(
+                each, exercise=exercise, refused=f"{shown(each.student)} does not contain a folder {exercise}."
+            )
 
 
 def _one_of(alike: Sequence[Found]) -> Found:
-    """The submission of a student for an exercise; where there are several, none of them is graded."""
+    """Return the submission of a student for an exercise. If there are several, none of them is graded."""
     if len(alike) == 1:
         return alike[0]
     paths = a_list([shown(str(each.path)) for each in alike])
-    times = "twice" if len(alike) == 2 else f"{len(alike)} times"
     name = shown(alike[0].student)
-    return replace(alike[0], refused=f"{name} is there {times}: {paths}. Take all but one away, or rename them.")
+    return replace(alike[0], refused=f"{name} has {len(alike)} submissions: {paths}. Remove or rename all but one.")
 
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
-    """The names of what lies beside submissions and is none: files, links. What is hidden is not named."""
+    """Return the names of files and links that are not submissions. Hidden files are left out."""
     folders = [path for path in given if os.path.isdir(path) and not _is_one(path)]
     return tuple(
         shown(entry.name)
@@ -115,7 +116,7 @@ def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
 
 
 def _entries(folder: Path) -> list[Path]:
-    """What the folder holds, in order. Raises UsageError where it cannot be opened."""
+    """Return the entries of the folder in order. Raises UsageError if it cannot be opened."""
     try:
         return sorted(folder.iterdir(), key=lambda each: sort_key(each.name))
     except OSError as error:
@@ -124,13 +125,13 @@ def _entries(folder: Path) -> list[Path]:
 
 
 def _same(one: Path, other: Path) -> bool:
-    """Whether both lead to one place; links that lead in a circle lead nowhere."""
+    """Return whether both paths lead to the same place. Links that form a circle lead nowhere."""
     return os.path.realpath(one) == os.path.realpath(other)
 
 
 def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
     if not os.path.exists(path):
-        message = f"There is no {shown(str(path))}. Give the folder that holds a folder or an archive of each student."
+        message = f"There is no {shown(str(path))}. Give the folder with one folder or archive per student."
         raise UsageError(message)
     absolute = Path(os.path.realpath(path))
     if not os.path.isdir(path) or _is_one(path):
@@ -147,18 +148,18 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
 
 
 def _is_one(folder: Path) -> bool:
-    """Whether a folder is one submission by itself: a package, or a clone of the course."""
+    """Return whether a folder is itself one submission: a package, or a clone of the course."""
     return any(os.path.exists(folder / name) for name in (*PACKAGE_FILES, OWN))
 
 
 def _student(entry: Path) -> str | None:
-    """Whose it is; None for what lies about beside submissions: hidden files, lists, notes."""
+    """Return the student's name, or None for other entries: hidden files, lists, notes."""
     if entry.name.startswith(".") or entry.name == "__MACOSX":
         return None
     try:
         mode = entry.lstat().st_mode
     except OSError:
-        return entry.name  # Nobody may look at it: whoever reads it says so.
+        return entry.name  # The entry is not readable. The error is reported when it is read.
     if stat.S_ISDIR(mode):
         return entry.name
     return archives.stem(entry.name) if stat.S_ISREG(mode) else None
@@ -168,7 +169,7 @@ def _of_student(student: str, path: Path, wanted: str | None) -> Iterator[Found]
     assigned = _assignments(path)
     own = path / OWN / (wanted or UNKNOWN)
     if assigned and wanted not in (None, *assigned):
-        refused = f"{shown(student)} holds {a_list(assigned)}, and no folder {wanted}."
+        refused = f"{shown(student)} contains {a_list(assigned)}, but no folder {wanted}."
         yield Found(student, wanted or UNKNOWN, path, refused)
     elif assigned:
         yield from (Found(student, name, path / name) for name in assigned if wanted in (None, name))
@@ -179,7 +180,7 @@ def _of_student(student: str, path: Path, wanted: str | None) -> Iterator[Found]
 
 
 def _assignments(path: Path) -> list[str]:
-    """The exercises in a student's folder, as nbgrader lays them out."""
+    """Return the exercises in a student's folder, in nbgrader's layout."""
     if not os.path.isdir(path) or _is_one(path):
         return []
     return [name for name in catalogue() if os.path.isdir(path / name) and not os.path.islink(path / name)]

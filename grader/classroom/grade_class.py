@@ -1,4 +1,4 @@
-"""Grade a class: what `grader grade` does, from the folder of submissions to the folder of results."""
+"""Grade a class, as `grader grade` does: from a folder of submissions to a folder of results."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ DASK = "dask://"
 
 @dataclass(frozen=True)
 class Asked:
-    """What stands on the command line."""
+    """The options of the command line."""
 
     submissions: Sequence[Path]
     out: Path
@@ -50,11 +50,11 @@ class Asked:
 
 
 def grade_class(asked: Asked, say: Callable[[str], None], tell: Callable[[str], None]) -> list[Result]:
-    """Grade what was not graded yet, write all files, and return every result, by student.
+    """Grade everything that has no valid result yet, write all files, and return every result, sorted by student.
 
     Raises:
-        UsageError: the command is wrong.
-        MachineError: nothing more can be graded or written; what was written stays, and the next run goes on.
+       UsageError: the command is wrong.
+       MachineError: nothing more can be graded or written. Results that were written stay, and the next run continues.
     """
     _engine_is_known(asked)
     return grade_found(asked, find_submissions(asked.submissions, asked.exercise, asked.out), say, tell)
@@ -63,7 +63,7 @@ def grade_class(asked: Asked, say: Callable[[str], None], tell: Callable[[str], 
 def grade_found(
     asked: Asked, found: tuple[Found, ...], say: Callable[[str], None], tell: Callable[[str], None]
 ) -> list[Result]:
-    """The same for submissions that were found already; raises as `grade_class`."""
+    """Grade submissions that were found before; raises as `grade_class`."""
     local = _engine_is_known(asked)
     roster = read_owners(asked.roster) if asked.roster else {}
     beside = passed_over(asked.submissions, asked.out)
@@ -75,17 +75,17 @@ def grade_found(
         ros=_ros(local=local, tell=tell),
         clock=asked.clock,
         seed=asked.seed,
-        # Dask's workers see to it themselves, each where it is.
+        # Each Dask worker tests its own machine.
         in_cell=bubblewrap.require(trusted=asked.trusted) if local else not asked.trusted,
         trusted=asked.trusted,
     )
-    assert order.exercises  # a mistake in private checks is told before anything is graded
+    assert order.exercises  # a mistake in private checks must be reported before anything is graded
     with results.opened(asked.out) as folder:
         tell(f"Reading {count(len(found), 'submission')}")
         kept, todo = sort_out(order, folder)
         say(_told(kept, todo))
         if beside:
-            say(f"Passed over, since it is neither a folder nor an archive: {a_list(beside)}.")
+            say(f"Ignored, because these are neither folders nor archives: {a_list(beside)}.")
         graded: list[Result] = []
         if todo:
             engine = _engine(asked, local=local)
@@ -97,34 +97,34 @@ def grade_found(
         left = folder.others({result.page for result in ordered})
     say(summary(ordered))
     if left:
-        say(f"{count(left, 'result')} in {asked.out}/{results.REPORTS} of submissions not named now: left as they are.")
+        say(f"{count(left, 'result')} in {asked.out}/{results.REPORTS} of other submissions stay unchanged.")
     return ordered
 
 
 def _engine_is_known(asked: Asked) -> bool:
-    """Whether the engine is this machine. Raises UsageError for one that is not known."""
+    """Return whether the engine is this machine. Raises UsageError for an unknown engine."""
     local = asked.engine == "local"
     if not local and not asked.engine.startswith(DASK):
-        message = f'--engine is "{asked.engine}"; it must be local or {DASK}HOST:PORT.'
+        message = f'--engine is "{asked.engine}". It must be local or {DASK}HOST:PORT.'
         raise UsageError(message)
     return local
 
 
 def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
-    """3 where the machine failed, 1 where a submission got less than `fail_under` percent, else 0."""
+    """Return 3 if the machine failed, 1 if a submission got less than `fail_under` percent, otherwise 0."""
     if any(result.report.with_status(Status.ERROR) for result in graded):
         return 3
     shares = [result.report.points / result.report.max if result.report.max else 0.0 for result in graded]
-    # As much less as a float's rounding must not fail a class.
+    # The tolerance prevents that rounding of floats fails a class.
     return 1 if fail_under is not None and any(100.0 * share < fail_under - 1e-9 for share in shares) else 0
 
 
 def _ros(*, local: bool, tell: Callable[[str], None]) -> str:
-    """The ROS 2 that a result follows from; with Dask it is the workers' business, and theirs must be one."""
+    """Return the ROS 2 that a result depends on. With Dask, the workers have their own, and all must have the same."""
     try:
         ros = find_ros()
         if local:
-            underlay.ensure(ros, tell)  # once, and not by all workers at the same time
+            underlay.ensure(ros, tell)  # once, and not in all workers at the same time
     except MachineError:
         if local:
             raise

@@ -1,4 +1,4 @@
-"""The archive that Gradescope takes as an autograder: setup.sh, run_autograder, and the course with its grader."""
+"""Make the archive that Gradescope takes as an autograder: setup.sh, run_autograder, and the course with its grader."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ _FILES = ("LICENSE", "Makefile", "README.md", "pyproject.toml", "requirements.lo
 _FOLDERS = ("course", "grader")
 _LEFT_OUT = frozenset({"__pycache__", "tests", "benchmarks"})
 _WHEN = (1980, 1, 1, 0, 0, 0)
-"""The same archive from the same files."""
+"""A fixed date, so that the same files always make the same archive."""
 
 
 def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bool = False) -> None:
-    """Write the archive; `checks` is a folder of private checks, which goes along.
+    """Write the archive; `checks` is a folder of private checks, which are included.
 
-    `trusted`: submissions are run even where Gradescope's container allows no sandbox.
+    With `trusted`, submissions run even if Gradescope's container allows no sandbox.
 
     Raises:
-        UsageError: there is no such exercise, the private checks are wrong, or this is no checkout of the course.
-        MachineError: it cannot be written.
+       UsageError: the exercise does not exist, the private checks are wrong, or this is not a checkout of the course.
+       MachineError: the archive cannot be written.
     """
     known = find_exercise(exercise)
     sources = sources_of({known.id}, checks)[known.id]
-    exercise_from(sources)  # mistakes are told here, not by Gradescope
+    exercise_from(sources)  # mistakes must be reported here, not at Gradescope
     root = course_folder().parent
     if not (root / "Makefile").is_file():
-        message = f"The archive is made from a checkout of the course; {root} is none."
+        message = f"The archive needs a checkout of the course, but {root} is not one."
         raise UsageError(message)
     try:
         with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -57,7 +57,7 @@ def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bo
 
 
 def _course(root: Path) -> Iterator[Path]:
-    """The files of the course that grading needs: no solutions, no tests."""
+    """Return the files of the course that grading needs, without solutions and tests."""
     yield from (root / name for name in _FILES if (root / name).is_file())
     for folder in _FOLDERS:
         for path in sorted((root / folder).rglob("*")):

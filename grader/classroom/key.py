@@ -1,4 +1,4 @@
-"""The key of a result: all that it follows from. A result with another key is made again."""
+"""The key of a result: everything that the result depends on. If the key changes, the submission is graded again."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ _NOT_JUDGING = ("tests", "benchmarks", "__pycache__", "templates")
 
 @dataclass(frozen=True)
 class Key:
-    """What a result follows from, each as a text."""
+    """What a result depends on, as strings."""
 
     submission: str
-    """sha256 of what was handed in."""
+    """The sha256 of the submission."""
     student: str
     exercise: str
-    """sha256 of exercise.toml, private checks included."""
+    """The sha256 of exercise.toml, private checks included."""
     grader: str
-    """The grader's version and the sha256 of its sources."""
+    """The version of the grader and the sha256 of its sources."""
     ros: str
     options: str
-    """Clock, seed, confined or not."""
+    """The clock, the seed, and whether the submission ran in a sandbox."""
 
     def to_data(self) -> dict[str, str]:
-        """As it stands in a result's JSON."""
+        """Return the key as it is stored in the JSON of a result."""
         return asdict(self)
 
 
 def changed(old: Mapping[str, Any], new: Key) -> tuple[str, ...]:
-    """Which parts differ from those in a result's JSON."""
+    """Return the names of the parts that differ from the key in the JSON of a result."""
     return tuple(name for name, value in new.to_data().items() if old.get(name) != value)
 
 
 @cache
 def grader_key() -> str:
-    """The grader's version and the sha256 of the sources that decide what a report says."""
+    """Return the version of the grader and the sha256 of the sources that decide about a report."""
     folder = Path(grader.__file__).parent
     whole = hashlib.sha256()
     for path in sorted(folder.rglob("*")):

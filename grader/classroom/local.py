@@ -1,4 +1,4 @@
-"""Engine: worker processes of this machine, as many as its processors and its memory allow."""
+"""An engine with worker processes on this machine, as many as its processors and its memory allow."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from grader.classroom.task import Task
 
 MEMORY_A_TASK = 1536 * 1024 * 1024
-"""Bytes. What a cell may hold (sandbox.Limits) is more, but few submissions ask for it, and never all at once."""
+"""Bytes. A cell may use more (sandbox.Limits), but few submissions do, and never all at the same time."""
 WAITING_A_JOB = 2
-"""Tasks beyond --jobs, for each of them, while as many wait for the wall's clock and hardly work."""
+"""Additional tasks for each job, while as many tasks wait for wall time and hardly use a processor."""
 TASK_S = 1800.0
-"""Longer than all limits of a grading together: a worker that is still busy then hangs."""
+"""Longer than all limits of one grading together. A worker that is still busy after this time hangs (s)."""
 
 
 def default_jobs() -> int:
-    """How many submissions are worked on at once: one a processor, if there is the memory for it."""
+    """Return how many submissions are graded at once: one per processor, if there is enough memory."""
     return max(1, min(_processors(), _memory() // MEMORY_A_TASK))
 
 
@@ -37,7 +37,7 @@ def _processors() -> int:
         quota, period = Path("/sys/fs/cgroup/cpu.max").read_text().split()
         return max(1, min(here, round(int(quota) / int(period))))
     except (OSError, ValueError):
-        return here  # no control group, or no limit in it
+        return here  # there is no control group, or it has no limit
 
 
 def _memory() -> int:
@@ -61,7 +61,7 @@ class _Busy:
 
 
 class LocalEngine:
-    """Keeps workers, gives each a task at a time, and starts another in place of one that died."""
+    """Keep worker processes, give each one task at a time, and replace those that die."""
 
     def __init__(self, jobs: int) -> None:
         self._jobs = jobs
@@ -79,7 +79,7 @@ class LocalEngine:
             worker.close()
 
     def has_room(self) -> bool:
-        """Whether one more task may be started now."""
+        """Return whether another task can be started now."""
         working = sum(not busy.waits for busy in self._busy.values())
         return working < self._jobs and len(self._busy) < self._most
 
@@ -90,7 +90,7 @@ class LocalEngine:
         worker.send(task)
 
     def events(self, timeout_s: float) -> list[Event]:
-        """What has happened; see Engine."""
+        """Return what happened since the last call; see Engine."""
         happened: list[Event] = []
         by_connection = {worker.connection: worker for worker in self._busy}
         for ready in wait(list(by_connection), timeout_s):

@@ -1,4 +1,4 @@
-"""Order: what a run of `grader grade` is to do, and which of it was done before."""
+"""Order: what a run of `grader grade` has to do, and what earlier runs already did."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Order:
-    """The submissions of a class, and how to grade them. `roster`: submission's name -> the student's id."""
+    """The submissions of a class and how to grade them; `roster` maps the name of a submission to a student id."""
 
     found: tuple[Found, ...]
     roster: Mapping[str, str]
@@ -35,16 +35,16 @@ class Order:
     clock: ClockChoice = "auto"
     seed: int | None = None
     in_cell: bool = True
-    """Whether there is a sandbox; False only where the submissions are trusted."""
+    """Whether there is a sandbox. It is False only if the submissions are trusted."""
     trusted: bool = False
 
     @cached_property
     def exercises(self) -> dict[str, Exercise]:
-        """The exercises, by id. Raises UsageError naming every problem of private checks."""
+        """The exercises by id. Raises UsageError with every problem of the private checks."""
         return {name: exercise_from(sources) for name, sources in self.sources.items()}
 
     def key(self, found: Found) -> Key:
-        """The key of a submission's result. Raises DiskError as `content.read`."""
+        """Return the key of a submission's result. Raises DiskError as `content.read`."""
         exercise = self.exercises[found.exercise]
         return Key(
             submission=fingerprint(found, exercise),
@@ -56,7 +56,7 @@ class Order:
         )
 
     def task(self, found: Found) -> Task:
-        """The task of grading a submission, read now. Raises DiskError as `content.read`."""
+        """Read the submission and return its task. Raises DiskError as `content.read`."""
         owner = self._owner(found)
         content = read(found, self.exercises[found.exercise], owner)
         if isinstance(content, Refused):
@@ -104,23 +104,23 @@ class Order:
 
 
 def sources_for(found: tuple[Found, ...], checks: Path | None) -> dict[str, Sources]:
-    """What the exercises of these submissions are made of. Raises UsageError as `sources_of`."""
+    """Return the sources of the exercises of these submissions. Raises UsageError as `sources_of`."""
     return sources_of({each.exercise for each in found}, checks)
 
 
 @dataclass(frozen=True)
 class Todo:
-    """A submission that is to be graded; `why` in a word: "new", "changed", "error before", "older grader", ..."""
+    """A submission that must be graded; `why` is a short reason: "new", "changed", ..."""
 
     found: Found
     key: Key
     why: str
     errors: int = 0
-    """How often in a row its grading has ended with an `error` so far."""
+    """How many times in a row its grading ended with an `error` so far."""
 
 
 def sort_out(order: Order, results: Results) -> tuple[list[Result], list[Todo]]:
-    """The results that hold still, and what is to be graded. Raises DiskError as `content.read`."""
+    """Return the results that are still valid, and what must be graded. Raises DiskError as `content.read`."""
     kept: list[Result] = []
     todo: list[Todo] = []
     for found in order.found:
@@ -143,5 +143,5 @@ def _why_again(old: Result, key: Key) -> str:
     if "exercise" in parts:
         return "judged by other checks"
     if parts:
-        return "graded in another way"
-    return "not finished for a fault of the machine" if old.report.with_status(Status.ERROR) else ""
+        return "graded with other options"
+    return "not finished because of a fault of the machine" if old.report.with_status(Status.ERROR) else ""

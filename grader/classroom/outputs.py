@@ -1,12 +1,12 @@
-"""What stands in the folder of results when a run is through: the class as a page, as a table, for CI and Gradescope.
+"""Write the files in the folder of results after a run: a page of the class, a table, and files for CI and Gradescope.
 
-    index.html            the class page, for the instructor
-    summary.csv           for a spreadsheet or gradebook, for the instructor
-    junit.xml             for a CI's list of tests
-    gradescope/NAME.json  Gradescope's results.json of each submission
-    github-summary.md, github-annotations.txt   for a step of GitHub Actions
+   index.html            the page of the class, for the instructor
+   summary.csv           for a spreadsheet or gradebook, for the instructor
+   junit.xml             for the list of tests of a CI
+   gradescope/NAME.json  Gradescope's results.json of each submission
+   github-summary.md, github-annotations.txt   for a step of GitHub Actions
 
-Students may see the files for CI and Gradescope: what is hidden is left out of them.
+Students may see the files for CI and Gradescope, so these do not contain hidden checks.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ GITHUB_ANNOTATIONS = "github-annotations.txt"
 
 
 def write_all(results: Results, graded: Sequence[Result], folder: str = "") -> None:
-    """Write them; `folder` is where the package is in a repository. Raises MachineError where the disk forbids it."""
+    """Write the files; `folder` is the path of the package in a repository. Raises MachineError if the disk fails."""
     from urllib.parse import quote
 
     rows = [(result.student, result.report) for result in graded]

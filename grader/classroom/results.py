@@ -1,12 +1,13 @@
-"""The results of a class on the disk: one JSON and one page a submission, each written whole or not at all.
+"""The results of a class on disk: one JSON file and one page per submission.
 
-    OUT/reports/STUDENT.EXERCISE.json   the report (grader.report.json) with two keys more: student, and key (key.py);
-                                        for the instructor: hidden checks stand in it; `errors` says how often in a
-                                        row it ended with an error
-    OUT/reports/STUDENT.EXERCISE.html   its page, without what is hidden
+   OUT/reports/STUDENT.EXERCISE.json   the report (grader.report.json) with the additional keys student, key (key.py)
+                                       and errors (how many times in a row grading ended with an error); it is for
+                                       the instructor, because it contains hidden checks
+   OUT/reports/STUDENT.EXERCISE.html   the page of the submission, without hidden checks
 
-The JSON is written after the page: where it stands, the result is finished. What a killed run was writing has the
-ending .partial, and the next run takes it away. One run at a time works on a folder.
+Each file is written completely or not at all. The JSON is written after the page, so a result with a JSON file is
+complete. A killed run may leave files that end in .partial. The next run removes them. Only one run at a time may use
+a folder.
 """
 
 from __future__ import annotations
@@ -35,24 +36,27 @@ _LOCK = ".grader-results"
 _PARTIAL = ".partial"
 _SAFE = re.compile(r"[^A-Za-z0-9 _@+,=-]")
 _LONGEST = 120
-"""Bytes of a file's name; longer ones are cut, and told apart by what was cut off."""
+"""Bytes. Longer file names are cut, and a digest keeps them different."""
 
 
 @dataclass(frozen=True)
 class Result:
-    """A graded submission; `page` is its file's name below reports/."""
+    """A graded submission; `page` is the name of its page in reports/."""
 
     student: str
     report: Report
     key: Mapping[str, Any]
     page: str
     errors: int = 0
-    """How often in a row its grading has ended with an `error`, this time included."""
+    """How many times in a row its grading ended with an `error`, including this time."""
 
 
 def file_name(student: str, exercise: str) -> str:
-    """The name of a result's files without their ending: no two students share one, and every disk takes it."""
-    # What is replaced is kept as a number, so that two names never become one; a dot would look like an ending.
+    """Return the file name of a result without its ending.
+
+    It is different for every student and valid on every disk.
+    """
+    # Replaced characters become numbers, so that two names never become equal. A dot would look like an ending.
     safe = _SAFE.sub(lambda match: "".join(f"%{byte:02X}" for byte in os.fsencode(match.group())), student)
     if len(safe) > _LONGEST:
         import hashlib
@@ -63,12 +67,12 @@ def file_name(student: str, exercise: str) -> str:
 
 @dataclass(frozen=True)
 class Results:
-    """The folder that results go to; `opened` gives one."""
+    """The folder of the results. Use `opened` to get one."""
 
     folder: Path
 
     def load(self, student: str, exercise: str) -> Result | None:
-        """The finished result of a submission, whatever its key; None where there is none."""
+        """Return the complete result of a submission, whatever its key is, or None."""
         name = file_name(student, exercise)
         file = self.folder / REPORTS / f"{name}.json"
         try:
@@ -78,10 +82,10 @@ class Results:
                 return None
             return Result(student, from_json(text), data["key"], f"{name}.html", int(data.get(ERRORS, 0)))
         except (OSError, ValueError, KeyError, TypeError, UsageError):
-            return None  # damaged, or of another grader: made again
+            return None  # damaged, or written by another grader: it is graded again
 
     def save(self, student: str, report: Report, key: Key, page: bytes, errors: int = 0) -> Result:
-        """Write a result. Raises MachineError where the disk is full or forbids it."""
+        """Write a result. Raises MachineError if the disk is full or not writable."""
         name = file_name(student, report.exercise)
         data = {**to_data(report), "student": _encodable(student), "key": key.to_data(), ERRORS: errors}
         self.write(f"{REPORTS}/{name}.html", page)
@@ -90,7 +94,7 @@ class Results:
         return Result(student, report, key.to_data(), f"{name}.html", errors)
 
     def write(self, name: str, content: bytes) -> Path:
-        """Write a file of the folder, whole or not at all. Raises MachineError where that cannot be done."""
+        """Write a file in the folder, completely or not at all. Raises MachineError if that is not possible."""
         file = self.folder / name
         partial = file.with_name(file.name + _PARTIAL)
         try:
@@ -104,29 +108,29 @@ class Results:
             with suppress(OSError):
                 partial.unlink()
             message = (
-                f"{file} could not be written: {error.strerror}. What was graded before is kept; make room, and the "
-                "same command goes on from there."
+                f"{file} could not be written: {error.strerror}. The results so far are kept. Make room, "
+                "then the same command continues from there."
             )
             raise DiskError(message) from error
         return file
 
     def others(self, mine: set[str]) -> int:
-        """How many results in the folder belong to none of these pages: of submissions that are not named now."""
+        """Return how many results in the folder belong to other submissions than those of these pages."""
         found = {file.with_suffix(".html").name for file in (self.folder / REPORTS).glob("*.json")}
         return len(found - mine)
 
 
 @contextmanager
 def opened(folder: Path) -> Iterator[Results]:
-    """The folder, made where it is not there; nobody else's run works on it meanwhile.
+    """Yield the folder, which is created if necessary. No other run can use it at the same time.
 
     Raises:
-        UsageError: another run works on it, or it holds something else than results.
-        MachineError: it cannot be written.
+       UsageError: another run uses it, or it contains something else than results.
+       MachineError: it cannot be written.
     """
     lock = folder / _LOCK
     if folder.exists() and not (folder.is_dir() and (lock.exists() or not any(folder.iterdir()))):
-        message = f"{folder} holds something else than results of `grader grade`. Name a new folder with --out."
+        message = f"{folder} contains files that are not results of `grader grade`. Name a new folder with --out."
         raise UsageError(message)
     try:
         (folder / REPORTS).mkdir(parents=True, exist_ok=True)
@@ -138,7 +142,7 @@ def opened(folder: Path) -> Iterator[Results]:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
-            message = f"Another `grader grade` works on {folder} now. Wait for it, or name another folder with --out."
+            message = f"Another `grader grade` is using {folder} now. Wait for it, or name another folder with --out."
             raise UsageError(message) from error
         for leftover in folder.rglob(f"*{_PARTIAL}"):
             leftover.unlink(missing_ok=True)

@@ -1,7 +1,7 @@
-"""A roster: the CSV in which an instructor says who is in a class, as spreadsheets write it.
+"""Read a roster: the CSV in which an instructor lists the students of a class, as spreadsheets write it.
 
-Commas or semicolons, a byte order mark, empty lines, blanks around values, capitals in the names of columns and columns
-of the instructor's own are all right.
+Commas or semicolons, a byte order mark, empty lines, spaces around values, capital letters in column names, and
+additional columns are all allowed.
 """
 
 from __future__ import annotations
@@ -19,25 +19,27 @@ if TYPE_CHECKING:
 
 
 def read_owners(file: Path) -> dict[str, str]:
-    """Submission's name -> its student's id. Raises UsageError as `read_roster`."""
+    """Return a map from the name of a submission to the student id. Raises UsageError as `read_roster`."""
     return {row["submission"]: row["student"] for row in read_roster(file, ("submission", "student")).values()}
 
 
 def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> dict[int, dict[str, str]]:
-    """Line -> what stands there, by column. Those `needed` are never empty, and no two lines are alike in the first.
+    """Return a map from line number to the values by column.
+
+    The columns in `needed` are never empty, and the values of the first one are unique.
 
     Raises:
-        UsageError: the file is no such roster; the message tells the line, and what to do.
+       UsageError: the file is not such a roster. The message has the line, and what to do.
     """
     (_, names), *lines = _lines(file) or [(1, [])]
     columns = [name.lower() for name in names]
     if any(columns.count(name) != 1 for name in needed):
         wanted = a_list([f'"{name}"' for name in needed]) + (f", and perhaps {a_list(also)}" if also else "")
         seen = shorten(",".join(names))
-        message = f'{file} is no roster: its first line is to name the columns {wanted}. It is "{seen}".'
+        message = f'{file} is not a roster: its first line must name the columns {wanted}, but it is "{seen}".'
         raise UsageError(message)
     if not lines:
-        message = f"{file} is no roster: there is nothing below its first line."
+        message = f"{file} is not a roster: there is nothing below its first line."
         raise UsageError(message)
     rows: dict[int, dict[str, str]] = {}
     lines_of: dict[str, int] = {}
@@ -47,11 +49,13 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
         empty = [name for name in needed if not rows[line][name]]
         name = rows[line][needed[0]]
         if any(values[len(columns) :]):
-            fault = f"{len(values)} values for {len(columns)} columns. Put values with a separator in them into quotes."
+            fault = (
+                f"{len(values)} values for {len(columns)} columns. Put a value into quotes if it contains a separator."
+            )
         elif empty:
             fault = f"the {empty[0]} is missing."
         elif lines_of.setdefault(name, line) != line:
-            fault = f'the {needed[0]} "{shorten(name)}" stands in line {lines_of[name]} already.'
+            fault = f'the {needed[0]} "{shorten(name)}" is already in line {lines_of[name]}.'
         else:
             continue
         message = f"{file}, line {line}: {fault}"
@@ -60,7 +64,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
 
 
 def _lines(file: Path) -> list[tuple[int, list[str]]]:
-    """The lines that are not empty, by number, each as its values. Raises UsageError where the file is no CSV."""
+    """Return the values of each line that is not empty, by line number. Raises UsageError if the file is not CSV."""
     try:
         data = file.read_bytes()
         text = data.decode("utf-8-sig")
@@ -73,9 +77,9 @@ def _lines(file: Path) -> list[tuple[int, list[str]]]:
         raise UsageError(message) from error
     except UnicodeDecodeError as error:
         line = error.object.count(b"\n", 0, error.start) + 1
-        message = f'{file}, line {line}: this is not UTF-8. Let the spreadsheet save the file as "CSV UTF-8".'
+        message = f'{file}, line {line}: this is not UTF-8. Save the file as "CSV UTF-8" in your spreadsheet.'
         raise UsageError(message) from error
     except csv.Error as error:
-        message = f"{file}, line {reader.line_num}: this is no CSV: {error}."
+        message = f"{file}, line {reader.line_num}: this is not CSV: {error}."
         raise UsageError(message) from error
     return [(number, values) for number, values in lines if any(values)]

@@ -1,4 +1,4 @@
-"""Run: grade what is to be graded, whatever happens to the processes that do it."""
+"""Run: grade all submissions of an order, even if the processes that do it die."""
 
 from __future__ import annotations
 
@@ -18,19 +18,20 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done
 
 TRIES = 2
-"""How often a submission may take its worker with it, or end with an `error`, before that is its result."""
+"""How many times a submission may kill its worker or end with an `error` before that is its result."""
 LOOK_S = 0.5
-"""How long an engine may wait for something to happen."""
+"""How long to wait for events of the engine (s)."""
 
 
 def run(order: Order, todo: list[Todo], engine: Engine, results: Results, screen: Screen) -> list[Result]:
-    """Grade and write each result as it comes, in no order.
+    """Grade the submissions and write each result as soon as it is ready, in any order.
 
-    What ended with an `error` is graded once more after all others, if at least one of those could be judged: the
-    machine works, so the error was chance, or the submission's own doing.
+    Submissions that end with an `error` are graded once more after all others, if at least one other submission could
+    be
+    judged: in this case the machine works, so the error was chance or the submission caused it.
 
     Raises:
-        MachineError: nothing more can be graded or written; what was written stays.
+       MachineError: nothing more can be graded or written. Results that were written stay.
     """
     one = _Run(order, deque(todo), engine, results, screen)
     with engine:
@@ -50,24 +51,24 @@ class _Run:
     screen: Screen
     running: dict[Name, Todo] = field(default_factory=dict)
     again: dict[Name, Todo] = field(default_factory=dict)
-    """What ended with an `error`, and may be graded once more."""
+    """The submissions that ended with an `error` and will be graded once more."""
     failures: Counter[Name] = field(default_factory=Counter)
     graded: dict[Name, Result] = field(default_factory=dict)
 
     def goes_on(self) -> bool:
-        """Whether something is left to do; the last of it are the submissions that ended with an `error`."""
+        """Return whether something is left to do. Submissions that ended with an `error` come last."""
         if not self.waiting and not self.running and self.again:
             if len(self.again) < len(self.graded):
                 self.waiting.extend(self.again.values())
             else:
-                # The machine has judged nothing: it would fail at these again.
+                # No submission could be judged, so the machine would fail again.
                 for name in self.again:
                     self.screen.finished(self.graded[name])
             self.again.clear()
         return bool(self.waiting or self.running)
 
     def start(self) -> None:
-        """Give the engine as much as it takes."""
+        """Give the engine as many tasks as it takes."""
         while self.waiting and self.engine.has_room():
             one = self.waiting.popleft()
             task = self.order.task(one.found)
@@ -76,7 +77,7 @@ class _Run:
             self.engine.start(task)
 
     def hear(self, event: Event) -> None:
-        """Take in what has happened to a task."""
+        """Handle an event of a task."""
         name = event.task.name
         if isinstance(event, Tells):
             self.screen.tells(name, event.text)
@@ -84,7 +85,7 @@ class _Run:
             self._keep(name, event.done)
         elif self.failures[name] + 1 < TRIES:
             self.failures[name] += 1
-            self.screen.tells(name, "Its worker was lost: once more, later")
+            self.screen.tells(name, "Its worker was lost. It will be tried again later")
             self.waiting.append(self.running.pop(name))
         else:
             self._keep(name, set_aside(event.task, _told(event.why)))
@@ -98,13 +99,13 @@ class _Run:
         self.graded[name] = result
         if broken and self.failures[name] < TRIES:
             self.again[name] = one
-            self.screen.tells(name, "It could not be judged: once more, later")
+            self.screen.tells(name, "It could not be judged. It will be tried again later")
         else:
             self.screen.finished(result)
 
 
 def _told(why: str) -> str:
     return (
-        f"The grader's own process was lost twice while it had this submission ({why}). It is set aside; nothing is "
-        "said of its quality. Look at it by itself with `grader check`, or run the same command again."
+        f"The grader's own process was lost twice while it had this submission ({why}). It is reported as an error, "
+        "which says nothing about its quality. Grade it alone with `grader check`, or run the same command again."
     )

@@ -1,6 +1,6 @@
-"""What a run shows while it works: a live table on a terminal, a line a submission where a program reads it.
+"""Show the progress of a run: a live table on a terminal, one line per submission elsewhere.
 
-What a student named is printed so that it acts on no terminal and on no continuous integration.
+Names come from students. They are printed so that they cannot control a terminal or a continuous integration (CI).
 """
 
 from __future__ import annotations
@@ -26,27 +26,27 @@ SIGNS = {"passed": "✓", "failed": "✗", "error": "!"}
 STYLES = {"passed": "green", "failed": "red", "error": "bold magenta"}
 
 Name = tuple[str, str]
-"""Student and exercise."""
+"""A student and an exercise."""
 
 
 class Screen(Protocol):
-    """Hears how a run goes on."""
+    """An observer of a run."""
 
     def tells(self, name: Name, text: str) -> None:
-        """What is being done with a submission."""
+        """Show what is being done with a submission."""
 
     def finished(self, result: Result) -> None:
-        """A submission has its result."""
+        """Show the result of a submission."""
 
 
 def plain(text: str) -> str:
-    """The text without what a terminal or a program that reads logs would act on."""
-    # GitHub reads ::command:: where a line begins, and ##[command] anywhere; Azure Pipelines ##vso[.
+    """Return the text without anything that controls a terminal or a program that reads logs."""
+    # GitHub reads ::command:: at the beginning of a line and ##[command] anywhere; Azure Pipelines reads ##vso[.
     return printable(text).replace("::", ": :").replace("##", "# #")
 
 
 def estimate(done: int, of: int, seconds: float) -> str:
-    """How long the rest will take, at the pace so far."""
+    """Estimate how long the rest will take, at the average speed so far."""
     if not done or done >= of:
         return ""
     left_s = seconds / done * (of - done)
@@ -55,7 +55,7 @@ def estimate(done: int, of: int, seconds: float) -> str:
 
 @contextmanager
 def screen(amount: int, *, several: bool) -> Iterator[Screen]:
-    """The screen for so many submissions; `several` exercises among them."""
+    """Yield the screen for this many submissions. With `several` exercises, their names are shown too."""
     if not amount:
         yield Lines(amount, several=several)
     elif sys.stderr.isatty() and not os.environ.get("CI"):
@@ -71,17 +71,17 @@ def screen(amount: int, *, several: bool) -> Iterator[Screen]:
 
 
 class Lines:
-    """A line when a submission is finished, and no other."""
+    """Print one line for each submission that is finished."""
 
     def __init__(self, amount: int, *, several: bool) -> None:
         self._amount, self._several, self._done = amount, several, 0
         self._begun = time.monotonic()
 
     def tells(self, name: Name, text: str) -> None:
-        """Nothing is said: a line each would be too many."""
+        """Print nothing, because one line for each step would be too much."""
 
     def finished(self, result: Result) -> None:
-        """Say how it ended."""
+        """Print the result of the submission."""
         self._done += 1
         left = estimate(self._done, self._amount, time.monotonic() - self._begun)
         rest = f"  ({left})" if left else ""
@@ -89,7 +89,7 @@ class Lines:
 
 
 class Table:
-    """What is being worked on, one below the other, with a bar; finished submissions go up and stay."""
+    """Show the submissions in progress with a bar below. Finished submissions stay above them."""
 
     def __init__(self, amount: int, console: Console, *, several: bool) -> None:
         self._amount, self._several, self._console = amount, several, console
@@ -98,12 +98,12 @@ class Table:
         self._begun = time.monotonic()
 
     def tells(self, name: Name, text: str) -> None:
-        """What is being done with a submission."""
+        """Show what is being done with a submission."""
         since = self._now[name][1] if name in self._now else time.monotonic()
         self._now = {**self._now, name: (text, since)}
 
     def finished(self, result: Result) -> None:
-        """A submission has its result: it moves up."""
+        """Print the result of a submission above the table."""
         from rich.text import Text
 
         name = (result.student, result.report.exercise)
@@ -113,7 +113,7 @@ class Table:
         self._console.print(Text(f"{SIGNS[kind]} {_line(result, self._several)}", style=STYLES[kind]))
 
     def render(self) -> RenderableType:
-        """What is on the terminal just now."""
+        """Return what the terminal shows now."""
         from rich.console import Group
         from rich.progress_bar import ProgressBar
         from rich.table import Table as Grid
@@ -141,7 +141,7 @@ def _line(result: Result, several: bool) -> str:
 
 
 def summary(results: list[Result]) -> str:
-    """A sentence or two on the whole class."""
+    """Return a summary of the whole class in a few sentences."""
     tones = [tone(result.report) for result in results]
     counted = [f"{tones.count(kind)} {word}" for kind, word in _WORDS if kind in tones]
     judged = [each.report for each, kind in zip(results, tones, strict=True) if kind != "error" and each.report.max]

@@ -1,4 +1,4 @@
-"""Task: one submission to grade, as bytes that any process of ours can take; and what came of it."""
+"""Task: one submission to grade, as bytes that any worker process can read, and its result."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ Pace = Literal["waits", "works"]
 
 @dataclass(frozen=True)
 class Task:
-    """A submission, what it is judged by, and how; `content` is the submission's files, or why there are none.
+    """A submission, its exercise, and how to grade it.
 
-    `package` is the name of the package's folder. `grader` is the key of the grader that asks: only one that is the
-    same may answer.
+    `content` is the files of the submission, or the reason why there are none. `package` is the name of the package's
+    folder. `grader` is the key of the grader that made the task. Only a worker with the same key may grade it.
     """
 
     student: str
     owner: str
-    """The id that the student's own numbers must be drawn from."""
+    """The student id that the student's own numbers must belong to."""
     sources: Sources
     content: dict[str, bytes] | str
     of_the_machine: bool = False
-    """There are no files because the machine failed."""
+    """True if there are no files because the machine failed."""
     package: str = ""
     rejected: tuple[str, ...] = ()
     digest: str = ""
@@ -58,13 +58,13 @@ class Task:
 
     @property
     def name(self) -> tuple[str, str]:
-        """Student and exercise: no two tasks of a run share both."""
+        """Student and exercise, which are unique in a run."""
         return self.student, self.sources.id
 
 
 @dataclass(frozen=True)
 class Done:
-    """A graded submission: its report, whole, and its page, without what is hidden."""
+    """A graded submission: its complete report, and its page without hidden checks."""
 
     report: Report
     page: bytes
@@ -73,15 +73,17 @@ class Done:
 def perform(
     task: Task, tell: Callable[[str], None] = lambda _: None, now: Callable[[Pace], None] = lambda _: None
 ) -> Done:
-    """Grade a task; `now` hears when a trial waits for the wall's clock, and leaves the processors to others.
+    """Grade a task; `now` is called when a trial begins and when it ends to wait for wall time.
+
+    While it waits, other submissions can use the processors.
 
     Raises:
-        MachineError: this grader is another one than the one that asks, or has no sandbox.
+       MachineError: this grader has another version than the one that made the task, or there is no sandbox.
     """
     if task.grader != grader_key():
         message = (
-            f"A worker has another version of the grader ({grader_key()}; this one is {task.grader}): bring it up to "
-            "date and start it again."
+            f"A worker has another version of the grader ({grader_key()} instead of {task.grader}). Update it "
+            "and start it again."
         )
         raise MachineError(message)
     in_cell = _confined(trusted=task.trusted)
@@ -92,7 +94,7 @@ def perform(
         return _with_page(_refused(task, exercise, task.content))
 
     class Waiting(Trial):
-        """A trial that says when it begins to wait."""
+        """A trial that reports when it waits for wall time."""
 
         def run(self, package: str, executable: str, tree: bytes) -> Recording:
             if self._plan.clock != "wall":
@@ -103,11 +105,11 @@ def perform(
             finally:
                 now("works")
 
-    # The processors are busy with other submissions, and memory is counted by the submission.
+    # Other submissions keep the processors busy, and memory is planned per submission.
     options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed, trials_at_once=1)
     try:
         return _with_page(grade(exercise, _submission(task), options, tell, trial=Waiting))
-    except MachineError as error:  # nothing to read it with: the next submission may fare better
+    except MachineError as error:  # the submission cannot be read here, but the next one may work
         return set_aside(task, str(error))
 
 
@@ -115,11 +117,11 @@ def perform(
 def _confined(*, trusted: bool) -> bool:
     from grader.sandbox import bubblewrap
 
-    return bubblewrap.require(trusted=trusted)  # tried once a process: the answer does not change
+    return bubblewrap.require(trusted=trusted)  # tried once per process, because the answer does not change
 
 
 def set_aside(task: Task, why: str) -> Done:
-    """The result of a submission that no worker came back with: an `error`."""
+    """Return the result of a submission whose worker never came back: an `error`."""
     exercise = exercise_from(task.sources)
     return _with_page(_unjudged(task, exercise, Finding(Status.ERROR, why)))
 
@@ -137,10 +139,10 @@ def _submission(task: Task, files: dict[str, bytes] | None = None) -> Submission
 
 
 def _refused(task: Task, exercise: Exercise, reason: str) -> Graded:
-    """No package: no points, with the reason first."""
+    """Return a result with no points for a submission without a package; the reason comes first."""
     what = "a package" if exercise.package else "answers.toml"
-    title = f"The submission holds {what}"
-    expected = f"One folder with {what} in it, or a .zip or .tar.gz of that."
+    title = f"The submission contains {what}"
+    expected = f"One folder with {what} in it, or a .zip or .tar.gz of this folder."
     first = failed(reason, expected, Cause("no-package" if exercise.package else "no-answers-file"))
     skipped = Finding(Status.SKIPPED, f'Not judged, because "{title}" did not pass.')
     return _unjudged(task, exercise, skipped, Outcome("submission", "submission", title, 0.0, 0.0, first))

@@ -1,9 +1,9 @@
 """Unpack an archive that a student handed in: `python -I -S unpack.py ARCHIVE FOLDER`.
 
-Runs in a process of its own under limits (archives.py), with the standard library alone. Only plain files and folders
-are made, only inside the folder, never more than the limits below. Prints JSON: {"why": null} when all went well, else
-why it cannot be unpacked, as a part of a sentence that begins with the archive's name. Ends with 3 where
-the disk fails.
+archives.py runs this script in a process of its own with limits. It uses only the standard library. It creates only
+plain files and folders, only inside the folder, and never more than the limits below. It prints JSON: {"why": null} if
+all went well; otherwise "why" is the end of a sentence that begins with the name of the archive. It exits with code 3
+if the disk fails.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 MOST_BYTES = 96 * 1024 * 1024
-"""Unpacked: half as much again as is read of a package, since build/ and install/ often come along."""
+"""The limit for the unpacked size: 1.5 times what is read of a package. The rest is for build/ and install/."""
 MOST_ENTRIES = 20_000
 MOST_DEPTH = 40
 MOST_PATH_BYTES = 1000
@@ -35,21 +35,21 @@ OF_THE_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS)
 
 
 class RefusedError(Exception):
-    """The archive is none that can be unpacked; the text says why."""
+    """The archive cannot be unpacked; the message says why."""
 
 
 class Capped(io.RawIOBase):
-    """A stream that refuses to give more than `most` bytes."""
+    """A stream that returns at most `most` bytes."""
 
     def __init__(self, stream: IO[bytes], most: int) -> None:
         self._stream, self._left = stream, most
 
     def readable(self) -> bool:
-        """It is."""
+        """Return True."""
         return True
 
     def read(self, size: int = -1) -> bytes:
-        """Some bytes. Raises RefusedError beyond the limit."""
+        """Read some bytes. Raises RefusedError beyond the limit."""
         data = self._stream.read(min(size, CHUNK) if size >= 0 else CHUNK)
         self._left -= len(data)
         if self._left < 0:
@@ -62,13 +62,13 @@ def _too_much() -> str:
 
 
 def unpack(archive: Path, folder: Path) -> None:
-    """Unpack into an empty folder. Raises RefusedError for what cannot be, OSError where the disk fails."""
+    """Unpack into an empty folder. Raises RefusedError for an archive that is refused, OSError if the disk fails."""
     with archive.open("rb") as file:
         members = _zip(file) if zipfile.is_zipfile(file) else _tar(file)
         left = MOST_BYTES
         for number, (name, mode, content) in enumerate(members, 1):
             if number > MOST_ENTRIES:
-                message = f"holds more than {MOST_ENTRIES} entries"
+                message = f"contains more than {MOST_ENTRIES} entries"
                 raise RefusedError(message)
             target = folder.joinpath(*_parts(name))
             if content is None:
@@ -78,11 +78,11 @@ def unpack(archive: Path, folder: Path) -> None:
 
 
 def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
-    """Name, mode and content of each file; a folder has no content; links and devices are passed over."""
+    """Yield name, mode and content of each file. A folder has no content. Links and devices are skipped."""
     with zipfile.ZipFile(file) as packed:
         for info in packed.infolist():
             mode = info.external_attr >> 16
-            # Some programs for Windows write its separators.
+            # Some programs for Windows use backslashes as separators.
             name = info.filename.replace("\\", "/")
             if name.endswith("/"):
                 yield name, mode, None
@@ -95,12 +95,12 @@ def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
 
 
 def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
-    """As `_zip`, of a tar archive, compressed with gzip or not."""
+    """Yield the same as `_zip` for a tar archive, compressed with gzip or not."""
     file.seek(0)
     gzipped = file.read(2) == b"\x1f\x8b"
     file.seek(0)
     stream: IO[bytes] = gzip.GzipFile(fileobj=file) if gzipped else file  # type: ignore[assignment]
-    # A header takes 512 bytes, and its names and dates may take as much again.
+    # A header takes 512 bytes, and long names and dates may take as much again.
     capped = Capped(stream, MOST_BYTES + 2048 * MOST_ENTRIES)
     with tarfile.open(fileobj=capped, mode="r|") as packed:
         for info in packed:
@@ -113,10 +113,10 @@ def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
 def _parts(name: str) -> tuple[str, ...]:
     path = PurePosixPath(name)
     if path.is_absolute() or ".." in path.parts:
-        message = f"holds a path that leads out of it: {_shown(name)}"
+        message = f"contains a path that leads out of it: {_shown(name)}"
         raise RefusedError(message)
     if len(path.parts) > MOST_DEPTH or len(os.fsencode(name)) > MOST_PATH_BYTES:
-        message = f"holds a path that is too long: {_shown(name[:60])}..."
+        message = f"contains a path that is too long: {_shown(name[:60])}..."
         raise RefusedError(message)
     return path.parts
 
@@ -133,11 +133,11 @@ def _make_folder(target: Path, folder: Path) -> None:
 
 
 def _both(target: Path, folder: Path) -> str:
-    return f"holds {_shown(str(target.relative_to(folder)))} both as a file and as a folder"
+    return f"contains {_shown(str(target.relative_to(folder)))} both as a file and as a folder"
 
 
 def _write(content: IO[bytes], target: Path, folder: Path, mode: int, most: int) -> int:
-    """Write a file, over one of the same name, as unzip and tar do; return its size."""
+    """Write a file and return its size. It replaces a file of the same name, as with unzip and tar."""
     _make_folder(target.parent, folder)
     if target.is_dir():
         raise RefusedError(_both(target, folder))
@@ -153,16 +153,16 @@ def _write(content: IO[bytes], target: Path, folder: Path, mode: int, most: int)
 
 
 def main(archive: str, folder: str) -> int:
-    """Unpack; say why that could not be done."""
+    """Unpack, and print why that was not possible."""
     why = None
     try:
         unpack(Path(archive), Path(folder))
     except RefusedError as error:
         why = str(error)
     except (zipfile.BadZipFile, tarfile.TarError, zlib.error, EOFError, gzip.BadGzipFile) as error:
-        why = f"is no .zip or .tar.gz, or a damaged one ({_shown(str(error))[:200]})"
+        why = f"is not a .zip or .tar.gz, or is damaged ({_shown(str(error))[:200]})"
     except (NotImplementedError, RuntimeError, UnicodeError) as error:
-        why = f"is packed in a way that is not read here ({_shown(str(error))[:200]})"
+        why = f"is compressed with a method that is not supported ({_shown(str(error))[:200]})"
     except MemoryError:
         why = "needs more memory to unpack than a submission may take"
     except OSError as error:
@@ -170,10 +170,10 @@ def main(archive: str, folder: str) -> int:
         if error.errno in OF_THE_DISK and error.filename != archive:
             print(json.dumps({"why": said}))
             return DISK_FAILED
-        why = f"is a damaged archive, or holds a name that no disk takes ({said})"
+        why = f"is damaged, or contains a name that no disk accepts ({said})"
     except Exception as error:
-        # Whatever else a damaged archive makes the modules above raise.
-        why = f"is no .zip or .tar.gz, or a damaged one ({type(error).__name__}: {_shown(str(error))[:200]})"
+        # A damaged archive can make the modules raise other errors too.
+        why = f"is not a .zip or .tar.gz, or is damaged ({type(error).__name__}: {_shown(str(error))[:200]})"
     print(json.dumps({"why": why}))
     return 0
 

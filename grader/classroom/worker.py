@@ -1,7 +1,7 @@
-"""A worker: a process of ours that grades one task after another, so that Python's imports are paid once.
+"""A worker: a process that grades one task after another, so that Python's imports are done only once.
 
-`python -m grader.classroom.worker DESCRIPTOR`. Nothing of a student's runs in it: that is in the cells it starts. It
-ends, and all that it started with it, when whoever started it has gone.
+`python -m grader.classroom.worker DESCRIPTOR`. No student code runs in this process. It runs in the cells that the
+worker starts. If the process that started the worker ends, the worker ends too, with everything that it started.
 """
 
 from __future__ import annotations
@@ -24,19 +24,22 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done, Pace, Task
 
 Message = tuple[Literal["tells"], str] | tuple[Literal["now"], "Pace"] | tuple[Literal["done"], "Done"]
-"""What a worker says; besides ("fails", text): a MachineError that is no submission's."""
+"""The messages of a worker, and ("fails", text) for a MachineError that no submission caused."""
 
 _LAST_WORDS = 1000
 
 
 class Worker:
-    """A worker process, as its owner sees it; `connection` becomes readable when it says something, or has ended."""
+    """A worker process, as its owner sees it.
+
+    `connection` is readable when there is a message or the process has ended.
+    """
 
     def __init__(self) -> None:
         ours, theirs = socket.socketpair()
         self._errors: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed in `close`
         with theirs:
-            # A session of its own: Ctrl-C is its owner's to handle.
+            # A session of its own, so that Ctrl-C reaches only its owner.
             start = interpreter("-m", "grader.classroom.worker", str(theirs.fileno()))
             self.process = subprocess.Popen(
                 start.argv,
@@ -50,12 +53,12 @@ class Worker:
         self.connection: Connection = Connection(ours.detach())
 
     def send(self, task: Task) -> None:
-        """Give it a task; one at a time. That it has ended is seen when reading."""
+        """Send it a task. It takes one at a time. If the process has ended, the next read reports it."""
         with suppress(BrokenPipeError, ConnectionResetError):
             self.connection.send(task)
 
     def receive(self) -> tuple[str, object] | None:
-        """The next that it says; None when it has ended."""
+        """Return the next message, or None if the process has ended."""
         try:
             said: tuple[str, object] = self.connection.recv()
         except (EOFError, OSError):
@@ -63,7 +66,7 @@ class Worker:
         return said
 
     def last_words(self) -> str:
-        """How it ended, and what it wrote last: for the instructor."""
+        """Return how the process ended and the last line that it wrote, for the instructor."""
         code = self.process.wait()
         self._errors.seek(0)
         said = self._errors.read()[-_LAST_WORDS:].decode("utf-8", "replace").strip()
@@ -71,7 +74,7 @@ class Worker:
         return f"{how}: {said}" if said else how
 
     def close(self) -> None:
-        """End it and all that it started."""
+        """End the process and everything that it started."""
         self.connection.close()
         self.process.kill()
         self.process.wait()
@@ -79,7 +82,7 @@ class Worker:
 
 
 def main(descriptor: int) -> None:
-    """Grade until there is nobody to grade for."""
+    """Grade tasks until the owner is gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.set_inheritable(descriptor, False)  # noqa: FBT003
     connection = Connection(descriptor)
@@ -104,13 +107,13 @@ def main(descriptor: int) -> None:
 
 
 def _import_all() -> None:
-    """What grading imports on first use, now: while the others grade already, and before the clock of a task runs."""
+    """Import what grading needs on first use, before the first task arrives and its clock starts."""
 
 
 def _end_with_owner(descriptor: int) -> None:
-    """Cells and rooms are made to die with their parent: so end at once, in the midst of whatever it is."""
+    """Exit at once. Cells and rooms die with their parent process."""
     poll = select.poll()
-    poll.register(descriptor, 0)  # hangups are always told
+    poll.register(descriptor, 0)  # the end of a connection is always reported
     while True:
         for _, event in poll.poll():
             if event & (select.POLLHUP | select.POLLERR | select.POLLNVAL):

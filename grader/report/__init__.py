@@ -1,1 +1,1 @@
-"""Report -> terminal, JSON, picture; one module a format."""
+"""The formats of a report: terminal, JSON, picture, page and more, with one module per format."""

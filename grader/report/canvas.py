@@ -1,6 +1,6 @@
-"""Canvas: a scene painted as an image, with smooth edges.
+"""Paint a scene as an image with smooth edges.
 
-Drawn with Pillow: 0.1 s, where matplotlib needs 0.7 s, most of it for its import.
+The image is drawn with Pillow. This takes 0.1 s. With matplotlib it takes 0.7 s, because importing matplotlib is slow.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from grader.report.scene import Scene
 
 FINE = 3
-"""The canvas is drawn this much larger and made smaller, for smooth edges."""
+"""The canvas is first drawn larger by this factor and then scaled down, so that the edges are smooth."""
 DASH = 0.55
-"""The part of a dash and the gap after it that is painted."""
+"""The fraction of one dash period (a dash and its gap) that is painted."""
 
 
 def paint(scene: Scene, side_px: int) -> Image.Image:
-    """The turtle's canvas with all shapes of the scene on it."""
+    """Return the turtle's canvas with all shapes of the scene on it."""
     canvas = _Canvas(side_px * FINE)
     for shape in scene.shapes:
         canvas.paint(shape)
@@ -31,7 +31,7 @@ def paint(scene: Scene, side_px: int) -> Image.Image:
 
 
 class _Canvas:
-    """While it is drawn; takes metres."""
+    """A canvas that is being drawn. Its methods take metres."""
 
     def __init__(self, side: int) -> None:
         self.image = Image.new("RGB", (side, side), SEA)
@@ -59,7 +59,7 @@ class _Canvas:
         self._draw.line([self._pixel(point) for point in points], fill=look.color, width=width, joint="curve")
 
     def _dashed(self, line: Line, look: Look) -> None:
-        """Each straight piece in dashes of about the look's length, with one at both ends."""
+        """Draw each straight piece as dashes of about the length that the look gives, with a dash at both ends."""
         for (x0, y0), (x1, y1) in pairwise(line.points):
             pieces = min(max(1, round(math.hypot(x1 - x0, y1 - y0) / (look.dash_m / DASH))), 400)
             whole = pieces - 1 + DASH

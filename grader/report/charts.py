@@ -1,7 +1,7 @@
-"""What happened over time, as SVG: the intervals between commands and the values in them. One time axis for all.
+"""Charts over time as SVG: the intervals between commands, and the values in the commands.
 
-Where more arrived than a picture can show, the extremes of each stretch of time stand for it. A picture never says
-something by colour alone: what is out of its band is a cross.
+All charts have the same time axis. If there are more values than a chart can show, each short period of time is drawn
+as its lowest and its highest value. Colour is never the only sign: a value outside its band is drawn as a cross.
 """
 
 from __future__ import annotations
@@ -24,24 +24,24 @@ if TYPE_CHECKING:
 WIDTH = 440.0
 LEFT, RIGHT, TOP, BOTTOM = 58.0, 12.0, 24.0, 34.0
 HEIGHT = 150.0
-"""Of the area inside the axes, for one row of a chart."""
+"""The size of the area inside the axes, for one row of a chart."""
 GAP = 46.0
-"""Between two rows."""
+"""The space between two rows."""
 BINS = 120
-"""Of each stretch of time no more than the lowest and the highest value is drawn."""
+"""Time is divided into this many bins. At most the lowest and the highest value of each bin are drawn."""
 HUGE = 1e4
-"""What is drawn of larger values."""
+"""Larger values are drawn as if they were this large."""
 
 DOT, BAD, BAND = "#1c7ed6", "#d6336c", "#2f9e44"
-"""Mid tones: at least 3:1 against white and against the dark page."""
+"""Mid tones, with a contrast of at least 3:1 against the white page and the dark page."""
 
 Series = tuple[tuple[float, float], ...]
-"""(t_s, value), by time."""
+"""Pairs (t_s, value), sorted by time."""
 
 
 @dataclass(frozen=True)
 class Chart:
-    """A picture with the sentence that says the same."""
+    """A picture, and a caption that says the same in words."""
 
     svg: str
     caption: str
@@ -49,7 +49,7 @@ class Chart:
 
 @dataclass(frozen=True)
 class Area:
-    """The inside of a chart's axes: time from 0 to `end_s` across, values from `low` to `high` upwards."""
+    """The area inside a chart's axes: time from 0 to `end_s` to the right, values from `low` to `high` upwards."""
 
     end_s: float
     low: float
@@ -57,15 +57,15 @@ class Area:
     top: float = TOP
 
     def x(self, t_s: float) -> float:
-        """Where a time lies."""
+        """Return the x coordinate of a time."""
         return LEFT + (WIDTH - LEFT - RIGHT) * min(max(t_s / self.end_s, 0.0), 1.0)
 
     def y(self, value: float) -> float:
-        """Where a value lies."""
+        """Return the y coordinate of a value."""
         return self.top + HEIGHT * (1.0 - (min(max(value, self.low), self.high) - self.low) / (self.high - self.low))
 
     def frame(self, label: str) -> str:
-        """The axes with their numbers, and what is drawn upwards."""
+        """Draw the axes with their numbers. `label` names the values."""
         bottom = self.top + HEIGHT
         parts = [words(label, LEFT, self.top - 8, font_weight="bold")]
         for value in ticks(self.low, self.high):
@@ -78,14 +78,14 @@ class Area:
         return tag("g", *parts, tag("g", frame, stroke="currentColor", stroke_opacity=0.6), class_="axes")
 
     def head(self) -> str:
-        """The line that shows what time a player is at."""
+        """Draw the line that shows the current time of the player."""
         bottom = coordinate(self.top + HEIGHT)
         path = f"M{coordinate(LEFT)} {coordinate(self.top)}V{bottom}"
         return tag("path", d=path, stroke="currentColor", stroke_width=1.5, visibility="hidden", class_="head")
 
 
 def ticks(low: float, high: float, most: int = 5) -> list[float]:
-    """Round numbers from low to high, at most so many."""
+    """Return at most `most` round numbers from low to high."""
     rough = (high - low) / most
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(power * nice for nice in (1.0, 2.0, 5.0, 10.0) if power * nice >= rough * 0.999)
@@ -94,7 +94,10 @@ def ticks(low: float, high: float, most: int = 5) -> list[float]:
 
 
 def thin(series: Series, end_s: float, bins: int = BINS) -> Series:
-    """The series itself, or of each stretch of time its lowest and highest value; what is no number is left out."""
+    """Return the series, or the lowest and highest value of each bin if the series is long.
+
+    Values that are not finite are left out.
+    """
     finite = tuple((t, min(max(value, -HUGE), HUGE)) for t, value in series if math.isfinite(value))
     if len(finite) <= 2 * bins:
         return finite
@@ -109,7 +112,7 @@ def thin(series: Series, end_s: float, bins: int = BINS) -> Series:
 
 
 def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> Chart | None:
-    """The time since the command before, for each one, with the band that is allowed; None with fewer than two."""
+    """Draw the time from each command to the next, with the allowed band; None for fewer than two commands."""
     measured = evidence.command_arrivals
     if not measured.intervals:
         return None
@@ -125,10 +128,10 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
     low, high = min(measured.intervals), max(measured.intervals)
     caption = f"{len(series)} intervals, {_s(measured.mean_s)} s on average, from {_s(low)} to {_s(high)} s."
     if stalled:
-        caption += f" {stalled} more were lengthened by the machine, not by the node, and are left out."
+        caption += f" {stalled} more were longer because of the machine, not because of the node. They are left out."
     drawn = ""
     if wanted:
-        caption += f" Asked for: {middle_s:.2f} s; allowed: {low_s:.2f} to {high_s:.2f} s (the green band)."
+        caption += f" Required: {middle_s:.2f} s; allowed: {low_s:.2f} to {high_s:.2f} s (the green band)."
         drawn += _band(area, low_s, high_s) + _dashes(area, middle_s)
     drawn += "".join(_dot(area, t, value, good=low_s <= value <= high_s) for t, value in thin(series, end_s, bins))
     svg = picture(
@@ -147,12 +150,15 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
 
 
 def _s(seconds: float) -> str:
-    """Hundredths of a second, and two digits of what is shorter."""
+    """Format seconds with two decimals; shorter times with two significant digits."""
     return f"{seconds:.2f}" if seconds >= 0.1 else f"{seconds:.2g}"
 
 
 def values(evidence: Evidence, name: str = "values", bins: int = BINS) -> Chart | None:
-    """The values of the commands over time: the fields that the exercise requests, and those that were not always 0."""
+    """Draw the values of the commands over time.
+
+    Each field that the exercise requires or that was not always 0 gets a row.
+    """
     commands = evidence.commands
     if not commands:
         return None
@@ -189,7 +195,7 @@ def _end_s(evidence: Evidence) -> float:
 
 
 def _steps(series: Series, wanted: float | None, label: str, end_s: float, where: tuple[float, int]) -> str:
-    """One field: a step at each command, a dashed line for what was asked for; `where`: its top, its bins."""
+    """Draw one field: a step at each command, and a dashed line at the required value; `where` is (top, bins)."""
     top, bins = where
     drawn = thin(series, end_s, bins)
     known = [value for _, value in drawn] + ([wanted] if wanted is not None else []) + [0.0]
@@ -210,7 +216,7 @@ def _steps(series: Series, wanted: float | None, label: str, end_s: float, where
 
 
 def _in_words(series: Series, field: str, unit: str, wanted: float | None) -> str:
-    """One field in words."""
+    """Describe one field in words."""
     found = [value for _, value in series]
     wrong = sum(not math.isfinite(value) for value in found)
     finite = [value for value in found if math.isfinite(value)]
@@ -221,8 +227,8 @@ def _in_words(series: Series, field: str, unit: str, wanted: float | None) -> st
     else:
         text = f"{field} was never a finite number"
     if wrong and finite:
-        text += f", and no finite number in {wrong} of {len(found)} commands"
-    return f"{text}; asked for: {number(wanted)}." if wanted is not None else f"{text}."
+        text += f", and not a finite number in {wrong} of {len(found)} commands"
+    return f"{text}; required: {number(wanted)}." if wanted is not None else f"{text}."
 
 
 def _dot(area: Area, t_s: float, value: float, *, good: bool) -> str:

@@ -1,4 +1,4 @@
-"""The lines of a submission's file around a place, coloured as an editor would."""
+"""The lines of a submission's file around a given line, with syntax colours."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ if TYPE_CHECKING:
     from grader.submission.where import Where
 
 AROUND = 4
-"""Lines before and after the place."""
+"""How many lines are shown before and after the line."""
 MOST_COLOURED = 60_000
-"""Characters: beyond, a file is not worth the time to colour it."""
+"""Characters. A longer file is not coloured, because that would take too long."""
 
 NEWLINE = re.compile(r"\r\n|\r|\n")
-"""What ends a line for Python; str.splitlines knows more, and would count otherwise."""
+"""The line ends that Python knows. str.splitlines knows more, so it would count lines differently."""
 
 Piece = tuple[str, str]
-"""(class, text): the class is empty or one of those that the page's style sheet colours."""
+"""(class, text). The class is empty or one of those that the page's style sheet colours."""
 
 
 @dataclass(frozen=True)
 class CodeLine:
-    """A line with its number, as pieces; `here` is the place itself."""
+    """A line with its number, as coloured pieces; `here` is true for the line that a check points to."""
 
     number: int
     pieces: tuple[Piece, ...]
@@ -44,12 +44,12 @@ class Excerpt:
 
     @property
     def size(self) -> int:
-        """About how many bytes it takes in a page."""
+        """About how many bytes the excerpt takes in a page."""
         return sum(size(text) + 24 * bool(kind) for line in self.lines for kind, text in line.pieces)
 
 
 def excerpt(evidence: Evidence, where: Where | None) -> Excerpt | None:
-    """The lines around the place; None where it names no line of a file of the submission."""
+    """Return the lines around `where`, or None if `where` does not point to a line of the submission."""
     if where is None or where.line is None:
         return None
     data = evidence.submission.files.get(where.file)
@@ -71,7 +71,7 @@ def excerpt(evidence: Evidence, where: Where | None) -> Excerpt | None:
 
 
 def _coloured(text: str) -> list[list[Piece]]:
-    """The pieces of each line of a Python text; none where that would take too long."""
+    """Return the pieces of each line of Python code, or an empty list if colouring would take too long."""
     if len(text) > MOST_COLOURED:
         return []
     from pygments.lexers.python import PythonLexer
@@ -87,7 +87,7 @@ def _coloured(text: str) -> list[list[Piece]]:
 
 
 def _class(token: str) -> str:
-    """The class for one of pygments' kinds of token."""
+    """Return the style sheet's class for a token type of pygments."""
     for name, kinds in (
         ("c", ("Token.Comment",)),
         ("s", ("Token.Literal.String",)),
@@ -101,7 +101,7 @@ def _class(token: str) -> str:
 
 
 def _joined(line: list[Piece]) -> Iterator[Piece]:
-    """Neighbours of one class as one piece: fewer elements for the browser."""
+    """Join neighbouring pieces of the same class, so that the browser gets fewer elements."""
     kind, text = "", ""
     for each, part in line:
         if each != kind and text:

@@ -1,18 +1,18 @@
-"""A class as a table: one line a submission, for a spreadsheet or a gradebook. For the instructor.
+"""A class as a CSV table with one line per submission, for the instructor's spreadsheet or gradebook.
 
-    submission  the name of the folder or archive
-    exercise    its id
-    points      what was got
-    max         the points of the whole exercise, whatever could be judged
-    percent     of that
-    status      passed, failed, or error: graded again by the next run
-    failed      ids of the checks that failed, in the order of the exercise, blanks between
-    diagnoses   the stable ids of their causes
-    first       what was seen by the first of them, in words
-    clock, seed
-    graded_by   the grader's version and the beginning of its sources' sha256
-    report      the file of the whole report
-    attention   why an instructor should look at it: "suspicious" where the grader failed at it again and again
+   submission  the name of the folder or archive
+   exercise    the id of the exercise
+   points      the points that the submission got
+   max         the points of the whole exercise, including checks that could not be judged
+   percent     points as a percentage of max
+   status      passed, failed, or error; an error is graded again by the next run
+   failed      ids of the failed checks in the order of the exercise, separated by spaces
+   diagnoses   the stable ids of their causes
+   first       what the first failed check observed, in words
+   clock, seed
+   graded_by   the version of the grader and the first digits of the sha256 of its sources
+   report      the file with the whole report
+   attention   why an instructor should look at it: "suspicious" if the grader failed at it again and again
 
 No cell is a formula, whatever a student wrote.
 """
@@ -52,16 +52,16 @@ COLUMNS = (
 FORMULA = frozenset({"=", "+", "-", "@", "\N{MINUS SIGN}"})
 SEPARATORS = frozenset({";", "|", "\t", "\r", "\n"})
 BEFORE = frozenset({"", '"', "'", "`"})
-"""What may stand before a formula's first character: blanks, and quotes that a reader takes off."""
+"""What may come before the first character of a formula: spaces, and quotes that a reader removes."""
 
 
 def to_csv(rows: Iterable[tuple[str, Report, str, str, str]]) -> str:
-    """The table of these students, reports, graders, names of JSON files, and why to look at them.
+    """Return the table for rows of (student, report, grader, name of the JSON file, why to look at it).
 
-    It begins with a mark that tells Excel of UTF-8.
+    The table begins with a byte order mark, so that Excel reads it as UTF-8.
     """
     text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\r\n")  # as RFC 4180 has it
+    writer = csv.writer(text, lineterminator="\r\n")  # The line ends are those of RFC 4180.
     writer.writerow(COLUMNS)
     for row in rows:
         writer.writerow([_safe(str(value)) for value in _row(*row)])
@@ -89,10 +89,11 @@ def _row(student: str, report: Report, grader: str, file: str, attention: str) -
 
 
 def _safe(text: str) -> str:
-    """One line, and no formula: spreadsheets run what begins like one (CWE-1236).
+    """Return the text on one line, and not as a formula: spreadsheets execute cells that look like one (CWE-1236).
 
-    Where a reader takes another character than the comma for a separator, a cell begins behind each of those too. What
-    is full width or small counts as what it is a variant of: some spreadsheets normalize it on input.
+    A reader may use another separator than the comma. For such a reader, a new cell begins after each separator in
+    SEPARATORS, so the text after it is checked too. Full-width and small characters count as the characters that they
+    are variants of, because some spreadsheets normalize them on import.
     """
     begins, line = True, ""
     for char in printable(text):

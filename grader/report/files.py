@@ -1,4 +1,4 @@
-"""Files that a command writes because somebody named them."""
+"""Write files that the user named on the command line."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ if TYPE_CHECKING:
 
 
 def check_writable(file: Path | None) -> None:
-    """Check that a file can be written, before time is spent on its content. Raises UsageError."""
+    """Check that a file can be written, before the time is spent on its content. Raises UsageError."""
     if file is not None and not file.absolute().parent.is_dir():
         message = f"There is no folder {file.absolute().parent} to write {file.name} to."
         raise UsageError(message)
     if file is not None and file.is_dir():
-        message = f"{file} is a folder; name a file."
+        message = f"{file} is a folder. Name a file."
         raise UsageError(message)
 
 
@@ -25,8 +25,8 @@ def write(file: Path, content: bytes) -> None:
     """Write the file.
 
     Raises:
-        UsageError: it cannot be written there.
-        MachineError: the machine has no room left, or another lack.
+       UsageError: the file cannot be written there.
+       MachineError: the disk is full, or the machine failed in another way.
     """
     try:
         file.write_bytes(content)
@@ -35,6 +35,6 @@ def write(file: Path, content: bytes) -> None:
 
 
 def not_written(file: Path, error: OSError) -> UsageError | MachineError:
-    """The error to raise when a file could not be written: whose fault it is, and why."""
+    """Return the error to raise when a file could not be written: UsageError or MachineError, with the reason."""
     message = f"{file} cannot be written: {error.strerror or error}."
     return MachineError(message) if of_the_machine(error) else UsageError(message)

@@ -1,8 +1,8 @@
 """A report for GitHub Actions: the step's summary in Markdown, and annotations as workflow commands.
 
-Both hold what a student wrote, and neither lets it act: in the summary it is text whatever it looks like, in a
-command it is escaped as GitHub's documentation of workflow commands ("Workflow commands for GitHub Actions") and its
-toolkit's `escapeData` and `escapeProperty` do. What is hidden is left out.
+Both contain text from a student. It must never act as Markdown or as a command. In the summary it is always plain
+text. In a command it is escaped as described in GitHub's documentation ("Workflow commands for GitHub Actions") and
+as `escapeData` and `escapeProperty` of GitHub's toolkit do it. Hidden checks are left out.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 MOST_SUMMARY = 900_000
-"""Bytes; GitHub takes a MiB a step."""
+"""Bytes. GitHub allows one MiB per step."""
 MOST_ANNOTATIONS = 10
-"""Of a kind in a step; GitHub shows no more."""
+"""The number of annotations of each kind in a step. GitHub does not show more."""
 LONGEST = 300
 _MARKDOWN = re.compile(r"([\\`*_{}\[\]()#+\-.!|<>~&@:$^=])")
 _SIGNS = {Status.PASSED: "✅", Status.FAILED: "❌", Status.SKIPPED: "\N{HEAVY MINUS SIGN}", Status.ERROR: "⚠️"}
 
 
 def to_summary(rows: Sequence[tuple[str, Report]]) -> str:
-    """Markdown for $GITHUB_STEP_SUMMARY: the class as a table, and the checks of as many submissions as fit."""
+    """Return Markdown for $GITHUB_STEP_SUMMARY: a table of the class, and the checks of as many submissions as fit."""
     parts = ["| submission | exercise | points | |\n| --- | --- | ---: | --- |\n"]
     for student, report in rows:
         points = f"{report.points:g} of {report.max:g}"
@@ -41,7 +41,7 @@ def to_summary(rows: Sequence[tuple[str, Report]]) -> str:
         part = _details(student, for_students(report))
         size += len(part.encode())
         if size > MOST_SUMMARY:
-            parts.append(f"\nThe checks of {len(rows) - number} more submissions are left out here.\n")
+            parts.append(f"\nThe checks of {len(rows) - number} more submissions do not fit here.\n")
             break
         parts.append(part)
     return "".join(parts)
@@ -71,15 +71,15 @@ def _told(outcome: Outcome) -> str:
 
 
 def _text(text: str) -> str:
-    """Text that stays text in Markdown, inside a table's cell too: no links, no HTML, no mention of anybody."""
-    # Numeric references: Markdown reads them as text and never as its own signs, GitHub's mentions and emoji neither.
+    """Escape text for Markdown, also inside a table: no links, no HTML and no mentions."""
+    # Markdown and GitHub read numeric references as plain text, never as Markdown signs, mentions or emoji.
     return _MARKDOWN.sub(lambda sign: f"&#{ord(sign.group())};", shorten(text, LONGEST))
 
 
 def to_annotations(rows: Iterable[tuple[str, Report]], folder: str = "") -> str:
-    """Workflow commands, a line each: an error for what failed, a warning for what could not be judged.
+    """Return workflow commands, one per line: an error for each failed check, a warning for each that was not judged.
 
-    `folder`: where the package is in the repository, so that GitHub shows them beside its lines.
+    `folder` is the path of the package in the repository. GitHub needs it to show an annotation next to the line.
     """
     errors: list[str] = []
     warnings: list[str] = []
@@ -111,7 +111,7 @@ def _command(kind: str, student: str, outcome: Outcome, folder: str) -> str:
 
 def _data(text: str) -> str:
     escaped = text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
-    # An older form of commands is read anywhere in a line.
+    # GitHub reads an older form of commands anywhere in a line.
     return escaped.replace("##[", "# #[")
 
 

@@ -1,6 +1,6 @@
-"""A report as Gradescope's results.json (its documentation: "Autograder Specifications", "Output Format").
+"""A report as Gradescope's results.json (see "Autograder Specifications", "Output Format" in its documentation).
 
-Students may see it: of a hidden check they see whether it passed.
+Students may see it. Of a hidden check they see only whether it passed.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 
 def to_gradescope(report: Report) -> str:
-    """The text of results.json."""
+    """Return the text of results.json."""
     shown = for_students(report)
     data = {
         "score": round(report.points, 6),
         "execution_time": round(report.seconds.get("in all", 0.0)),
         "output": printable(verdict(report)),
         "output_format": "text",
-        # What the scripts print is the grader's own progress: nothing for students in it.
+        # The scripts print only the progress of the grader, which is of no use to students.
         "stdout_visibility": "hidden",
         "visibility": "visible",
         "tests": [_test(number, outcome) for number, outcome in enumerate(shown.outcomes, 1)],
@@ -53,7 +53,7 @@ def _test(number: int, outcome: Outcome) -> dict[str, Any]:
     }
     if outcome.max:
         test |= {"score": round(outcome.points, 6), "max_score": round(outcome.max, 6)}
-    # Without a status of its own Gradescope would call advice failed, since it has no points.
+    # Advice has no points, so without a status Gradescope would show it as failed.
     return {**test, "status": "passed" if passed or outcome.advice else "failed"}
 
 
@@ -61,10 +61,10 @@ def _output(outcome: Outcome) -> str:
     finding = outcome.finding
     if outcome.status is Status.PASSED and not outcome.hidden:
         return ""
-    note = "Advice, worth no points." if outcome.advice else ""
+    note = "Advice only: it is worth no points." if outcome.advice else ""
     where = f"Where: {finding.where}" if finding.where else ""
     expected = f"Expected: {finding.expected}" if finding.expected else ""
-    error = "This could not be judged; your instructor is told." if outcome.status is Status.ERROR else ""
+    error = "This could not be judged. Your instructor can see that." if outcome.status is Status.ERROR else ""
     return "\n".join(
         printable(text) for text in (note, error, finding.observed, expected, finding.cause, where) if text
     )

@@ -1,7 +1,7 @@
-"""The ROS graph as SVG: who publishes on the left, the topics with their types between, who subscribes on the right.
+"""The ROS graph as SVG: publishers on the left, topics with their types in the middle, subscribers on the right.
 
-Not laid out by Graphviz, as rqt_graph's pictures are: a page wants light and dark, must not cost more, and a C library
-should not have to read names that a student chose.
+The layout does not come from Graphviz, as it does for rqt_graph. A page needs light and dark colours and must be
+quick to make, and a C library should not read names that a student chose.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 WIDTH = 640.0
 ROW, BOX = 62.0, 40.0
 SIDE, MIDDLE = 150.0, 216.0
-"""Width of a node and of a topic."""
+"""The widths of a node and of a topic."""
 MOST_TOPICS, MOST_NODES = 10, 12
 NODE, TOPIC = "#1c7ed6", "#e8590c"
 NODE_CHARS, TOPIC_CHARS = 21, 31
@@ -30,7 +30,7 @@ NODE_CHARS, TOPIC_CHARS = 21, 31
 
 @dataclass(frozen=True)
 class GraphDrawing:
-    """The picture, the same in rows (node, "publishes on" or "subscribes to", topic, type), what is left out."""
+    """The picture, the same as rows (node, "publishes on" or "subscribes to", topic, type), and the number left out."""
 
     svg: str
     rows: tuple[tuple[str, str, str, str], ...]
@@ -38,7 +38,10 @@ class GraphDrawing:
 
 
 def draw_graph(recording: Recording, name: str = "graph") -> GraphDrawing | None:
-    """All nodes and topics that were ever in the graph, but those that every node has; None when nothing was seen."""
+    """Draw all nodes and topics that were ever in the graph, without the topics that every node has.
+
+    Returns None if there was no node.
+    """
     nodes = sorted({node for graph in recording.graphs for node in graph.nodes})
     ends = {end: None for graph in recording.graphs for end in graph.endpoints}
     graph = choose(nodes, ends)
@@ -82,7 +85,7 @@ def _draw(topics: Sequence[Topic], types: dict[str, list[str]], left: list[str],
     parts += [_node(node, 2.0, y) for node, y in lefts.items()]
     parts += [_node(node, right_x, y) for node, y in rights.items()]
     about = " ".join(
-        f"On {shorten(topic.name)} {_who(topic.publishers)} publishes and {_who(topic.subscribers)} subscribes."
+        f"On {shorten(topic.name)} publishers: {_who(topic.publishers)}; subscribers: {_who(topic.subscribers)}."
         for topic in topics
     )
     return picture(
@@ -97,7 +100,7 @@ def _draw(topics: Sequence[Topic], types: dict[str, list[str]], left: list[str],
 
 
 def _who(names: Sequence[str]) -> str:
-    return a_list([shorten(name) for name in names]) or "nobody"
+    return a_list([shorten(name) for name in names]) or "none"
 
 
 def _ordered(names: Sequence[str]) -> list[str]:
@@ -105,7 +108,7 @@ def _ordered(names: Sequence[str]) -> list[str]:
 
 
 def _places(names: Sequence[str], height: float) -> dict[str, float]:
-    """The height of each name's middle, all of them spread evenly."""
+    """Return the y coordinate of the middle of each name, with equal distances."""
     room = (height - 34) / max(len(names), 1)
     return {name: 30 + room * (index + 0.5) for index, name in enumerate(names)}
 

@@ -1,6 +1,6 @@
-"""A report as its student may see it: of a hidden check nothing but whether it passed.
+"""A report as the student may see it: a hidden check shows only whether it passed.
 
-Ids, titles and findings of hidden checks are left out, and so are trials that only hidden checks judge.
+Ids, titles and findings of hidden checks are left out, and so are trials that only hidden checks use.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def for_students(report: Report) -> Report:
-    """The report without what is hidden."""
+    """Return the report without what is hidden."""
     numbers = {outcome.id: number for number, outcome in enumerate((o for o in report.outcomes if o.hidden), 1)}
     return replace(
         report, outcomes=tuple(_covered(each, numbers[each.id]) if each.hidden else each for each in report.outcomes)
@@ -25,7 +25,7 @@ def for_students(report: Report) -> Report:
 
 
 def _covered(outcome: Outcome, number: int) -> Outcome:
-    # A check that was not judged has not passed, and why is hidden too.
+    # A hidden check that was not judged counts as not passed, and the reason stays hidden too.
     status = Status.FAILED if outcome.status is Status.SKIPPED else outcome.status
     said = "passed" if status is Status.PASSED else "could not be judged" if status is Status.ERROR else "failed"
     return replace(
@@ -38,7 +38,7 @@ def _covered(outcome: Outcome, number: int) -> Outcome:
 
 
 def evidence_for_students(evidence: Evidence) -> Evidence:
-    """The evidence without hidden checks and the trials that are theirs alone."""
+    """Return the evidence without hidden checks and without the trials that only they use."""
     exercise = evidence.exercise
     shown = tuple(spec for spec in exercise.checks if not spec.hidden)
     trials = {exercise.trials[0].id, *(spec.trial for spec in shown)}

@@ -1,7 +1,7 @@
-"""The page on one submission: verdict, checks with the code they mean, the run to look at, the graph, the logs.
+"""The page of one submission: verdict, checks with the code that they point to, replay, graph and logs.
 
-What differs from run to run (seconds, paths of recordings) is not on it, so that a page made again from a recording is
-the same page.
+The page leaves out what differs from run to run (seconds, paths of recordings). So a page that is made again from a
+recording is identical.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ if TYPE_CHECKING:
     from grader.submission.where import Where
 
 CODE_BYTES = 50_000
-"""Of all excerpts of code together; later checks name the place only."""
+"""The size of all code excerpts together. When it is reached, later checks show the file and the line only."""
 
 
 @dataclass(frozen=True)
 class ShownCheck:
-    """A check as the page shows it; `above` is the number of an earlier one that shows the same lines of code."""
+    """A check as the page shows it; `above` is the number of an earlier check that shows the same lines of code."""
 
     number: int
     outcome: Outcome
@@ -45,7 +45,7 @@ class ShownCheck:
 
     @property
     def title(self) -> str:
-        """Its title; nothing is said of what a hidden check looks at."""
+        """The title of the check; a hidden check does not show what it looks at."""
         return "Hidden check" if self.outcome.hidden else self.outcome.title
 
     @property
@@ -55,7 +55,7 @@ class ShownCheck:
         return "" if self.outcome.hidden or text.rstrip(".") == self.outcome.title else text
 
     def shows(self, where: Where) -> bool:
-        """Whether the line of this place is among those shown with the check."""
+        """Return whether the code shown with this check includes the line `where`."""
         code = self.code
         return code is not None and code.file == where.file and any(line.number == where.line for line in code.lines)
 
@@ -68,14 +68,14 @@ class ShownCheck:
 
 
 def save_html(evidence: Evidence, report: Report, file: Path) -> None:
-    """Write the page. Raises UsageError where that cannot be done."""
+    """Write the page. Raises UsageError if the file cannot be written."""
     save_page(html_page(evidence, report), file)
 
 
 def html_page(evidence: Evidence, report: Report) -> str:
-    """The page as text.
+    """Return the page as a string.
 
-    What a submission has made may be more than can be drawn; its verdict is told all the same, without the drawings.
+    If the output of a submission cannot be drawn, the page still has the verdict, but no drawings.
     """
     try:
         return read(_page, evidence, report)
@@ -84,7 +84,7 @@ def html_page(evidence: Evidence, report: Report) -> str:
 
 
 def without_content(evidence: Evidence) -> Evidence:
-    """The evidence without anything that came from the submission."""
+    """Return the evidence without anything that came from the submission."""
     nothing = replace(evidence.submission, files={}, rejected=(), executable=frozenset())
     return replace(evidence, submission=nothing, build=None, runs={})
 
@@ -94,7 +94,7 @@ def _page(evidence: Evidence, report: Report) -> str:
     runs = runs_of(evidences)
     shown = list(_shown(evidence, report))
     fault = evidence.fault.message if evidence.fault and not evidence.fault.unreadable else ""
-    # One fault of the machine is told once, not with every check that it took along.
+    # A fault of the machine is shown once, not again with each check that could not be judged because of it.
     unmade = [check for check in shown if check.kind == "error" and check.outcome.finding.observed == fault]
     values = {
         "report": report,
@@ -115,7 +115,7 @@ def _page(evidence: Evidence, report: Report) -> str:
 
 
 def _shown(evidence: Evidence, report: Report) -> Iterator[ShownCheck]:
-    """Every check; lines of code are shown once."""
+    """Yield every check. The same lines of code are shown only once."""
     shown: list[ShownCheck] = []
     room = CODE_BYTES
     for number, outcome in enumerate(report.outcomes, 1):
@@ -130,7 +130,7 @@ def _shown(evidence: Evidence, report: Report) -> Iterator[ShownCheck]:
 
 
 def _again(report: Report) -> str:
-    """The command that grades the submission again."""
+    """Return the command that grades the submission again."""
     command = ["grader", "check", report.submission, "--exercise", report.exercise]
     if report.seed is not None:
         command += ["--seed", str(report.seed)]

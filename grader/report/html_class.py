@@ -1,6 +1,6 @@
-"""The page on a class, from its reports: who got what, which checks fail most and why, what the machine failed at.
+"""The page of a class, made from its reports: points, the checks that fail most and why, and errors of the machine.
 
-Reports are the JSON files below a folder; a page or recording beside a report with the same name is linked.
+Reports are the JSON files below a folder. If a page with the same name lies next to a report, it is linked.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 LARGEST = 4_000_000
-"""Bytes: no report is as large."""
+"""Bytes. No report is this large."""
 PAGE = "index.html"
 MOST_DIAGNOSES = 5
 BAR = "#1c7ed6"
@@ -39,7 +39,7 @@ BAR = "#1c7ed6"
 
 @dataclass(frozen=True)
 class Entry:
-    """A report of the class; `link` leads from the class page to its own page, empty without one."""
+    """A report of the class; `link` leads from the class page to the page of the submission, or is empty."""
 
     report: Report
     name: str
@@ -49,34 +49,34 @@ class Entry:
 
     @property
     def share(self) -> float:
-        """Points of what could be had, 0 to 1."""
+        """The fraction of all points that the submission got, 0 to 1."""
         return self.report.points / self.report.max if self.report.max else 0.0
 
     @property
     def tone(self) -> str:
-        """How its verdict is meant."""
+        """The kind of verdict: "passed", "failed" or "error"."""
         return tone(self.report)
 
     @property
     def verdict(self) -> str:
-        """Its verdict in one line."""
+        """The verdict in one line."""
         return verdict(self.report)
 
     @property
     def failed(self) -> tuple[Outcome, ...]:
-        """The checks that it failed itself (not those that were not judged because of them)."""
+        """The failed checks, without those that were not judged because of them."""
         return self.report.with_status(Status.FAILED)
 
     @property
     def first_error(self) -> str:
-        """What the machine said."""
+        """The first error of the machine, or an empty string."""
         errors = self.report.with_status(Status.ERROR)
         return errors[0].finding.observed if errors else ""
 
 
 @dataclass
 class Diagnosis:
-    """Why a check failed: the cause's stable id, how often, in whose words, for whom."""
+    """Why a check failed: the stable id of the cause, its messages with their counts, and the submissions."""
 
     id: str
     texts: Counter[str] = field(default_factory=Counter)
@@ -84,13 +84,13 @@ class Diagnosis:
 
     @property
     def text(self) -> str:
-        """The words that most of its reports have for it."""
+        """The most frequent message for this cause."""
         return self.texts.most_common(1)[0][0] if self.texts else ""
 
 
 @dataclass
 class FailedCheck:
-    """A check that somebody failed, with the causes, the most frequent first."""
+    """A check that at least one submission failed, with its causes."""
 
     exercise: str
     id: str
@@ -100,23 +100,23 @@ class FailedCheck:
 
     @property
     def diagnoses(self) -> list[Diagnosis]:
-        """The most frequent causes."""
+        """The most frequent causes, the most frequent first."""
         ordered = sorted(self.by_cause.values(), key=lambda each: (-len(each.entries), each.id))
         return ordered[:MOST_DIAGNOSES]
 
 
 @dataclass(frozen=True)
 class ClassReports:
-    """The reports below a folder, and the files that look like reports and cannot be read, with the reason."""
+    """The reports below a folder, and the files that look like reports but cannot be read, with the reason."""
 
     entries: tuple[Entry, ...]
     unreadable: tuple[tuple[str, str], ...]
 
 
 def read_class(folder: Path) -> ClassReports:
-    """Every report below the folder, by name. Raises UsageError where there is none."""
+    """Read every report below the folder, sorted by name. Raises UsageError if there is none."""
     if not folder.is_dir():
-        message = f"There is no folder {folder}: name the one that holds the reports (from `grader check --json`)."
+        message = f"There is no folder {folder}: name the folder with the reports (from `grader check --json`)."
         raise UsageError(message)
     found: list[tuple[Path, Report]] = []
     errors: list[int] = []
@@ -127,14 +127,14 @@ def read_class(folder: Path) -> ClassReports:
                 continue
             text = file.read_text(encoding="utf-8")
             if '"outcomes"' not in text:
-                continue  # JSON of somebody else
+                continue  # a JSON file that is not a report
             one, amount = from_json(text), int(json.loads(text).get(ERRORS, 0))
             found.append((file, one))
             errors.append(amount)
         except (OSError, ValueError, TypeError, RecursionError, UsageError) as error:
             unreadable.append((str(file.relative_to(folder)), str(error)))
     if not found and not unreadable:
-        message = f"There is no report below {folder}: they are JSON files, as `grader check --json FILE` writes them."
+        message = f"There is no report below {folder}: `grader check --json FILE` writes one."
         raise UsageError(message)
     names = _short([report.submission for _, report in found])
     attention = suspicions([(report, amount) for (_, report), amount in zip(found, errors, strict=True)])
@@ -146,13 +146,13 @@ def read_class(folder: Path) -> ClassReports:
 
 
 def _natural(name: str) -> list[tuple[int, str]]:
-    """For sorting as people do, and as the page's script does: 2 before 10, A with a."""
+    """Return a sort key for the order that people expect (2 before 10, A next to a), as in the page's script."""
     parts = re.findall(r"[0-9]{1,18}|[^0-9]+", name.casefold())
     return [(int(part), "") if part[0] in "0123456789" else (-1, part) for part in parts]
 
 
 def _short(names: Sequence[str]) -> list[str]:
-    """The names without the folders that they all begin with, and without those that they all end with."""
+    """Return the names without the folders that all of them begin with or end with."""
     parts = [name.rstrip("/").split("/") for name in names]
     if len(parts) < 2:
         return list(names)
@@ -162,7 +162,7 @@ def _short(names: Sequence[str]) -> list[str]:
 
 
 def _alike(paths: Sequence[Sequence[str]]) -> int:
-    """How many folders all the paths have in common at their beginning, their last one never."""
+    """Return how many folders all the paths have in common at their beginning, the last part not counted."""
     same = 0
     for level in zip(*(path[:-1] for path in paths), strict=False):
         if len(set(level)) > 1:
@@ -173,12 +173,12 @@ def _alike(paths: Sequence[Sequence[str]]) -> int:
 
 def _link(file: Path, folder: Path) -> str:
     page = file.with_suffix(".html")
-    # Never an address of another kind: a relative path whose first part cannot be taken for a scheme.
+    # A link must never have a scheme of its own: "./" makes it a relative path.
     return "./" + quote(page.relative_to(folder).as_posix(), errors="surrogateescape") if page.is_file() else ""
 
 
 def failures(entries: Iterable[Entry]) -> list[FailedCheck]:
-    """The checks that were failed, the most frequent first."""
+    """Return the failed checks, the most frequent first."""
     checks: dict[tuple[str, str], FailedCheck] = {}
     for entry in entries:
         for outcome in entry.failed:
@@ -193,7 +193,7 @@ def failures(entries: Iterable[Entry]) -> list[FailedCheck]:
 
 
 def class_page(reports: ClassReports) -> str:
-    """The page as text."""
+    """Return the page as a string."""
     judged = [entry for entry in reports.entries if entry.tone != "error"]
     broken = [entry for entry in reports.entries if entry.tone == "error"]
     exercises = sorted({entry.report.exercise for entry in reports.entries})
@@ -216,7 +216,7 @@ def class_page(reports: ClassReports) -> str:
 
 
 def save_class_page(folder: Path, file: Path) -> None:
-    """Write the page on the reports below a folder. Raises UsageError where that cannot be done."""
+    """Write the page for the reports below a folder. Raises UsageError if that is not possible."""
     save_page(class_page(read(read_class, folder)), file)
 
 
@@ -224,7 +224,7 @@ BINS = [f"{10 * each} to {10 * each + 9}" for each in range(10)] + ["100"]
 
 
 def counts(shares: Iterable[float]) -> list[int]:
-    """How many got 0 to 9 % of the points, 10 to 19, and so on; the last: all of them."""
+    """Count the submissions with 0 to 9 % of the points, 10 to 19 %, and so on; the last number is for all points."""
     found = [0] * len(BINS)
     for share in shares:
         found[min(int(share * 10 + 1e-9), 10)] += 1
@@ -237,7 +237,7 @@ def _said(shares: Iterable[float]) -> str:
 
 
 def distribution(shares: Iterable[float]) -> str:
-    """Bars: how many submissions got which share of the points."""
+    """Draw a bar chart: how many submissions got which percentage of the points."""
     found = counts(shares)
     width, height, top, bar = 560.0, 170.0, 24.0, 46.0
     most = max(*found, 1)
@@ -249,7 +249,7 @@ def distribution(shares: Iterable[float]) -> str:
             parts.append(words(str(amount), x + bar / 2, top + height - tall - 6, "middle"))
         parts.append(words(name.split()[0], x + bar / 2, top + height + 19, "middle"))
     base = tag("path", d=f"M8 {top + height}H{width - 8}", stroke="currentColor")
-    label = words("% of the points, or up to 9 more", width - 10, top + height + 40, "end")
+    label = words("% of the points (each bar covers 10 %)", width - 10, top + height + 40, "end")
     return picture(
         *parts,
         base,

@@ -1,7 +1,7 @@
-"""The verdict as a piece of HTML for a notebook's cell: the table with reasons, then what was seen of each run.
+"""The verdict as HTML for the output of a notebook cell: a table with reasons, and then the charts of each run.
 
-No script, and a style sheet that touches nothing but this piece. Every id in it begins with a key of its own, since a
-notebook shows many pieces on one page.
+It has no script, and its style sheet changes nothing outside of it. Every id begins with a key of its own, because
+one notebook may show many verdicts.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def html_fragment(evidence: Evidence, report: Report) -> str:
-    """The piece of HTML; without drawings where what the submission has made cannot be drawn."""
+    """Return the HTML; without drawings if the output of the submission cannot be drawn."""
     try:
         return read(_fragment, evidence, report)
     except UnreadableError:

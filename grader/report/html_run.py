@@ -1,4 +1,4 @@
-"""What a page shows of each trial: the canvas with its player, the charts, the graph, the commands as a table."""
+"""What a page shows of each trial: the canvas with its player, the charts, the graph, and a table of the commands."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 MOST_FRAMES = 1500
-"""Of the turtle's way in the players of a page together."""
+"""The number of points of the turtle's trajectory in all players of a page together."""
 MOST_ROWS = 100
-"""Of the table of commands."""
+"""The number of rows in the table of commands."""
 MOST_STEPS = 1000
-"""Of the commands that a player tells."""
+"""The number of commands that a player shows."""
 
 
 @dataclass(frozen=True)
@@ -41,9 +41,10 @@ class Picture:
 
 @dataclass(frozen=True)
 class Run:
-    """A trial, ready for the template; `data` is what its player reads. `end` tells how the node's process ended.
+    """A trial, ready for the template.
 
-    `idle`: no command arrived, and some should have.
+    `data` is what the player reads. `end` describes how the node's process ended. `idle` is true if no command arrived
+    although the exercise needs some.
     """
 
     key: str
@@ -63,7 +64,7 @@ class Run:
 
 
 def runs_of(evidences: Sequence[Evidence], key: str = "run") -> list[Run]:
-    """The trials that were run, in order; each is titled where there are several. `key` begins every id in them."""
+    """Return the trials that ran, in order. Each has a title if there are several. `key` is the prefix of all ids."""
     several = len(evidences) > 1
     tried = [(number, evidence) for number, evidence in enumerate(evidences) if evidence.run.recording is not None]
     return [_run(evidence, f"{key}-{number}" if number else key, several, len(tried)) for number, evidence in tried]
@@ -97,20 +98,20 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
 
 
 def _left_out(recording: Recording) -> list[str]:
-    """What was more than a recording keeps."""
+    """Describe what the recording left out because there was too much of it."""
     amounts = (
         (recording.dropped, "message", ""),
         (recording.interventions_dropped, "call", " of the simulator's services"),
         (recording.graph_dropped, "part", " of the graph"),
     )
     left_out = [count(amount, thing) + of for amount, thing, of in amounts if amount]
-    return [f"More than a recording keeps, and left out: {a_list(left_out)}."] if left_out else []
+    return [f"The recording was full. These are left out: {a_list(left_out)}."] if left_out else []
 
 
 def _end(evidence: Evidence) -> str:
-    """How the node's process ended, in a sentence."""
+    """Describe in one sentence how the node's process ended."""
     end = evidence.recording.end
-    # A shell tells the end by a signal as 128 and the signal's number.
+    # A shell shows the end by a signal as 128 plus the signal's number.
     code = end.exit_code if end.exit_code >= 0 else 128 - end.exit_code
     if end.by == "itself":
         return f"The node ended by itself after {end.t_s:.1f} s, with exit code {code}."
@@ -119,7 +120,7 @@ def _end(evidence: Evidence) -> str:
 
 
 def _rows(evidence: Evidence) -> list[tuple[str, ...]]:
-    """Each command in words: when, how long after the one before, linear.x, angular.z."""
+    """Return each command as strings: time, time since the command before, linear.x, angular.z."""
     rows: list[tuple[str, ...]] = []
     before: float | None = None
     for command in evidence.commands[:MOST_ROWS]:
@@ -130,7 +131,10 @@ def _rows(evidence: Evidence) -> list[tuple[str, ...]]:
 
 
 def _data(evidence: Evidence, among: int) -> dict[str, object]:
-    """What the player needs: the turtle (m, rad) at times (s), the commands; null for what is no finite number."""
+    """Return the data for the player: poses (m, rad) by time (s), and the commands.
+
+    A value that is not finite becomes None.
+    """
     recording = evidence.recording
     end_s = activity.end_s(recording)
     frames = recording.frames

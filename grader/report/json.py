@@ -1,18 +1,18 @@
-"""Report to JSON and back.
+"""Convert a report to JSON and back.
 
-Schema 3. Every key is always there; texts are never null unless it says so.
+Schema 3. Every key is always present. Strings are never null unless stated below.
 
-    schema        3; 1 and 2 are read too: in 1 `confined` was missing, in both `max` left out what was an "error"
+    schema        3; schemas 1 and 2 can be read too: 1 has no `confined`; in both, `max` excludes checks with "error"
     exercise      {id, title, sha256 of exercise.toml}
-    submission    {name as the user gave it, sha256 over its files}
+    submission    {name as the user typed it, sha256 of its files}
     grader, ros   their versions
     clock         {used: "simulated" or "wall" ("none" when no trial ran), why: a sentence}
-    confined      false where the student's code ran without a sandbox, with resource limits only
-    seed          the number that drew the turtle's start; null for turtlesim's own start
-    points, max   sums over the outcomes; what the machine could not judge (status "error") has 0 of its points
+    confined      false if the student's code ran without a sandbox, with resource limits only
+    seed          the seed of the turtle's random start pose; null for turtlesim's usual start
+    points, max   sums over the outcomes; a check with status "error" counts 0 points
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
                   cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,
-                  advice: worth nothing and fails no run, whatever its status, near_edge}]
+                  advice: true if it has no points and never fails a run, near_edge}]
     seconds       {stage: wall time in s}; differs from run to run
     recordings    [paths of the recordings that were kept]
 """
@@ -32,12 +32,12 @@ READ = (1, 2, SCHEMA)
 
 
 def to_json(report: Report) -> str:
-    """The report as JSON text, indented, with a newline at its end."""
+    """Return the report as indented JSON that ends with a newline."""
     return json.dumps(to_data(report), ensure_ascii=False, indent=2, allow_nan=False) + "\n"
 
 
 def to_data(report: Report) -> dict[str, Any]:
-    """The report as dictionaries and lists, ready for JSON."""
+    """Return the report as dictionaries and lists, ready for JSON."""
     return {
         "schema": SCHEMA,
         "exercise": {"id": report.exercise, "title": report.exercise_title, "sha256": report.exercise_digest},
@@ -77,20 +77,23 @@ def _outcome(outcome: Outcome) -> dict[str, Any]:
 
 
 def _encodable(text: str) -> str:
-    """The text with lone surrogates (bytes of a file name that are not UTF-8) as escapes: JSON is UTF-8."""
+    """Replace lone surrogates by escapes, because JSON must be UTF-8.
+
+    They stand for bytes of a file name that are not UTF-8.
+    """
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def from_json(text: str) -> Report:
-    """The report in a JSON text. Raises UsageError when it is none of ours, or of a later version."""
+    """Read a report from JSON. Raises UsageError if it is not a report of the grader, or has a newer schema."""
     try:
         data = json.loads(text)
         schema = data["schema"]
     except (ValueError, TypeError, KeyError) as error:
-        message = "This is no report of the grader: it is not JSON with a key schema."
+        message = "This is not a report of the grader: it is not JSON with the key `schema`."
         raise UsageError(message) from error
     if schema not in READ:
-        message = f"This report has schema {schema}; this version of the grader reads schema {READ[0]} to {READ[-1]}."
+        message = f"This report has schema {schema}; this version of the grader reads schemas {READ[0]} to {READ[-1]}."
         raise UsageError(message)
     try:
         return _report(data)

@@ -1,6 +1,6 @@
-"""A class as JUnit XML, as Jenkins, GitLab and others read it: a test suite a submission, a test case a check.
+"""A class as JUnit XML for Jenkins, GitLab and others: one test suite per submission, one test case per check.
 
-Students may see it: what is hidden is left out. Advice is no test case.
+Students may see it, so hidden checks are left out. Advice is not a test case.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ TAGS = {Status.FAILED: "failure", Status.SKIPPED: "skipped", Status.ERROR: "erro
 
 
 def to_junit(rows: Iterable[tuple[str, Report]]) -> bytes:
-    """The XML of these students and reports."""
+    """Return the XML for pairs of (student, report)."""
     root = ET.Element("testsuites", name="grader")
     for student, report in rows:
         _suite(root, student, for_students(report))
@@ -57,7 +57,7 @@ def _suite(root: ET.Element, student: str, report: Report) -> None:
 
 
 def _case(suite: ET.Element, student: str, report: Report, outcome: Outcome) -> None:
-    # The time of a check alone is not known; what is not there is not added up wrongly.
+    # The time of a single check is not known. Without the attribute, no tool adds up wrong times.
     case = ET.SubElement(
         suite, "testcase", name=_text(outcome.title), classname=_text(f"{report.exercise}.{student}"), time="0"
     )
@@ -73,5 +73,5 @@ def _case(suite: ET.Element, student: str, report: Report, outcome: Outcome) -> 
 
 
 def _text(text: str) -> str:
-    """Printable characters alone: XML 1.0 has no way to write most others."""
+    """Keep only printable characters. XML 1.0 cannot represent most others."""
     return printable(text)

@@ -1,4 +1,4 @@
-"""What the build and the node said, with what looks like an error first."""
+"""The logs of the build and the node, with the lines that look like errors first."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 HEAD_BYTES, TAIL_BYTES, ERROR_BYTES = 20_000, 14_000, 6_000
 LOOKED_AT = 400_000
-"""Characters of a log that are searched for errors, from its end."""
+"""Characters at the end of a log that are searched for errors."""
 MOST_ERRORS = 40
 ERROR = re.compile(r"\b(?:Traceback \(most|\w*Error\b|\w*Exception\b|error:|ERROR|FATAL|Failed\b)|\[ERROR\]")
 BEGINS = "Traceback (most recent call last):"
@@ -24,7 +24,7 @@ BEGINS = "Traceback (most recent call last):"
 
 @dataclass(frozen=True)
 class Size:
-    """How many bytes of a page a log's beginning, its end and its errors may take."""
+    """How many bytes of a page the beginning, the end and the errors of a log may take."""
 
     head: int
     tail: int
@@ -33,7 +33,7 @@ class Size:
 
 @dataclass(frozen=True)
 class Log:
-    """One of the logs: `errors` are those of its lines that look like errors, with their numbers."""
+    """One log; `errors` are the lines that look like errors, with their numbers."""
 
     key: str
     title: str
@@ -44,14 +44,17 @@ class Log:
 
 
 def logs_of(evidences: Sequence[Evidence]) -> tuple[Log, ...]:
-    """The build's log, and of each trial the node's output and what it logged; those with errors first."""
+    """Return the log of the build, and the output and log messages of the node in each trial.
+
+    Logs with errors come first.
+    """
     logs = []
     build = evidences[0].build
-    # All of them share the page's room.
+    # All trials share the space on the page.
     size = Size(HEAD_BYTES // len(evidences), TAIL_BYTES // len(evidences), ERROR_BYTES)
     if build is not None:
         note = f"colcon ended with exit code {build.exit_code}." if build.exit_code else ""
-        logs.append(_log("build", "What colcon said while it built", build.log, size, note))
+        logs.append(_log("build", "Output of colcon build", build.log, size, note))
     for number, evidence in enumerate(evidences):
         recording = evidence.run.recording
         if recording is None:
@@ -59,13 +62,13 @@ def logs_of(evidences: Sequence[Evidence]) -> tuple[Log, ...]:
         end = f"-{number}" if number else ""
         node = f"the node {evidence.trial.executable}" if len(evidences) > 1 else "the node"
         for key, title, output in (
-            ("stderr", f"What {node} wrote on stderr", recording.stderr),
-            ("stdout", f"What {node} printed on stdout", recording.stdout),
+            ("stderr", f"Output of {node} on stderr", recording.stderr),
+            ("stdout", f"Output of {node} on stdout", recording.stdout),
         ):
             logs.append(_log(key + end, title, output.text, size, _dropped(output)))
         logged = "\n".join(f"{line.t_s:7.2f} s  {line.level:5}  {line.logger}: {line.text}" for line in recording.log)
         beside = f" while {evidence.trial.executable} ran" if len(evidences) > 1 else ""
-        logs.append(_log("rosout" + end, f"What was logged on /rosout{beside}, by arrival", logged, size))
+        logs.append(_log("rosout" + end, f"Messages on /rosout{beside}, in order of arrival", logged, size))
     return tuple(sorted((log for log in logs if log.lines), key=lambda log: not log.errors))
 
 
@@ -76,11 +79,14 @@ def _log(key: str, title: str, text: str, room: Size, note: str = "") -> Log:
 
 
 def _dropped(output: Output) -> str:
-    return f"{output.dropped} bytes more were written and not kept." if output.dropped else ""
+    return f"{output.dropped} more bytes were written but not kept." if output.dropped else ""
 
 
 def errors_in(text: str, room: int = ERROR_BYTES) -> list[tuple[int, str]]:
-    """The lines that look like errors with their numbers from 1, tracebacks whole; not more than a page can take."""
+    """Return the lines that look like errors, with whole tracebacks; at most as many as fit into a page.
+
+    Line numbers count from 1.
+    """
     searched = text[-LOOKED_AT:]
     first = text.count("\n", 0, len(text) - len(searched)) + 1
     found: list[tuple[int, str]] = []
@@ -95,7 +101,7 @@ def errors_in(text: str, room: int = ERROR_BYTES) -> list[tuple[int, str]]:
             if room < 0 or len(found) >= MOST_ERRORS:
                 break
             found.append((number, shown))
-        # A traceback ends with the first line that is not indented.
+        # The first line without indentation ends a traceback.
         if inside and BEGINS not in head and not line.startswith((" ", "\t")):
             inside = False
     return found

@@ -1,7 +1,7 @@
-"""A page of one file: template, style and script put together under a Content-Security-Policy that allows just them.
+"""Make a page in one file from a template, a style sheet and a script, with a strict Content-Security-Policy.
 
-The policy names the style and the script by their hashes, so that nothing else on the page can run or load, whatever
-a submission holds; what a student wrote is escaped all the same.
+The policy names the style sheet and the script by their hashes. Nothing else on the page can run or load, whatever a
+submission contains. All text from a student is escaped as well.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def make_page(template: str, script: str, data: object, values: Mapping[str, object]) -> str:
-    """The page of a template with the style sheet, a script (a file of assets/ each) and the data that it reads."""
+    """Return the page of a template with a style sheet, a script and data for it; both are files in assets/."""
     style, code = _text("page.css"), _text(script)
     policy = (
         f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(code)}; img-src data:; base-uri 'none'; "
@@ -33,7 +33,7 @@ def make_page(template: str, script: str, data: object, values: Mapping[str, obj
 
 
 def save_page(page: str, file: Path) -> None:
-    """Write a page. Raises the error of `not_written` where that cannot be done."""
+    """Write a page. Raises the error of `not_written` if that is not possible."""
     try:
         file.write_text(page, encoding="utf-8", errors="replace")
     except OSError as error:
@@ -49,6 +49,6 @@ def _hash(text: str) -> str:
 
 
 def _json(data: object) -> Markup:
-    """JSON that no HTML parser can mistake for the end of its element."""
+    """Return JSON in which no HTML parser can find the end of the script element."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     return Markup(text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"))

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 SIDE_PX = 640
 LEFT, TOP, RIGHT, BOTTOM = 64, 72, 300, 60
 SMALL_PX = 420
-"""The side of the canvas where there are several."""
+"""The side of each canvas if there are several."""
 ACROSS = 2
 HEADING = 40
 
@@ -39,7 +39,7 @@ BAD: Rgb = (176, 28, 28)
 
 @dataclass(frozen=True)
 class Panel:
-    """Where a canvas with its axes and its legend stands on the page; px. `left`, `top` are the canvas's own."""
+    """The position of a canvas on the page, in pixels; `left` and `top` do not include axes and legend."""
 
     left: int
     top: int
@@ -47,7 +47,7 @@ class Panel:
 
 
 def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
-    """Write the picture as a PNG file. Raises the error of `not_written` where that cannot be done."""
+    """Write the picture as a PNG file. Raises the error of `not_written` if that is not possible."""
     image = read(_png, evidence, report)
     try:
         file.write_bytes(image)
@@ -62,7 +62,7 @@ def _png(evidence: Evidence, report: Report) -> bytes:
 
 
 def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
-    """The picture as an image: of every trial; where there is no way to draw, it says so."""
+    """Return the picture of every trial as one image. If there is no trajectory to draw, the picture says so."""
     trials = evidence.views()
     panels = _panels(len(trials))
     page = _page(panels)
@@ -82,7 +82,7 @@ def draw_picture(evidence: Evidence, report: Report) -> Image.Image:
 
 
 def _panels(count: int) -> list[Panel]:
-    """One large canvas, or a grid of smaller ones."""
+    """Return one large canvas, or a grid of smaller ones."""
     if count == 1:
         return [Panel(LEFT, TOP, SIDE_PX)]
     wide, high = LEFT + SMALL_PX + RIGHT, HEADING + SMALL_PX + BOTTOM
@@ -101,7 +101,7 @@ def _font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
 
 
 def _axes(draw: ImageDraw.ImageDraw, panel: Panel) -> None:
-    """Metres along the left and the lower edge."""
+    """Draw the scale in metres along the left and the lower edge."""
     bottom = panel.top + panel.side
     font = _font(14)
     for metre in range(12):
@@ -139,7 +139,7 @@ def _cut(draw: ImageDraw.ImageDraw, text: str, width: float) -> str:
 
 
 def _legend(draw: ImageDraw.ImageDraw, scene: Scene, panel: Panel) -> None:
-    """Signs on a strip of water, as they look on the canvas, each with its meaning; the numbers below."""
+    """Draw the legend: each sign on the canvas's colour with its meaning, and the numbers below."""
     x, y = panel.left + panel.side + 20, panel.top
     font = _font(15)
     for role, text in scene.legend:
@@ -172,7 +172,7 @@ def _sign(draw: ImageDraw.ImageDraw, role: Role, at: tuple[int, int]) -> None:
 
 
 def _middle(draw: ImageDraw.ImageDraw, text: str, panel: Panel) -> None:
-    """A sentence across the canvas, below the start."""
+    """Draw a sentence in the lower half of the canvas."""
     at = (panel.left + panel.side / 2, panel.top + panel.side * 0.72)
     font = _font(20)
     left, top, right, bottom = draw.textbbox(at, text, font=font, anchor="mm")

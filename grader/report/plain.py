@@ -1,7 +1,7 @@
-"""What a student controls as plain text for a page: nothing that acts, hides or turns, and never too much of it.
+"""Make text from a student safe and short enough for a page.
 
-A page escapes everything it is given; this is about what escaping leaves: control characters, invisible ones, text
-that runs from right to left over its neighbours, and sheer size.
+The template escapes all HTML. This module handles what escaping leaves: control characters, invisible characters,
+text that runs from right to left over its neighbours, and very long text.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from dataclasses import dataclass
 from grader.common.words import UNSAFE_CATEGORIES
 
 COLOURS = re.compile(r"\x1b\[[0-9;?]*[ -/]*[@-~]")
-"""A terminal's control sequences."""
+"""Control sequences of a terminal."""
 LONGEST_LINE = 400
 GROWTH = {"&": 5, "<": 4, ">": 4, '"': 5, "'": 5}
-"""Bytes of what stands for a character in a page."""
+"""The number of bytes of the entity that replaces a character in a page."""
 
 
 @dataclass(frozen=True)
 class Cut:
-    """Lines from the beginning and the end of a text; `left_out` lines between them are not shown."""
+    """Lines from the beginning and the end of a text; `left_out` is the number of lines between them."""
 
     head: tuple[str, ...]
     tail: tuple[str, ...] = ()
@@ -29,7 +29,7 @@ class Cut:
 
 
 def plain_line(text: str) -> str:
-    """One line, its colours and line end taken off, its length limited, what acts or hides as a question mark."""
+    """Return the text as one line of limited length without colours, with "?" for each unsafe character."""
     line = text[: 2 * LONGEST_LINE].rstrip("\r\n")
     if not line.isprintable():
         line = COLOURS.sub("", line).expandtabs(4)
@@ -38,7 +38,7 @@ def plain_line(text: str) -> str:
 
 
 def cut(text: str, head_bytes: int, tail_bytes: int) -> Cut:
-    """The lines of a text as plain text, so many from its beginning and its end as fit into these sizes in a page."""
+    """Return as many lines from the beginning and the end of a text as fit into these sizes, as plain text."""
     lines = text.split("\n")
     if lines and not lines[-1].strip():
         lines.pop()
@@ -60,5 +60,5 @@ def _fitting(lines: list[str], room: int) -> tuple[str, ...]:
 
 
 def size(text: str) -> int:
-    """How many bytes a text takes in a page."""
+    """Return how many bytes a text takes in a page."""
     return len(text.encode("utf-8", "replace")) + sum(text.count(char) * (more - 1) for char, more in GROWTH.items())

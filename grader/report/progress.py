@@ -1,4 +1,4 @@
-"""Progress: what is being done, on standard error, so that the report can be piped."""
+"""Show the progress on standard error, so that the report on standard output can be piped."""
 
 from __future__ import annotations
 
@@ -13,24 +13,30 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Progress:
-    """`tell` says what is being done, `keep` what was found and stays to be read."""
+    """Two functions: `tell` shows what is being done now, `keep` prints a line that stays on the screen.
+
+    Calling the object is the same as calling `tell`:
+
+       with progress() as tell:
+           tell("Building with colcon")
+    """
 
     tell: Callable[[str], None]
     keep: Callable[[str], None]
 
     def __call__(self, text: str) -> None:
-        """Say what is being done."""
+        """Show what is being done now."""
         self.tell(text)
 
     def keep_all(self, lines: Iterable[str]) -> None:
-        """Say what stays, line by line."""
+        """Print lines that stay on the screen."""
         for line in lines:
             self.keep(line)
 
 
 @contextmanager
 def progress() -> Iterator[Progress]:
-    """Tell what is being done: one live line on a terminal, plain lines elsewhere."""
+    """Yield a Progress: one live line on a terminal, plain lines elsewhere."""
     if not sys.stderr.isatty():
 
         def line(text: str) -> None:

@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Report:
-    """All outcomes of one submission, and what is needed to make it again."""
+    """All outcomes of one submission, and what is needed to grade it again."""
 
     exercise: str
     exercise_title: str
     submission: str
     """The submission as the user named it."""
     digest: str
-    """sha256 of the submission's files."""
+    """The sha256 of the submission's files."""
     grader: str
     ros: str
     clock: str
@@ -30,12 +30,12 @@ class Report:
     seed: int | None
     outcomes: tuple[Outcome, ...]
     seconds: dict[str, float] = field(default_factory=dict)
-    """Wall time of each stage; not compared between two reports."""
+    """The wall time of each stage. Two reports are compared without it."""
     recording: str | None = None
     confined: bool = True
-    """False where a student's code ran with resource limits only, outside of a sandbox."""
+    """False if the student's code ran outside of a sandbox, with resource limits only."""
     exercise_digest: str = ""
-    """sha256 of exercise.toml: the checks and numbers that this report was judged by."""
+    """The sha256 of the exercise.toml with which this report was made."""
 
     @property
     def points(self) -> float:
@@ -44,26 +44,26 @@ class Report:
 
     @property
     def max(self) -> float:
-        """The points of all checks if each had passed, those included that the machine could not judge.
+        """The points of all checks together, including those that the machine could not judge.
 
-        Else a submission that makes the grading fail in the right place would have all points of what is left.
+        If they were left out, a submission could get full marks by breaking the grading of the checks that it fails.
         """
         return sum(outcome.max for outcome in self.outcomes)
 
     def with_status(self, status: Status) -> tuple[Outcome, ...]:
-        """The outcomes with this status, advice left out."""
+        """Return the outcomes with this status, without advice."""
         return tuple(o for o in self.outcomes if o.status is status and not o.advice)
 
     @property
     def warnings(self) -> tuple[Outcome, ...]:
-        """Failed or skipped checks that cost nothing, where nothing else is missing; else none."""
+        """The failed or skipped checks without points, if nothing else failed; otherwise nothing."""
         missing = (*self.with_status(Status.FAILED), *self.with_status(Status.SKIPPED))
         costs = any(outcome.max for outcome in missing) or self.max == 0 or self.with_status(Status.ERROR)
         return () if costs else missing
 
     @property
     def exit_code(self) -> int:
-        """0 passed, 1 some check that is worth points did not pass, 3 the grader or the machine is broken."""
+        """0 if all passed, 1 if a check with points did not pass, 3 if the grader or the machine is broken."""
         if self.with_status(Status.ERROR):
             return 3
         missing = self.with_status(Status.FAILED) or self.with_status(Status.SKIPPED)

@@ -1,4 +1,4 @@
-"""What the checks of a trial ask for, as shapes on the canvas and limits in the charts; each kind says so itself."""
+"""What the checks of a trial require, as shapes on the canvas and limits in the charts. Each kind describes its own."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def requested(evidence: Evidence) -> Iterator[Requested]:
-    """What each check of this trial asks for that is not hidden, in the order of the exercise."""
+    """Yield what each check of this trial requires, without hidden checks, in the order of the exercise."""
     for spec in evidence.exercise.checks:
         if spec.trial == evidence.trial.id and not spec.hidden:
             found = KINDS[spec.kind].request(evidence, spec.params)
@@ -24,26 +24,26 @@ def requested(evidence: Evidence) -> Iterator[Requested]:
 
 
 def requested_path(evidence: Evidence) -> Requested | None:
-    """The first path that is asked for; None where the turtle may drive as it likes."""
+    """Return the first required path, or None if the turtle may drive anywhere."""
     return next((each for each in requested(evidence) if each.path), None)
 
 
 def requested_interval(evidence: Evidence) -> Interval | None:
-    """The interval between two commands that is asked for first; None where it is free."""
+    """Return the first required interval between two commands, or None if no check requires one."""
     return next((each.interval for each in requested(evidence) if each.interval is not None), None)
 
 
 def requested_values(evidence: Evidence) -> tuple[float, ...] | None:
-    """The values of each command that are asked for first; None where they are free."""
+    """Return the first required values of the commands, or None if no check requires any."""
     return next((each.values for each in requested(evidence) if each.values is not None), None)
 
 
 def shapes_of(path: Requested) -> tuple[Line | Ring, ...]:
-    """The path as shapes on the canvas."""
+    """Return the path as shapes on the canvas."""
     rings = tuple(Ring("expected", centre, radius) for centre, radius in path.circles)
     return (*rings, *(Line("expected", points) for points in path.lines))
 
 
 def must_drive(evidence: Evidence) -> bool:
-    """Whether some check of this trial needs commands to the turtle."""
+    """Return whether a check of this trial needs commands to the turtle."""
     return any(KINDS[spec.kind].drives and spec.trial == evidence.trial.id for spec in evidence.exercise.checks)

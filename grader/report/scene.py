@@ -1,6 +1,6 @@
-"""Scene: what is drawn of a run on the turtle's canvas, as pure data in metres. picture.py paints it, svg.py too.
+"""Scene: what is drawn of a run on the turtle's canvas, as pure data in metres. picture.py and svg.py paint it.
 
-One description for the PNG, the page and notebooks, so that they can never tell different stories.
+The PNG, the page and the notebooks use the same scene, so they always show the same.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ TICK_M = 0.11
 
 @dataclass(frozen=True)
 class Scene:
-    """`shapes` from the lowest to the highest; `legend` what each role means; `facts` the numbers, one a line.
+    """What to draw: `shapes` from the lowest to the highest, the meaning of each role, and facts with numbers.
 
     `notice` says why there is no trajectory to draw; it is empty if there is one.
     """
@@ -36,7 +36,7 @@ class Scene:
 
 
 def scene_of(evidence: Evidence) -> Scene:
-    """What there is to draw of a run."""
+    """Return what there is to draw of a run."""
     recording = evidence.run.recording
     if recording is None:
         return Scene(notice="The node was not run.")
@@ -52,13 +52,13 @@ def scene_of(evidence: Evidence) -> Scene:
     path = requested_path(evidence)
     if path is not None:
         shapes += shapes_of(path)
-        legend.append(("expected", f"asked for: {path.path}"))
+        legend.append(("expected", f"required: {path.path}"))
     fitted = trajectory.circle if moved and path is not None and path.fits else None
     if fitted is not None and fitted.radius <= SIDE_M:
         shapes.append(Ring("fitted", (fitted.x, fitted.y), fitted.radius))
         legend.append(("fitted", f"best fit: radius {fitted.radius:.2f} m"))
         facts.append(f"centre ({fitted.x:.2f}, {fitted.y:.2f}) m")
-        facts.append(f"off the circle {fitted.rms:.3f} m RMS")
+        facts.append(f"RMS distance from the circle: {fitted.rms:.3f} m")
         facts.append(
             f"{abs(trajectory.turns):.2f} turns {'counter-clockwise' if trajectory.turns > 0 else 'clockwise'}"
         )
@@ -109,7 +109,7 @@ def _ticks(trajectory: Trajectory, times: list[float]) -> list[Line]:
 
 
 def _cross(trajectory: Trajectory) -> list[Line]:
-    """Two strokes where the turtle first was at a wall."""
+    """Return a cross where the turtle first touched a wall."""
     at = int(trajectory.wall.argmax()) + 1
     x, y = float(trajectory.x[at]), float(trajectory.y[at])
     if not (math.isfinite(x) and math.isfinite(y)):

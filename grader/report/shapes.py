@@ -1,4 +1,4 @@
-"""Shapes on the turtle's canvas, in metres, and how each role looks."""
+"""Shapes on the turtle's canvas, in metres, and the look of each role."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ Rgb = tuple[int, int, int]
 Role = Literal["trajectory", "expected", "fitted", "tick", "wall", "start"]
 
 SIDE_M = 499 / 45
-"""turtlesim's canvas: 500 pixels, 45 a metre."""
+"""The side of turtlesim's canvas (m): 500 pixels, 45 pixels per metre."""
 SEA: Rgb = (69, 86, 255)
 DEEP: Rgb = (16, 20, 84)
 
 
 @dataclass(frozen=True)
 class Look:
-    """How a role looks: its colour, the width of its lines and the length of its dashes (m); 0 for no dashes."""
+    """The look of a role: its colour, the width of its lines, and the length of its dashes (m; 0 for a solid line)."""
 
     color: Rgb
     width_m: float
@@ -37,7 +37,7 @@ LOOKS: dict[Role, Look] = {
 
 @dataclass(frozen=True)
 class Line:
-    """A line through the points (m)."""
+    """A line through points (m)."""
 
     role: Role
     points: tuple[Point, ...]
@@ -45,7 +45,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Ring:
-    """A circle; m."""
+    """A circle; centre and radius in metres."""
 
     role: Role
     centre: Point
@@ -54,7 +54,7 @@ class Ring:
 
 @dataclass(frozen=True)
 class Arrow:
-    """A slim triangle at a point (m), looking along theta (rad)."""
+    """A narrow triangle at a point (m) that points in the direction theta (rad)."""
 
     role: Role
     at: Point
@@ -63,7 +63,7 @@ class Arrow:
 
     @property
     def corners(self) -> tuple[Point, ...]:
-        """Its four corners (m)."""
+        """The four corners (m)."""
         corners = [(0.0, 1.0), (2.5, 0.6), (math.pi, 0.35), (-2.5, 0.6)]
         return tuple(
             (

@@ -1,7 +1,7 @@
-"""What an instructor should look at: submissions that the grader could not judge or read, while it could others.
+"""Find submissions that an instructor should look at, because the grader could not judge or read them.
 
-A fault of the machine meets one submission and then another. One that the grader fails at again and again, while it
-judges those beside it, may have been made for that.
+A fault of the machine hits submissions at random. A submission that the grader cannot judge again and again, while it
+judges the others, may have been made to break the grader.
 """
 
 from __future__ import annotations
@@ -16,22 +16,22 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 ERRORS = "errors"
-"""The key of a class's report that says how often in a row it ended with an error."""
+"""The key in a report of a class: how often in a row grading it ended with an error."""
 REPEATED = 2
-"""So many errors in a row are no chance any more."""
+"""After this many errors in a row, chance is unlikely."""
 UNREADABLE = "unreadable"
-"""The diagnosis of what broke the grader while it was read."""
+"""The diagnosis of a submission that the grader could not read completely."""
 
 
 def suspicions(graded: Sequence[tuple[Report, int]]) -> list[str]:
-    """For each report of a class and its number of errors in a row: why it should be looked at; empty where not."""
+    """Return for each (report, number of errors in a row) why an instructor should look at it; empty for most."""
     judged = sum(not report.with_status(Status.ERROR) for report, _ in graded)
     return [_suspicion(report, errors, judged) for report, errors in graded]
 
 
 def _suspicion(report: Report, errors: int, judged: int) -> str:
     if report.with_status(Status.ERROR) and errors >= REPEATED and judged:
-        return f"suspicious: it could not be judged {errors} times in a row, while others could"
+        return f"suspicious: it could not be judged {errors} times in a row, but other submissions could"
     if any(outcome.finding.diagnosis == UNREADABLE for outcome in report.outcomes):
         return "the grader could not read all of it"
     return ""

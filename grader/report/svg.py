@@ -1,7 +1,8 @@
-"""A scene as SVG, and the few words of SVG that the charts are written in too.
+"""Draw a scene as SVG, with the helpers for SVG that the charts use too.
 
-Colours and sizes are attributes, never styles: a page's Content-Security-Policy may forbid those, and a picture must
-look right alone (in a notebook) too. `currentColor` is the text's, so that it follows light and dark.
+Colours and sizes are attributes, never styles, because the Content-Security-Policy of a page may forbid styles, and a
+picture must also look right outside of a page (in a notebook). `currentColor` is the text colour, so the picture
+follows light and dark mode.
 """
 
 from __future__ import annotations
@@ -22,14 +23,14 @@ if TYPE_CHECKING:
 Attribute = str | float | None
 
 SIDE = 500.0
-"""The canvas in the picture's units."""
+"""The position and size of the canvas in the picture."""
 LEFT, TOP, RIGHT, BOTTOM = 60.0, 10.0, 10.0, 46.0
 FARTHEST = 1e5
-"""Coordinates beyond are cut off: a browser's numbers are small."""
+"""Larger coordinates are cut off, because browsers store them in small numbers."""
 
 
 def tag(name: str, *children: str, **attributes: Attribute) -> str:
-    """An element; `children` are SVG already, attribute values are escaped; "_" in their names stands for "-"."""
+    """Return an element. `children` are SVG; attribute values are escaped; "_" in attribute names becomes "-"."""
     given = "".join(
         f' {key.rstrip("_").replace("_", "-")}="{_value(value)}"'
         for key, value in attributes.items()
@@ -43,30 +44,30 @@ def _value(value: str | float) -> str:
 
 
 def coordinate(value: float) -> str:
-    """A number as SVG wants it: two decimals at most, none for infinity."""
+    """Format a number for SVG: at most two decimals, and never infinity."""
     if not math.isfinite(value):
         value = 0.0 if math.isnan(value) else math.copysign(FARTHEST, value)
     return f"{min(max(value, -FARTHEST), FARTHEST):.2f}".rstrip("0").rstrip(".")
 
 
 def words(text: str, x: float, y: float, anchor: str = "start", **attributes: Attribute) -> str:
-    """A text; whatever it says, it is one line of plain text."""
+    """Return a text element. Its content becomes one line of plain text."""
     given: dict[str, Attribute] = {"fill": "currentColor", "text_anchor": anchor, **attributes}
     return tag("text", escape(printable(text)), x=x, y=y, **given)
 
 
 def rgb(color: Rgb) -> str:
-    """A colour as CSS writes it."""
+    """Return a colour as CSS writes it."""
     return "#{:02x}{:02x}{:02x}".format(*color)
 
 
 def points(of: Iterable[Point]) -> str:
-    """Coordinates for a polyline or a polygon."""
+    """Return the coordinates for a polyline or a polygon."""
     return " ".join(f"{coordinate(x)},{coordinate(y)}" for x, y in of)
 
 
 def picture(*children: str, width: float, height: float, title: str, key: str, name: str, about: str = "") -> str:
-    """A whole picture that scales with its page; `key` is its sort, `name` tells it from all others of the page."""
+    """Return a whole picture that scales with its page; `key` is its kind, `name` is unique on the page."""
     named = [tag("title", escape(printable(title)), id=f"picture-{name}-title")]
     if about:
         named.append(tag("desc", escape(printable(about)), id=f"picture-{name}-about"))
@@ -86,13 +87,13 @@ def picture(*children: str, width: float, height: float, title: str, key: str, n
 
 
 def pixel(point: Point) -> Point:
-    """Where a point of the canvas (m) lies in the picture."""
+    """Return the position in the picture of a point of the canvas (m)."""
     scale = SIDE / SIDE_M
     return LEFT + point[0] * scale, TOP + SIDE - point[1] * scale
 
 
 def scene_svg(scene: Scene, *, turtle: bool = False, name: str = "canvas") -> str:
-    """The canvas with its axes; `turtle` adds one that a player may move, and the part of the way it has gone."""
+    """Draw the canvas with its axes; `turtle` adds a turtle and its trajectory so far, which a player can move."""
     scale = SIDE / SIDE_M
     shapes = "".join(_shape(shape, scale) for shape in scene.shapes)
     inside = [tag("rect", x=LEFT, y=TOP, width=SIDE, height=SIDE, fill=rgb(SEA)), tag("g", shapes)]
@@ -150,7 +151,7 @@ def _shape(shape: Line | Ring | Arrow, scale: float) -> str:
 
 
 def _axes() -> str:
-    """Metres along the left and the lower edge; every second one is written."""
+    """Draw the scale in metres along the left and the lower edge, with a number at every second metre."""
     marks = []
     for metre in range(12):
         x, y = pixel((metre, metre))
@@ -176,7 +177,7 @@ def _notice(text: str) -> str:
 
 
 def _turtle() -> str:
-    """A turtle at the origin that looks east, waiting to be moved; shown only where a script moves it."""
+    """Return a turtle at the origin that faces east. It is only visible if a script moves it."""
     shell = tag("ellipse", rx=15, ry=12, fill="#2f7d32", stroke="#ffffff", stroke_width=1.5)
     pattern = tag("path", d="M-6-7 L5-7 L10 0 L5 7 L-6 7 L-10 0Z", fill="none", stroke="#b9e6a5", stroke_width=1.5)
     skin: dict[str, Attribute] = {"fill": "#7cc576", "stroke": "#ffffff", "stroke_width": 1}
@@ -191,7 +192,7 @@ def _turtle() -> str:
 
 
 def sign(role: Role) -> str:
-    """What stands for a role in the legend: how it looks on the canvas."""
+    """Return the sign for a role in the legend, with its look on the canvas."""
     color, water = rgb(LOOKS[role].color), tag("rect", width=46, height=26, rx=3, fill=rgb(SEA))
     stroke: dict[str, Attribute] = {"stroke": color, "stroke_width": 4, "fill": "none"}
     trajectory = tag("path", d="M5 13H41", **{**stroke, "stroke": rgb(LOOKS["trajectory"].color)})

@@ -1,4 +1,4 @@
-"""The templates of assets/, filled in: all that is put into one is escaped, and a name that it lacks is an error."""
+"""Fill in the templates of assets/. All values are escaped, and a missing value is an error."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ASSETS = Path(__file__).parent / "assets"
 
 
 def fill(template: str, values: Mapping[str, object]) -> str:
-    """The text of a template with these values. Raises jinja2.UndefinedError where it asks for another."""
+    """Return the text of a template with these values. Raises jinja2.UndefinedError if a value is missing."""
     environment = Environment(
         loader=FileSystemLoader(ASSETS),
         autoescape=True,

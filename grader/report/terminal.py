@@ -1,7 +1,7 @@
-"""Report to the terminal: every check on a line, what to mend below it, the verdict last, where the eye rests.
+"""Print a report to the terminal: one line per check with details below it, and the verdict at the end.
 
-On a terminal with colours and a hanging indent; piped, the same words on one line each. All that a student wrote is
-printed as plain text: no markup, no control characters.
+A terminal gets colours and a hanging indent. A pipe gets the same words, each entry on one line. All text from a
+student is printed as plain text, without markup or control characters.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 NARROW = 50
-"""Columns: below, texts are not indented under their labels."""
+"""Columns. On a narrower terminal, texts are not indented under their labels."""
 
 SIGNS = {"passed": "✓", "failed": "✗", "skipped": "-", "error": "!", "advice": "i"}
 ASCII_SIGNS = {"passed": "ok", "failed": "FAIL", "skipped": "skip", "error": "ERROR", "advice": "note"}
@@ -31,7 +31,10 @@ STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "error":
 
 
 def render(report: Report, console: Console, *, brief: bool = False, verbose: bool = False) -> None:
-    """Print the report: of the checks only those that did not pass when `brief`, the clock always when `verbose`."""
+    """Print the report.
+
+    With `brief`, only checks that did not pass are printed. With `verbose`, the clock is always printed.
+    """
     _line(console, Text(printable(f"{report.exercise_title}: {report.submission}"), style="bold"))
     told = ""
     for outcome in report.outcomes:
@@ -41,33 +44,31 @@ def render(report: Report, console: Console, *, brief: bool = False, verbose: bo
     console.print()
     if brief:
         amount = count(len(report.with_status(Status.PASSED)), "check")
-        _line(
-            console, Text(f"{amount} passed. In a higher window, or with `grader check`, all are listed.", style="dim")
-        )
+        _line(console, Text(f"{amount} passed. A higher window or `grader check` lists them.", style="dim"))
     _line(console, _verdict(report))
     for text in _footnotes(report, verbose=verbose):
         _line(console, Text(text, style="dim"))
 
 
 def early(outcomes: Sequence[Outcome]) -> list[str]:
-    """Lines on what the files alone tell, to be read while the rest is built and run."""
+    """Return lines about what is already wrong in the files, to be read while the package is built and run."""
     told = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
     lines = [
         f"{outcome.title}: {finding.observed}" + (f" ({finding.where})" if finding.where else "")
         for outcome, finding in told
     ]
-    return [printable(f"Not right, as the files say: {line}") for line in lines]
+    return [printable(f"Already wrong in the files: {line}") for line in lines]
 
 
 def _look(outcome: Outcome) -> str:
-    """How the outcome is told: its status, or "advice" for advice that was not followed."""
+    """Return the status of the outcome, or "advice" for advice that was not followed."""
     if outcome.advice and outcome.status is Status.FAILED:
         return "advice"
     return outcome.status.value
 
 
 def _check(outcome: Outcome, console: Console, told: str) -> None:
-    """One check. What was `told` of the check before it is not said again: one cause may stop many."""
+    """Print one check. If it has the same message as the check before (`told`), the message is not repeated."""
     look = _look(outcome)
     signs = SIGNS if console.encoding.lower().startswith("utf") else ASCII_SIGNS
     head = Text(f"{signs[look]} ", style=STYLES[look])
@@ -110,7 +111,7 @@ def _verdict(report: Report) -> Text:
 def _footnotes(report: Report, *, verbose: bool) -> list[str]:
     clock = {"simulated": "Judged in simulated time", "wall": "Judged in wall time"}.get(report.clock, "")
     why = printable(report.clock_why)
-    # Simulated time judges nearly all nodes: told where somebody wants to know, or where it was not so.
+    # Nearly all nodes are judged in simulated time, so that is printed only on request or if wall time was used too.
     simulated_alone = report.clock == "simulated" and "in wall time: " not in why
     notes = [] if simulated_alone and not verbose else [f"{clock}: {why}" if clock and why else clock or why]
     if report.seed is not None:
@@ -127,5 +128,5 @@ def _points(points: float) -> str:
 
 
 def _line(console: Console, text: Text) -> None:
-    """One line; piped, it is not wrapped."""
+    """Print one line. It is not wrapped if it goes to a pipe."""
     console.print(text, soft_wrap=not console.is_terminal, highlight=False, markup=False)

@@ -1,4 +1,4 @@
-"""The verdict on a submission in one line, the same wherever it is told."""
+"""The verdict on a submission in one line, the same in every format."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ Tone = Literal["passed", "failed", "error"]
 
 
 def tone(report: Report) -> Tone:
-    """How the verdict is meant: "error" where the machine failed."""
+    """Return the kind of verdict; "error" if the machine failed."""
     if report.with_status(Status.ERROR):
         return "error"
     return "failed" if report.exit_code else "passed"
 
 
 def verdict(report: Report) -> str:
-    """One sentence or two: whether it passed, with how many points."""
+    """Return one or two sentences: whether the submission passed, and with how many points."""
     points = f"{report.points:g} of {report.max:g} points"
     errors, failed = report.with_status(Status.ERROR), report.with_status(Status.FAILED)
     skipped = report.with_status(Status.SKIPPED)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# setup.sh of a Gradescope autograder: runs once, as root, when Gradescope builds the image. Made part of the archive by
-# `grader gradescope build`. Not tried at Gradescope.
+# setup.sh of a Gradescope autograder: runs once, as root, when Gradescope builds the image. `grader gradescope build`
+# adds it to the archive. Not tried at Gradescope.
 set -euo pipefail
 apt-get update -q
 apt-get install -y -q bubblewrap cmake g++ make python3-dev python3-venv

@@ -1,5 +1,5 @@
 "use strict";
-// Sorts and filters the table. The page is whole without it.
+// Sorts and filters the table. The page is complete without this script.
 (function () {
   var table = document.getElementById("table");
   var body = table.tBodies[0];
@@ -20,7 +20,7 @@
     var header = headers[column];
     var number = header.dataset.sort === "number";
     var now = header.getAttribute("aria-sort");
-    // Numbers begin with the largest only where that is asked for: first click up, second down.
+    // The first click sorts upwards, the second one downwards.
     var direction = now === "ascending" ? -1 : 1;
     var keyed = rows.map(function (row, index) { return { row: row, key: value(row, column), index: index }; });
     keyed.sort(function (a, b) {

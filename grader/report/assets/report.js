@@ -1,5 +1,5 @@
 "use strict";
-// The player: puts the turtle where it was at a time, and moves the time on. The page is whole without it.
+// The player shows the turtle at a time and advances the time. The page is complete without this script.
 function replay(run, view) {
   function find(name) { return view.querySelector("." + name); }
   if (run.t.length < 2) return;
@@ -19,7 +19,7 @@ function replay(run, view) {
     return low;
   }
 
-  // The way up to each frame, as a text that grows, so that a moment's part of it is a slice.
+  // The path as one string and its length at each frame: the path up to a time is then a slice of the string.
   var points = "", ends = [], px = [], py = [];
   for (var i = 0; i < run.t.length; i++) {
     var known = run.x[i] !== null && run.y[i] !== null;
@@ -93,7 +93,7 @@ JSON.parse(document.getElementById("data").textContent).forEach(function (run, i
   replay(run, document.querySelectorAll(".run")[index]);
 });
 
-// On paper everything that explains is open; the logs stay as the reader left them.
+// For printing, all sections are opened, but logs stay as the reader left them.
 (function () {
   var opened = [];
   window.addEventListener("beforeprint", function () {

@@ -1,4 +1,4 @@
-"""A small class to grade: right, wrong and hostile submissions, as folders and archives, some with nothing to grade."""
+"""A small class to grade: right, wrong and hostile submissions, as folders and archives, some without a package."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from grader.tests.case import ROOT, copy_solution
 STEP = "03-circle-publisher"
 GRADER = str(Path(sys.executable).with_name("grader"))
 ACTS = "::error::owned ##[error]"
-"""The name of a folder that a CI would take for a command."""
+"""The name of a folder that a CI could read as a command."""
 POINTS = {
     "anna": 100.0,
     "ben": 100.0,
@@ -67,7 +67,7 @@ def command(*arguments: object) -> list[str]:
 
 
 def environment(**more: str) -> dict[str, str]:
-    """As a terminal's, whatever runs these tests."""
+    """A report as a terminal shows it, on any machine."""
     return {**{name: value for name, value in os.environ.items() if name not in ("CI", "GITHUB_ACTIONS")}, **more}
 
 
@@ -84,7 +84,7 @@ def grade(*arguments: object, **env: str) -> subprocess.CompletedProcess[str]:
 
 
 def reports(out: Path) -> dict[str, dict[str, Any]]:
-    """Student -> report, of every result in the folder."""
+    """Return student -> report for every result in the folder."""
     found = [json.loads(file.read_text("utf-8")) for file in sorted((out / "reports").glob("*.json"))]
     by_student = {data["student"]: data for data in found}
     assert len(by_student) == len(found)
@@ -92,7 +92,7 @@ def reports(out: Path) -> dict[str, dict[str, Any]]:
 
 
 def judged(out: Path) -> dict[str, list[tuple[Any, ...]]]:
-    """What two gradings must agree on: every check's status, points, diagnosis and cause."""
+    """Return what two gradings must agree on: status, points, diagnosis and cause of every check."""
     return {
         student: [tuple(outcome[key] for key in COMPARED) for outcome in report["outcomes"]]
         for student, report in reports(out).items()

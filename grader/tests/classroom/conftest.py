@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Run:
-    """A class, and what grading it undisturbed has left."""
+    """A class, and the results of an undisturbed grading of it."""
 
     submitted: Path
     out: Path

@@ -1,4 +1,4 @@
-"""What ended with an `error` is graded once more where others could be judged, and told where it does so again."""
+"""A submission that ends with an `error` is graded again if others could be judged. A repeated error is suspicious."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ STEP = "03-circle-publisher"
 
 
 class Scripted:
-    """An engine that gives each student's submission these ends, one a time; the last one again and again."""
+    """An engine that ends each student's submission as planned: one end per try, and the last one again and again."""
 
     def __init__(self, ends: dict[str, list[str]]) -> None:
         self.graded: Counter[str] = Counter()
@@ -78,7 +78,7 @@ def attention(out: Path) -> dict[str, str]:
     return {row["submission"]: row["attention"] for row in csv.DictReader(io.StringIO(text))}
 
 
-def test_an_error_by_chance_is_gone_the_second_time(tmp_path: Path, out: Path) -> None:
+def test_an_error_by_chance_is_graded_again(tmp_path: Path, out: Path) -> None:
     ends = {"anna": ["passed"], "ben": ["error", "passed"], "clara": ["failed"]}
     engine = Scripted(ends)
     done = graded(tmp_path / "class", out, engine, ends)
@@ -87,7 +87,7 @@ def test_an_error_by_chance_is_gone_the_second_time(tmp_path: Path, out: Path) -
     assert set(attention(out).values()) == {""}
 
 
-def test_an_error_that_repeats_while_others_are_judged_is_told(tmp_path: Path, out: Path) -> None:
+def test_an_error_that_repeats_while_others_are_judged_is_suspicious(tmp_path: Path, out: Path) -> None:
     ends = {"anna": ["passed"], "ben": ["error"], "clara": ["died"]}
     engine = Scripted(ends)
     done = graded(tmp_path / "class", out, engine, ends)
@@ -98,14 +98,14 @@ def test_an_error_that_repeats_while_others_are_judged_is_told(tmp_path: Path, o
     assert "suspicious: it could not be judged 2 times in a row" in told["ben"]
     assert "suspicious" in told["clara"]
     assert "2 times in a row" in (out / "index.html").read_text("utf-8")
-    # The next run goes on counting, until it is judged.
+    # The next run continues the count until the submission is judged.
     assert graded(tmp_path / "class", out, Scripted(ends), ends)["ben"].errors == 2 * TRIES
     ends["ben"] = ["failed"]
     assert graded(tmp_path / "class", out, Scripted(ends), ends)["ben"].errors == 0
     assert attention(out)["ben"] == ""
 
 
-def test_where_the_machine_judges_nothing_nobody_is_suspected_nor_tried_again(
+def test_if_nothing_is_judged_no_submission_is_suspicious_or_tried_again(
     tmp_path: Path, out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     ends = {"anna": ["error"], "ben": ["error"]}

@@ -1,4 +1,4 @@
-"""Dask's workers: real ones, that are killed, and that something kills."""
+"""Grading with real Dask workers, some of which are killed by the test or by a submission."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class Cluster:
-    """A scheduler, and workers that are started and killed."""
+    """A scheduler, and workers that the test starts and kills."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -40,7 +40,7 @@ class Cluster:
         self.address = json.loads(file.read_text())["address"].removeprefix("tcp://")
 
     def worker(self, *options: str) -> subprocess.Popen[bytes]:
-        """A worker of one thread. With a nanny, as it is by default, another takes the place of one that died."""
+        """Start a worker with one thread. With a nanny, which is the default, a worker that dies is replaced."""
         return self._start("worker", f"tcp://{self.address}", "--nthreads", "1", *options)
 
     def _start(self, *arguments: object) -> subprocess.Popen[bytes]:
@@ -54,7 +54,7 @@ class Cluster:
         return child
 
     def close(self) -> None:
-        # A nanny that is just making a worker hears of no gentler end.
+        # A nanny that is just starting a worker ignores a gentler signal.
         for process in reversed(self.processes):
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
@@ -71,19 +71,21 @@ def cluster(tmp_path: Path) -> Iterator[Cluster]:
     made.close()
 
 
-def test_what_kills_workers_is_set_aside_and_the_others_go_on(cluster: Cluster, tmp_path: Path) -> None:
+def test_a_submission_that_kills_workers_is_an_error_and_the_others_are_graded(
+    cluster: Cluster, tmp_path: Path
+) -> None:
     cluster.worker()
     order = order_of(make_four(tmp_path / "class"))
     done = graded(order, DaskEngine(cluster.address, None), tmp_path / "grades")
     assert_set_aside(done)
 
 
-def test_what_a_lost_worker_had_is_graded_by_another(cluster: Cluster, tmp_path: Path) -> None:
+def test_the_submission_of_a_lost_worker_is_graded_by_another(cluster: Cluster, tmp_path: Path) -> None:
     lost = cluster.worker("--no-nanny")
     copy_solution(STEP, tmp_path / "class" / "anna")
 
     class Striking(DaskEngine):
-        """Loses its only worker while that has the submission; another one joins."""
+        """An engine that loses its only worker during a submission. Then another worker joins."""
 
         def events(self, timeout_s: float) -> list[Event]:
             if self._running and lost.poll() is None:
@@ -97,14 +99,14 @@ def test_what_a_lost_worker_had_is_graded_by_another(cluster: Cluster, tmp_path:
     assert done["anna"].report.points == 100.0
 
 
-def test_no_scheduler_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_scheduler_is_a_usage_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(dask_engine, "CONNECT_S", 0.2)
     with pytest.raises(UsageError, match=r"No Dask scheduler answers at 127\.0\.0\.1:1"):
         DaskEngine("127.0.0.1:1", None)
 
 
 @pytest.mark.exhaustive
-def test_a_class_by_dask_is_the_same_class(cluster: Cluster, undisturbed: Run, tmp_path: Path) -> None:
+def test_dask_gives_the_same_results(cluster: Cluster, undisturbed: Run, tmp_path: Path) -> None:
     for _ in range(2):
         cluster.worker()
     arguments = ("--exercise", STEP, "--out", tmp_path / "grades", "--engine", f"dask://{cluster.address}")

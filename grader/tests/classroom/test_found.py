@@ -1,4 +1,4 @@
-"""Where submissions are found, and whose they are."""
+"""Which submissions are found, and which students they belong to."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_a_folder_of_clones(tmp_path: Path) -> None:
     ]
 
 
-def test_a_link_to_somebody_elses_exercise_is_not_followed(tmp_path: Path) -> None:
+def test_a_link_to_the_exercise_of_another_student_is_not_followed(tmp_path: Path) -> None:
     copy_solution(STEP, tmp_path / "anna" / "exercises" / STEP / "my_robot_controller")
     (tmp_path / "ben").mkdir()
     (tmp_path / "ben" / "exercises").symlink_to(tmp_path / "anna" / "exercises")
@@ -72,16 +72,16 @@ def test_a_link_to_somebody_elses_exercise_is_not_followed(tmp_path: Path) -> No
     assert isinstance(read(found, find_exercise(STEP), "ben"), Refused)
 
 
-def test_the_same_student_twice_is_told(tmp_path: Path) -> None:
+def test_two_submissions_of_one_student_are_a_usage_error(tmp_path: Path) -> None:
     (tmp_path / "anna").mkdir()
     (tmp_path / "anna.zip").touch()
     (tmp_path / "ben").mkdir()
     anna, ben = find_submissions([tmp_path], STEP, tmp_path / "grades")
-    assert re.search(r"anna is there twice: .*anna and .*anna\.zip", anna.refused)
+    assert re.search(r"anna has 2 submissions: .*anna and .*anna\.zip", anna.refused)
     assert (ben.student, ben.refused) == ("ben", "")
 
 
-def test_a_package_or_an_archive_by_itself_is_one_submission(tmp_path: Path) -> None:
+def test_a_package_or_an_archive_alone_is_one_submission(tmp_path: Path) -> None:
     copy_solution(STEP, tmp_path / "anna")
     zipped(tmp_path / "anna", tmp_path / "ben.zip", "my_robot_controller")
     found = find_submissions([tmp_path / "anna", tmp_path / "ben.zip"], STEP, tmp_path / "grades")
@@ -107,7 +107,7 @@ def test_answers_are_found_below_a_folder(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("change", ["content", "mode", "new file"])
-def test_the_fingerprint_follows_what_is_read(tmp_path: Path, change: str) -> None:
+def test_the_fingerprint_changes_only_with_files_that_are_read(tmp_path: Path, change: str) -> None:
     copy_solution(STEP, tmp_path / "anna")
     exercise, found = find_exercise(STEP), Found("anna", STEP, tmp_path / "anna")
     before = fingerprint(found, exercise)

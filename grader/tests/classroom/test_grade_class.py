@@ -1,4 +1,4 @@
-"""`grader grade` as an instructor runs it, on a small class, with everything real."""
+"""`grader grade` on a small class, with the real programs."""
 
 from __future__ import annotations
 
@@ -41,9 +41,12 @@ def test_every_submission_has_a_page(undisturbed: Run) -> None:
 
 @pytest.mark.parametrize(
     ("student", "diagnosis", "said"),
-    [("gina", "no-package", "There is no package in gina"), ("hans", "no-package", "hans.zip is no .zip or .tar.gz")],
+    [
+        ("gina", "no-package", "There is no package in gina"),
+        ("hans", "no-package", "hans.zip is not a .zip or .tar.gz"),
+    ],
 )
-def test_nothing_to_grade_is_no_points_with_the_reason(
+def test_a_submission_without_a_package_gets_no_points_and_a_reason(
     undisturbed: Run, student: str, diagnosis: str, said: str
 ) -> None:
     report = reports(undisturbed.out)[student]
@@ -55,7 +58,7 @@ def test_nothing_to_grade_is_no_points_with_the_reason(
     assert {outcome["status"] for outcome in others} == {"skipped"}
 
 
-def test_piped_there_is_a_line_a_submission_and_none_acts_on_a_ci(undisturbed: Run) -> None:
+def test_a_pipe_gets_one_line_per_submission_and_none_controls_a_ci(undisturbed: Run) -> None:
     lines = undisturbed.done.stderr.splitlines()
     assert sum(line.startswith("[") for line in lines) == len(POINTS)
     assert not [line for line in lines if line.lstrip().startswith("::") or "##[" in line]
@@ -71,7 +74,7 @@ def test_a_second_run_grades_only_what_changed(undisturbed: Run, tmp_path: Path)
     shutil.rmtree(submitted / ACTS)
     done = grade(submitted, "--exercise", STEP, "--out", out)
     assert "8 submissions: 7 graded before, 1 to grade (1 changed)." in done.stdout
-    assert "1 result in" in done.stdout  # of the submission that is gone: left as it is, and not counted
+    assert "1 result in" in done.stdout  # The result of the submission that was removed stays and is not counted.
     again = {name for name, when in before.items() if (out / "reports" / name).stat().st_mtime_ns != when}
     assert again == {f"gina.{STEP}.json", f"gina.{STEP}.html"}
     assert sorted(row["submission"] for row in rows(out)) == sorted(POINTS.keys() - {ACTS})
@@ -106,19 +109,21 @@ def test_fail_under_is_the_exit_code(undisturbed: Run, under: str, code: int) ->
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["{class}"], "Say it with --exercise"),
+        (["{class}"], "Name it with --exercise"),
         (["{class}", "--exercise", "99"], "there is no exercise"),
         (["{class}/nowhere", "--exercise", STEP], "There is no"),
         (["{class}/gina/notes.txt", "--exercise", STEP], "neither a folder nor an archive"),
         (["{class}/gina", "--exercise", STEP], "There is no submission"),
-        (["{class}", "--exercise", STEP, "--engine", "cloud"], "it must be local or dask://HOST:PORT"),
+        (["{class}", "--exercise", STEP, "--engine", "cloud"], "It must be local or dask://HOST:PORT"),
         (["{class}", "--exercise", STEP, "--checks", "{class}"], "There are no checks in"),
-        (["{class}", "--exercise", STEP, "--roster", "{class}/hans.zip"], "is no roster"),
-        (["{class}", "--exercise", STEP, "--out", "{class}"], "holds something else than results"),
+        (["{class}", "--exercise", STEP, "--roster", "{class}/hans.zip"], "is not a roster"),
+        (["{class}", "--exercise", STEP, "--out", "{class}"], "contains files that are not results"),
         (["{class}", "--exercise", STEP, "--jobs", "0"], "jobs"),
     ],
 )
-def test_a_wrong_command_is_a_sentence(undisturbed: Run, tmp_path: Path, arguments: list[str], said: str) -> None:
+def test_a_wrong_command_is_one_sentence_and_exit_code_2(
+    undisturbed: Run, tmp_path: Path, arguments: list[str], said: str
+) -> None:
     given = [text.replace("{class}", str(undisturbed.submitted)) for text in arguments]
     done = grade(*([] if "--out" in given else ["--out", tmp_path / "new"]), *given)
     told = " ".join(done.stderr.split())
@@ -134,7 +139,7 @@ def test_without_a_sandbox_nothing_is_run(undisturbed: Run, tmp_path: Path) -> N
     assert not (tmp_path / "new").exists()
 
 
-def test_who_trusts_the_submissions_has_them_graded_without(tmp_path: Path) -> None:
+def test_trusted_submissions_are_graded_without_a_sandbox(tmp_path: Path) -> None:
     (tmp_path / "sitecustomize.py").write_text(WITHOUT_SANDBOX)
     copy_solution(STEP, tmp_path / "class" / "anna")
     command = (tmp_path / "class", "--exercise", STEP, "--out", tmp_path / "new", "--trust-submissions")
@@ -156,10 +161,10 @@ def test_two_runs_at_once_do_not_share_a_folder(undisturbed: Run, tmp_path: Path
         other.stdout.readline()
         done = grade(undisturbed.submitted, "--exercise", STEP, "--out", out)
         other.communicate(b"\n")
-    assert (done.returncode, "Another `grader grade` works on" in done.stderr) == (2, True), done.stderr
+    assert (done.returncode, "Another `grader grade` is using" in done.stderr) == (2, True), done.stderr
 
 
-def test_what_a_killed_run_was_writing_is_taken_away(undisturbed: Run, tmp_path: Path) -> None:
+def test_partial_files_of_a_killed_run_are_removed(undisturbed: Run, tmp_path: Path) -> None:
     out = tmp_path / "grades"
     shutil.copytree(undisturbed.out, out)
     leftover = out / "reports" / f"anna.{STEP}.html.partial"
@@ -172,9 +177,7 @@ def test_what_a_killed_run_was_writing_is_taken_away(undisturbed: Run, tmp_path:
     ("roster", "expected"),
     [({}, "numbers-of-another"), ({"anna": "SOMEBODY"}, "numbers-of-another"), ({"anna": "{owner}"}, None)],
 )
-def test_numbers_drawn_for_another_student_do_not_count(
-    tmp_path: Path, roster: dict[str, str], expected: str | None
-) -> None:
+def test_numbers_of_another_student_do_not_count(tmp_path: Path, roster: dict[str, str], expected: str | None) -> None:
     step = "07-challenges"
     copy_solution(step, tmp_path / "anna")
     lines = (tmp_path / "anna" / "my_numbers.toml").read_text("utf-8").splitlines()
@@ -188,7 +191,7 @@ def test_numbers_drawn_for_another_student_do_not_count(
     assert [each.finding.diagnosis for each in outcomes if each.kind == "own_numbers"] == [expected]
 
 
-def test_nbgraders_tree_says_student_and_exercise(undisturbed: Run, tmp_path: Path) -> None:
+def test_nbgraders_folders_name_student_and_exercise(undisturbed: Run, tmp_path: Path) -> None:
     submitted, out = tmp_path / "submitted", tmp_path / "grades"
     shutil.copytree(undisturbed.submitted / "gina", submitted / "gina" / STEP)
     copy_solution("02-discover-topics", submitted / "anna" / "02-discover-topics")
@@ -202,7 +205,7 @@ def test_nbgraders_tree_says_student_and_exercise(undisturbed: Run, tmp_path: Pa
 
 
 @pytest.mark.exhaustive
-def test_a_class_graded_alone_and_four_at_once_under_load_is_one(tmp_path: Path) -> None:
+def test_load_and_parallel_grading_do_not_change_results(tmp_path: Path) -> None:
     submitted = make_class(tmp_path / "submitted")
     first = grade(submitted, "--exercise", STEP, "--out", tmp_path / "idle", "--jobs", "1")
     assert first.returncode == 0, first.stderr

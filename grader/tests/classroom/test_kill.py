@@ -1,4 +1,4 @@
-"""A run that is killed, or that cannot write, goes on by the same command; nothing is lost, nothing is there twice."""
+"""A run that was killed or could not write continues with the same command. No result is lost or doubled."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 Blow = Literal["grader", "worker", "disk"]
 LONGEST_S = 600.0
 NO_ROOM = 4096
-"""Bytes: no report is as small."""
+"""Bytes. Every report is larger."""
 
 
 class Killer:
-    """Runs the command, strikes at instants drawn from a seed, and starts it again until it comes through."""
+    """Run the command, interfere at random times drawn from a seed, and start it again until it finishes."""
 
     def __init__(self, run: Run, out: Path, seed: int) -> None:
         self._arguments = (run.submitted, "--exercise", STEP, "--out", out)
@@ -40,7 +40,7 @@ class Killer:
         self.struck: list[Blow] = []
 
     def until_struck(self, blows: list[Blow], within_s: float) -> None:
-        """Strike once each; a run that was through before is one more."""
+        """Interfere in each way once. If a run finishes before, it is repeated."""
         for blow in blows:
             with subprocess.Popen(
                 command(*self._arguments),
@@ -66,7 +66,7 @@ class Killer:
             if blow == "grader":
                 os.kill(pid, signal.SIGKILL)
             elif blow == "disk":
-                # As if it were full from now on, for the grader alone.
+                # From now on the grader finds the disk full.
                 resource.prlimit(pid, resource.RLIMIT_FSIZE, (NO_ROOM, resource.RLIM_INFINITY))
             else:
                 workers = workers_of(pid)
@@ -79,7 +79,7 @@ class Killer:
 
 
 def until(child: subprocess.Popen[bytes], seen: Callable[[], bool], seconds: float) -> None:
-    """Wait until something is seen, the child has ended, or the time is over."""
+    """Wait until a condition holds, the child has ended, or the time is over."""
     end = time.monotonic() + seconds
     while child.poll() is None and time.monotonic() < end and not seen():
         time.sleep(0.01)
@@ -90,7 +90,7 @@ def has_workers(pid: int) -> bool:
 
 
 def workers_of(pid: int) -> list[int]:
-    """The grader's workers; it has other children too, for a moment."""
+    """Return the worker processes. For a moment the grader may have other children too."""
     found: list[int] = []
     with suppress(OSError):  # it has ended
         for task in Path(f"/proc/{pid}/task").iterdir():
@@ -105,7 +105,7 @@ def assert_nothing_lost(run: Run, out: Path) -> None:
     assert files == sorted(file.name for file in (run.out / "reports").iterdir())
 
 
-def test_killed_three_times_and_started_again_nothing_is_lost(undisturbed: Run, tmp_path: Path) -> None:
+def test_no_result_is_lost_when_the_run_is_killed_three_times(undisturbed: Run, tmp_path: Path) -> None:
     out = tmp_path / "grades"
     killer = Killer(undisturbed, out, seed=8)
     killer.until_struck(["grader", "disk", "worker"], within_s=2.0)
@@ -116,13 +116,13 @@ def test_killed_three_times_and_started_again_nothing_is_lost(undisturbed: Run, 
 
 @pytest.mark.exhaustive
 @pytest.mark.timeout(7200)
-def test_killed_fifty_times_at_random_instants_nothing_is_lost(undisturbed: Run, tmp_path: Path) -> None:
+def test_no_result_is_lost_when_the_run_is_killed_fifty_times(undisturbed: Run, tmp_path: Path) -> None:
     struck: list[Blow] = []
     seed = 0
     while len(struck) < 50:
         out = tmp_path / f"grades-{seed}"
         killer = Killer(undisturbed, out, seed)
-        # A run whose worker was killed comes through by itself: that one is the last.
+        # A run whose worker was killed finishes by itself, so it is the last one.
         blows: list[Blow] = ["grader", "disk", "grader"]
         random.Random(seed).shuffle(blows)
         killer.until_struck([*blows, "worker"], within_s=6.0)
@@ -133,17 +133,15 @@ def test_killed_fifty_times_at_random_instants_nothing_is_lost(undisturbed: Run,
     assert {"grader", "worker", "disk"} <= set(struck)
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root makes a small disk")
-def test_on_a_full_disk_it_stops_with_a_sentence_and_goes_on_when_there_is_room(
-    undisturbed: Run, tmp_path: Path
-) -> None:
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can mount a small disk")
+def test_a_full_disk_stops_the_run_with_a_message_and_it_continues_later(undisturbed: Run, tmp_path: Path) -> None:
     disk = tmp_path / "disk"
     disk.mkdir()
     mounted = subprocess.run(
         ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk], capture_output=True, check=False
     )
     if mounted.returncode != 0:
-        pytest.skip("no small disk can be made here")
+        pytest.skip("a small disk cannot be mounted here")
     try:
         two = tmp_path / "two"
         for student in ("anna", "gina"):

@@ -1,4 +1,4 @@
-"""Results on the disk: whole or not at all, one a submission."""
+"""Results on disk: one per submission, complete or not there at all."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
 KEY = Key("submission", "anna", "exercise", "grader", "ros", "options")
 
 
-def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
+def test_a_saved_result_can_be_loaded(tmp_path: Path) -> None:
     with opened(tmp_path / "grades") as results:
         saved = results.save("anna", report("failed"), KEY, b"<p>page")
         assert results.load("anna", saved.report.exercise) == saved
         assert results.load("ben", saved.report.exercise) is None
 
 
-def test_without_its_page_a_result_is_not_finished(tmp_path: Path) -> None:
+def test_a_result_without_a_page_is_not_complete(tmp_path: Path) -> None:
     with opened(tmp_path / "grades") as results:
         saved = results.save("anna", report("failed"), KEY, b"<p>page")
         (tmp_path / "grades" / "reports" / saved.page).unlink()
         assert results.load("anna", saved.report.exercise) is None
 
 
-def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_leaves_the_old_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with opened(tmp_path / "grades") as results:
         saved = results.save("anna", report("failed"), KEY, b"<p>page")
 
@@ -42,33 +42,33 @@ def test_a_full_disk_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.M
             raise OSError(errno.ENOSPC, "No space left on device")
 
         monkeypatch.setattr("os.fsync", full)
-        with pytest.raises(MachineError, match=r"No space left on device.*the same command goes on"):
+        with pytest.raises(MachineError, match=r"No space left on device.*the same command continues"):
             results.save("anna", report("passed"), KEY, b"<p>new")
         assert results.load("anna", saved.report.exercise) == saved
         assert not list((tmp_path / "grades").rglob("*.partial"))
 
 
-def test_a_folder_of_somebody_else_is_not_touched(tmp_path: Path) -> None:
+def test_a_folder_with_other_files_is_not_touched(tmp_path: Path) -> None:
     (tmp_path / "index.html").write_text("mine")
-    with pytest.raises(UsageError, match="holds something else"), opened(tmp_path):
+    with pytest.raises(UsageError, match="contains files that are not results"), opened(tmp_path):
         pass
     assert [file.name for file in tmp_path.iterdir()] == ["index.html"]
 
 
-def test_the_key_tells_what_changed() -> None:
+def test_the_key_shows_what_changed() -> None:
     assert changed(KEY.to_data(), KEY) == ()
     assert changed({**KEY.to_data(), "grader": "older"}, KEY) == ("grader",)
     assert changed({}, KEY) == ("submission", "student", "exercise", "grader", "ros", "options")
 
 
-def test_the_key_of_the_grader_has_its_version_and_sources() -> None:
+def test_the_key_of_the_grader_has_its_version_and_its_sources() -> None:
     version, sources = grader_key().split()
     assert version.count(".") == 2
     assert len(sources) == 16
 
 
 @given(st.text(min_size=1, max_size=300).filter(lambda text: "/" not in text and "\0" not in text))
-def test_every_name_becomes_a_file_name(student: str) -> None:
+def test_every_name_becomes_a_valid_file_name(student: str) -> None:
     name = file_name(student, "03-circle-publisher")
     assert "/" not in name
     assert not name.startswith(".")

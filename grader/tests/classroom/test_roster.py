@@ -24,14 +24,14 @@ def file(tmp_path: Path) -> Path:
         "\r\nsubmission;student\r\nteam 1;ada\r\nteam 2;bob\r\n",
         '\n Student , Room,SUBMISSION\n"ada","1, left",  team 1\n\n,,\nbob,2,team 2,,\n',
     ],
-    ids=["plain", "byte order mark", "semicolons", "blanks, capitals, quotes and other columns"],
+    ids=["plain", "byte order mark", "semicolons", "spaces, capitals, quotes and other columns"],
 )
-def test_what_a_spreadsheet_writes_is_understood(file: Path, text: str) -> None:
+def test_rosters_of_common_spreadsheets_are_read(file: Path, text: str) -> None:
     file.write_text(text, encoding="utf-8", newline="")
     assert read_owners(file) == {"team 1": "ada", "team 2": "bob"}
 
 
-def test_lines_are_those_of_the_file_and_a_column_that_may_lack_is_empty(file: Path) -> None:
+def test_line_numbers_are_those_of_the_file_and_missing_columns_are_empty(file: Path) -> None:
     file.write_text('id,room,email\n\n"ada",1,a@b\nbob\n')
     assert read_roster(file, ["id"], ["name", "email"]) == {
         3: {"id": "ada", "name": "", "email": "a@b"},
@@ -42,19 +42,19 @@ def test_lines_are_those_of_the_file_and_a_column_that_may_lack_is_empty(file: P
 @pytest.mark.parametrize(
     ("data", "why"),
     [
-        (b"", 'the columns "id", and perhaps name and email. It is "".'),
-        (b"ada,Ada\nbob,Bob\n", 'It is "ada,Ada".'),
-        (b"id,name,id\nada,Ada,a1\n", 'It is "id,name,id".'),
+        (b"", 'the columns "id", and perhaps name and email, but it is "".'),
+        (b"ada,Ada\nbob,Bob\n", 'but it is "ada,Ada".'),
+        (b"id,name,id\nada,Ada,a1\n", 'but it is "id,name,id".'),
         (b"id,name\n\n", "there is nothing below its first line"),
         (b"id,name\nada,Lovelace, Ada\n", "line 2: 3 values for 2 columns"),
         (b"id,name\n\n,Ada\n", "line 3: the id is missing"),
-        (b"id\nada\n\nbob\nada\n", 'line 5: the id "ada" stands in line 2 already'),
+        (b"id\nada\n\nbob\nada\n", 'line 5: the id "ada" is already in line 2'),
         (b"id,name\nada,M\xfcller\n", "line 2: this is not UTF-8"),
         ("id,name\nada,Ada\n".encode("utf-16"), "line 1: this is not UTF-8"),
-        (b'id,name\nada,Ada\nbob,"Bob\neve,Eve\n', "this is no CSV: unexpected end of data"),
+        (b'id,name\nada,Ada\nbob,"Bob\neve,Eve\n', "this is not CSV: unexpected end of data"),
     ],
 )
-def test_a_file_that_is_no_roster_is_told(file: Path, data: bytes, why: str) -> None:
+def test_a_file_that_is_not_a_roster_is_a_usage_error(file: Path, data: bytes, why: str) -> None:
     file.write_bytes(data)
     with pytest.raises(UsageError) as told:
         read_roster(file, ["id"], ["name", "email"])
@@ -62,6 +62,6 @@ def test_a_file_that_is_no_roster_is_told(file: Path, data: bytes, why: str) -> 
     assert str(told.value).startswith(str(file))
 
 
-def test_a_file_that_cannot_be_read_is_told(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_is_a_usage_error(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="cannot be read: Is a directory"):
         read_owners(tmp_path)

@@ -1,4 +1,4 @@
-"""What a run does when workers die: real workers, killed by what they are given."""
+"""What a run does when workers die: real workers, killed by their submissions."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ DEATH = "__import__('os').kill(__import__('os').getpid(), 9)"
 
 
 class Deadly(Task):
-    """A task that kills whatever process unpacks it."""
+    """A task that kills the process that unpickles it."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         return eval, (DEATH,)
@@ -45,7 +45,7 @@ class Deadly(Task):
 
 @dataclasses.dataclass(frozen=True)
 class DeadlyOrder(Order):
-    """An order in which the submission `deadly` kills every worker that it is given to."""
+    """An order in which the submission `deadly` kills every worker that gets it."""
 
     deadly: str = "deadly"
 
@@ -70,7 +70,7 @@ def graded(order: Order, engine: Engine, out: Path) -> dict[str, Result]:
 
 
 def make_four(folder: Path) -> Path:
-    """One that is right, one that kills, two without a package."""
+    """A class with a right submission, one that kills workers, and two without a package."""
     copy_solution(STEP, folder / "anna")
     copy_solution(STEP, folder / "deadly")
     for student in ("ben", "clara"):
@@ -87,19 +87,21 @@ def assert_set_aside(done: dict[str, Result]) -> None:
 
 
 @pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
-def test_what_kills_workers_is_set_aside_after_two_tries_and_the_others_go_on(tmp_path: Path) -> None:
+def test_a_submission_that_kills_two_workers_is_an_error_and_the_others_are_graded(tmp_path: Path) -> None:
     order = order_of(make_four(tmp_path / "class"))
     done = graded(order, LocalEngine(2), tmp_path / "grades")
     assert_set_aside(done)
     assert "SIGKILL" in done["deadly"].report.outcomes[0].finding.observed
-    # An error is no result to keep: the next run tries again.
+    # An error is not a lasting result, so the next run tries again.
     with opened(tmp_path / "grades") as results:
         kept, todo = sort_out(order, results)
     assert sorted(result.student for result in kept) == ["anna", "ben", "clara"]
-    assert [(one.found.student, one.why) for one in todo] == [("deadly", "not finished for a fault of the machine")]
+    assert [(one.found.student, one.why) for one in todo] == [
+        ("deadly", "not finished because of a fault of the machine")
+    ]
 
 
-def test_a_worker_ends_when_its_owner_is_gone() -> None:
+def test_a_worker_ends_with_its_owner() -> None:
     worker = Worker()
     pid = worker.process.pid
     worker.connection.close()
@@ -123,7 +125,7 @@ def test_a_worker_of_another_version_does_not_grade(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
-def test_with_the_grader_everything_ends(tmp_path: Path) -> None:
+def test_all_processes_end_with_the_grader(tmp_path: Path) -> None:
     from grader.tests.classroom.a_class import command, environment
 
     copy_solution(STEP, tmp_path / "class" / "anna")
@@ -152,7 +154,7 @@ def waited(ready: Callable[[], T]) -> T:
         if found:
             return found
         time.sleep(0.02)
-    pytest.fail("waited in vain")
+    pytest.fail("the condition never held")
 
 
 def below(pid: int) -> list[int]:
@@ -176,5 +178,5 @@ def command_line(pid: int) -> bytes:
         return b""
 
 
-def test_there_is_always_a_job() -> None:
+def test_there_is_always_at_least_one_job() -> None:
     assert 1 <= default_jobs() <= (os.cpu_count() or 1)

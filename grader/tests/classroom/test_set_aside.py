@@ -105,16 +105,16 @@ def nothing(folder: Path) -> None:
 
 
 ODD: dict[str, tuple[Callable[[Path], None], str]] = {
-    "a long name": (a_long_name, "a name that no disk takes"),
+    "a long name": (a_long_name, "a name that no disk accepts"),
     "damaged bzip2": (damaged(zipfile.ZIP_BZIP2), "damaged"),
     "damaged lzma": (damaged(zipfile.ZIP_LZMA), "damaged"),
     "damaged deflate": (damaged(zipfile.ZIP_DEFLATED), "damaged"),
     "an offset beyond the file": (an_offset_beyond_the_file, "damaged"),
     "latin 1": (latin_1, "no package"),
     "a circle of links": (a_circle_of_links, "no package"),
-    "another exercise": (another_exercise_beside_it, "holds 04-package-files, and no folder 03-circle-publisher"),
-    "no archive": (a_file_that_is_no_archive, "no archive that is unpacked here"),
-    "twice": (twice, "is there twice"),
+    "another exercise": (another_exercise_beside_it, "contains 04-package-files, but no folder 03-circle-publisher"),
+    "no archive": (a_file_that_is_no_archive, "is not a supported archive"),
+    "twice": (twice, "has 2 submissions"),
     "a name for a terminal": (a_name_for_a_terminal, "no package"),
     "a long name of a folder": (a_name_as_long_as_can_be, "no package"),
     "nothing": (nothing, "no package"),
@@ -216,7 +216,7 @@ def test_a_student_without_an_exercise_has_a_line_for_those_of_the_others(tmp_pa
     found = find_submissions([tmp_path], None, tmp_path / "grades")
     assert [(each.student, each.exercise, each.refused) for each in found] == [
         ("anna", STEP, ""),
-        ("ben", STEP, f"ben holds no folder {STEP}."),
+        ("ben", STEP, f"ben does not contain a folder {STEP}."),
     ]
     shutil.rmtree(tmp_path / "anna")
     with pytest.raises(UsageError, match="Which exercise is"):

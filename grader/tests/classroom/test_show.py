@@ -1,4 +1,4 @@
-"""What a run shows: an estimate, what is being worked on, and nothing that acts."""
+"""The display of a run: an estimate, the submissions in progress, and only harmless text."""
 
 from __future__ import annotations
 
@@ -41,19 +41,19 @@ def test_an_error_that_repeats_while_others_are_judged_is_suspicious(
     ("done", "of", "seconds", "expected"),
     [(0, 10, 5.0, ""), (10, 10, 5.0, ""), (5, 10, 5.0, "about 5 s left"), (10, 200, 30.0, "about 10 min left")],
 )
-def test_the_rest_takes_as_long_as_what_was(done: int, of: int, seconds: float, expected: str) -> None:
+def test_the_estimate_uses_the_average_speed(done: int, of: int, seconds: float, expected: str) -> None:
     assert estimate(done, of, seconds) == expected
 
 
 @pytest.mark.parametrize("text", ["::error::x", "##[error]x", "##vso[task.x]", ODD, "\n::set-output name=a::b"])
-def test_what_is_printed_acts_on_nothing(text: str) -> None:
+def test_printed_text_controls_neither_terminal_nor_ci(text: str) -> None:
     shown = plain(text)
     assert shown.isprintable()
     assert "::" not in shown
     assert "##" not in shown
 
 
-def test_a_terminal_shows_what_is_worked_on_with_a_bar() -> None:
+def test_a_terminal_shows_submissions_in_progress_and_a_bar() -> None:
     console = Console(file=io.StringIO(), width=140, force_terminal=True, color_system=None)
     table = Table(4, console, several=False)
     table.tells(("anna", "03"), "Building with colcon")
@@ -70,7 +70,7 @@ def test_a_terminal_shows_what_is_worked_on_with_a_bar() -> None:
     assert "2 of 4 · 1 not passed · 1 not judged" in lines[4]
 
 
-def test_piped_or_in_a_ci_lines_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_pipe_or_a_ci_gets_lines(capsys: pytest.CaptureFixture[str]) -> None:
     with screen(2, several=True) as shown:
         assert isinstance(shown, Lines)
         shown.tells(("anna", "03"), "Building")
@@ -79,6 +79,6 @@ def test_piped_or_in_a_ci_lines_are_printed(capsys: pytest.CaptureFixture[str]) 
     assert capsys.readouterr().err.startswith(f"[1/2] anna, {exercise}: Passed: ")
 
 
-def test_the_class_in_a_sentence() -> None:
+def test_the_summary_of_the_class() -> None:
     told = summary([result("anna", "passed"), result("ben", "failed"), result("clara", "error")])
     assert told.startswith("3 submissions: 1 passed, 1 not passed, 1 not judged, ")

@@ -10,7 +10,7 @@ from grader.exercise.private_checks import sources_of
 @pytest.mark.parametrize(
     ("step", "diagnosis"), [("02-discover-topics", "no-answers-file"), ("03-circle-publisher", "no-package")]
 )
-def test_what_holds_nothing_to_grade_has_no_points_and_the_reason(step: str, diagnosis: str) -> None:
+def test_a_submission_without_a_package_has_no_points_and_a_reason(step: str, diagnosis: str) -> None:
     reason = "There is nothing in anna."
     task = Task("anna", "anna", sources_of({step}, None)[step], reason, grader=grader_key(), trusted=True)
     report = perform(task).report

@@ -1,4 +1,4 @@
-"""What is ready to copy: the script that all call is run, and each is what its system reads."""
+"""The templates: their script is run, and each file is valid for the system that reads it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import STEP, environment
 from grader.tests.lacking import give_up
-from grader.tests.report.test_class_formats import RESULTS, commands
+from grader.tests.report.readers import RESULTS, commands
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -48,11 +48,11 @@ def template(name: str) -> Any:  # noqa: ANN401 - YAML
     return yaml.safe_load((TEMPLATES / name).read_text("utf-8"))
 
 
-def test_the_script_grades_and_tells_github(tmp_path: Path) -> None:
+def test_the_script_grades_and_writes_for_github(tmp_path: Path) -> None:
     if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")
     copy_solution(STEP, tmp_path / "package")
-    (tmp_path / "package" / "setup.py").unlink()  # not built, not run: quick
+    (tmp_path / "package" / "setup.py").unlink()  # is not built or run, so it is quick
     summary = tmp_path / "summary.md"
     arguments = (tmp_path / "package", "octocat", STEP, tmp_path / "grades", "--fail-under", "60")
     env = {"CI": "true", "GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(summary)}
@@ -66,13 +66,13 @@ def test_the_script_grades_and_tells_github(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("student", ["../up", "-rf", "a b", "", "$(id)"])
-def test_the_script_takes_no_name_that_is_more_than_a_name(tmp_path: Path, student: str) -> None:
+def test_the_script_refuses_names_that_are_not_folder_names(tmp_path: Path, student: str) -> None:
     done = run(SCRIPT, tmp_path, student, STEP, tmp_path / "grades")
-    assert (done.returncode, "no name for a folder" in done.stderr) == (2, True)
+    assert (done.returncode, "not a valid folder name" in done.stderr) == (2, True)
 
 
 @pytest.mark.parametrize("arguments", [(), ("nowhere", "octocat", STEP, "grades")])
-def test_the_script_called_wrongly_says_so(tmp_path: Path, arguments: tuple[str, ...]) -> None:
+def test_the_script_explains_a_wrong_call(tmp_path: Path, arguments: tuple[str, ...]) -> None:
     done = subprocess.run([SCRIPT, *arguments], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert "grade.sh" in done.stderr
@@ -85,7 +85,7 @@ def test_gradescopes_archive_grades_a_submission(tmp_path: Path) -> None:
     build_archive(STEP, tmp_path / "autograder.zip", None)
     (root / "source").mkdir(parents=True)
     unpack(tmp_path / "autograder.zip", root / "source")
-    # What setup.sh makes at Gradescope.
+    # setup.sh makes this at Gradescope.
     (root / "source" / "course" / ".venv").symlink_to(BIN.parent)
     copy_solution(STEP, root / "submission" / "my_robot_controller")
     (root / "submission" / "my_robot_controller" / "setup.py").unlink()
@@ -125,29 +125,29 @@ def test_the_scripts_are_bash_and_executable(name: str) -> None:
     assert os.access(TEMPLATES / name, os.X_OK)
 
 
-def test_the_workflow_is_one_and_calls_the_script() -> None:
+def test_the_workflow_is_valid_and_calls_the_script() -> None:
     workflow = template("github-classroom.yml")
     job = workflow["jobs"]["grade"]
-    assert workflow[True] == ["push", "workflow_dispatch"]  # YAML 1.1 reads `on` as true; GitHub does not
+    assert workflow[True] == ["push", "workflow_dispatch"]  # YAML 1.1 reads `on` as true, but GitHub does not
     assert workflow["permissions"] == {"contents": "read"}
     steps = job["steps"]
     assert all(("uses" in step) != ("run" in step) for step in steps)
     runs = [step["run"] for step in steps if "run" in step]
     assert any("classroom/templates/grade.sh" in command for command in runs)
-    # What others choose never stands in a command.
+    # Text that others choose is never part of a command.
     assert [command for command in runs if "${{" in command] == []
     for command in runs:
         assert subprocess.run(["bash", "-n", "-c", command], check=False).returncode == 0
 
 
-def test_the_gitlab_job_is_one_and_calls_the_script() -> None:
+def test_the_gitlab_job_is_valid_and_calls_the_script() -> None:
     job = template("gitlab-ci.yml")["grade"]
     assert any("classroom/templates/grade.sh" in command for command in job["script"])
     assert job["artifacts"]["reports"]["junit"] == "grades/junit.xml"
     assert all(isinstance(value, str) for value in job["variables"].values())
 
 
-def test_every_template_is_on_the_list_and_says_whether_it_was_tried() -> None:
+def test_the_readme_lists_every_template_and_says_whether_it_was_tried() -> None:
     text = (TEMPLATES / "README.md").read_text("utf-8")
     linked = set(re.findall(r"\]\(([^):]+)\)", text))
     there = {file.name for file in TEMPLATES.iterdir()} - {"README.md"}
@@ -156,7 +156,7 @@ def test_every_template_is_on_the_list_and_says_whether_it_was_tried() -> None:
         assert re.search(r"not (yet )?tried", (TEMPLATES / name).read_text("utf-8"), re.IGNORECASE), name
 
 
-def test_shell_scripts_hold_for_shellcheck() -> None:
+def test_shellcheck_accepts_the_shell_scripts() -> None:
     if shutil.which("shellcheck") is None:
         give_up("shellcheck", "shellcheck")
     scripts = [TEMPLATES / name for name in ("grade.sh", "gradescope-setup.sh", "gradescope-run_autograder")]

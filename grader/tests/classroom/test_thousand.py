@@ -1,4 +1,4 @@
-"""A mixed class graded again and again, idle and under load: no report differs."""
+"""A mixed class is graded again and again, idle and under load, and every report is the same."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ATTACKS = ("301", "304", "501", "504", "602", "613")
 
 
 def make_mixed(folder: Path) -> Path:
-    """Wrong, right and odd submissions of step 03, from all over the catalogues, with hostile ones among them."""
+    """Return wrong, right and odd submissions of step 03 from all catalogues, and some hostile ones."""
     for name, amount in AMONG.items():
         for case in spread(read_cases(TESTS / name), amount):
             make_submission(case, folder / f"{name}-{case.name}")
@@ -41,7 +41,7 @@ def spread(cases: Sequence[Case], amount: int) -> list[Case]:
 
 @pytest.mark.exhaustive
 @pytest.mark.timeout(6 * 3600)
-def test_a_thousand_gradings_idle_and_under_load_are_one(tmp_path: Path) -> None:
+def test_a_thousand_gradings_idle_and_under_load_are_equal(tmp_path: Path) -> None:
     (tmp_path / "class").mkdir()
     submitted = make_mixed(tmp_path / "class")
     assert len(list(submitted.iterdir())) == CLASS

@@ -1,4 +1,4 @@
-"""A submission that puts scripts wherever its author can write something."""
+"""A submission with scripts in every text that its author can choose."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ ALL = " ".join(SCRIPTS)
 
 
 def hostile() -> Evidence:
-    """Scripts in the file names, the code, the graph, the logs, the outputs and the submission's own name."""
+    """Return evidence with scripts in file names, code, graph, logs, outputs and the name of the submission."""
     name = f"draw{SCRIPTS[1]}.py"
     code = NODE.replace("linear.x = 2.0", f'linear.x = 9.0  # {ALL}\n        self.x = """{ALL}"""')
     given = submission({NODE_FILE: code, name: code, f"{SCRIPTS[2]}/{SCRIPTS[3]}.py": "print(1)"}, (f"{ALL} leaves.",))
@@ -55,7 +55,7 @@ def hostile() -> Evidence:
 
 
 def enormous() -> Evidence:
-    """The same, far too much of it: nothing of a submission can make a page large."""
+    """Return the same with far too much of everything. No submission may make a page large."""
     given = hostile()
     assert given.run.recording is not None
     worst = '"' * 2000 + "\n"

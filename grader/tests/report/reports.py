@@ -1,4 +1,4 @@
-"""One report a status, made by the judge from evidence made by hand."""
+"""Reports for tests: one per status, and a hostile one. The judge makes them from invented evidence."""
 
 from __future__ import annotations
 
@@ -6,13 +6,23 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from grader.checks.judge import judge
+from grader.checks.outcome import Finding, Status
 from grader.evidence.evidence import Fault
 from grader.report.report import Report
+from grader.submission.where import Where
 from grader.tests.checks.made import BUILD, evidence, exercise, good
 from grader.tests.checks.shapes import SHAPES
+from grader.tests.report.hostile import ALL, ODD
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
+
+STATUSES = ("passed", "failed", "skipped", "error")
+FORMULA = '=HYPERLINK("http://evil.example","click")'
+INJECTED = "\r\n::error title=owned::owned\n##[error]owned\n::set-output name=x::y"
+MARKDOWN = "![x](http://evil.example/x.png) [y](javascript:alert(1)) <img src=x onerror=alert(1)> `a` | b | @octocat #1"
+HOSTILE = f"{FORMULA} {INJECTED} {MARKDOWN} {ALL} {ODD}"
+"""Formulas, workflow commands, Markdown, HTML and odd characters."""
 
 NOT_BUILT = replace(BUILD, exit_code=1, log="error: no such option", executables=(), entry_points={}, installed=())
 
@@ -44,6 +54,13 @@ def report_of(given: Evidence, **changes: object) -> Report:
 
 
 def report(status: str, **changes: object) -> Report:
-    """The report with this status in it; the exercise's checks are those of the course."""
+    """Return a report in which this status occurs; the checks are those of the course."""
     assert exercise().checks
     return report_of(EVIDENCE[status], **changes)
+
+
+def hostile_report(status: str = "failed") -> Report:
+    """Return a report in which every text that a student can choose is an attack."""
+    made = report(status, submission=HOSTILE)
+    finding = Finding(Status.FAILED, HOSTILE, HOSTILE, HOSTILE, "a-diagnosis", Where(HOSTILE, 3))
+    return replace(made, outcomes=tuple(replace(outcome, finding=finding) for outcome in made.outcomes))

@@ -1,4 +1,4 @@
-"""The page on a submission, as text; test_pages_in_browser.py opens it."""
+"""The page of a submission as text. test_pages_in_browser.py opens pages in a browser."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def page_of(given: Evidence) -> str:
 
 
 class Tags(HTMLParser):
-    """Every element with its attributes, and the texts of script and style."""
+    """Parse every element with its attributes, and the contents of script and style."""
 
     def __init__(self, page: str) -> None:
         super().__init__()
@@ -80,12 +80,12 @@ def page(request: pytest.FixtureRequest) -> str:
     return page_of(GIVEN[request.param])
 
 
-def test_every_page_is_small_and_closes_what_it_opens(page: str) -> None:
+def test_every_page_is_small_and_closes_its_elements(page: str) -> None:
     assert len(page.encode("utf-8", "replace")) <= LARGEST
     assert Tags(page).open == []
 
 
-def test_every_page_loads_nothing_and_has_ids_once(page: str) -> None:
+def test_every_page_loads_nothing_and_has_unique_ids(page: str) -> None:
     tags = Tags(page)
     ids = [attributes["id"] for _, attributes in tags.elements if "id" in attributes]
     assert len(ids) == len(set(ids))
@@ -103,7 +103,7 @@ def test_every_page_loads_nothing_and_has_ids_once(page: str) -> None:
     assert not {"iframe", "img", "object", "embed", "form", "link", "base"} & {tag for tag, _ in tags.elements}
 
 
-def test_the_policy_allows_just_the_style_and_the_script_of_the_page() -> None:
+def test_the_policy_allows_only_the_style_and_the_script_of_the_page() -> None:
     page = page_of(EVIDENCE["failed"])
     policy = next(meta["content"] for meta in Tags(page).all("meta") if meta.get("http-equiv"))
     assert policy is not None
@@ -123,12 +123,12 @@ def test_a_hostile_submission_adds_no_element() -> None:
     }
 
 
-def test_what_could_act_on_a_reader_is_a_question_mark() -> None:
+def test_unsafe_characters_become_question_marks() -> None:
     page = page_of(hostile())
     assert not set(page) & set("\x00\x1b\x85\u202e\u202c\u2028\ufeff\ud800")
 
 
-def test_the_page_tells_the_checks_as_the_report_has_them() -> None:
+def test_the_page_has_the_checks_of_the_report() -> None:
     given = EVIDENCE["failed"]
     report = report_of(given)
     text = " ".join(Tags(html_page(given, report)).texts["p"])
@@ -141,7 +141,7 @@ def test_the_page_tells_the_checks_as_the_report_has_them() -> None:
         }
 
 
-def test_the_line_that_a_check_means_is_shown_once_and_marked() -> None:
+def test_the_line_of_a_check_is_shown_once_and_marked() -> None:
     given = evidence(SHAPES["radius 2.2"](), node(("linear.x = 2.0", "linear.x = 2.2")))
     page = page_of(given)
     (line,) = re.findall(r'<span class="line here">(.*?)\n</span>', page, re.DOTALL)
@@ -157,7 +157,7 @@ def test_lines_are_counted_as_python_counts_them(newline: str) -> None:
     assert "linear.x" in re.sub(r"<.*?>", "", line)
 
 
-def test_a_hidden_check_says_only_whether_it_passed() -> None:
+def test_a_hidden_check_shows_only_whether_it_passed() -> None:
     given = EVIDENCE["failed"]
     report = report_of(given)
     secret = Finding(Status.FAILED, "SECRET seen", "SECRET expected", "SECRET cause", "secret", None)
@@ -174,28 +174,28 @@ def test_numbers_of_a_hidden_check_are_not_drawn() -> None:
     given = EVIDENCE["failed"]
     checks = tuple(replace(spec, hidden=True) for spec in given.exercise.checks)
     page = page_of(replace(given, exercise=replace(given.exercise, checks=checks)))
-    assert "asked for" not in page.lower()
+    assert "required" not in page.lower()
     assert 'class="expected"' not in page
 
 
-def test_a_fault_of_the_machine_is_told_first() -> None:
+def test_a_fault_of_the_machine_comes_first() -> None:
     page = page_of(EVIDENCE["error"])
     assert page.index("The machine failed, not the submission: The disk is full") < page.index("<h3>")
     assert "12 checks could not be judged. 0 of 100 points so far." in page
 
 
-def test_logs_with_errors_come_first_and_their_errors_before_the_rest() -> None:
+def test_logs_with_errors_come_first_and_start_with_the_errors() -> None:
     trace = 'Traceback (most recent call last):\n  File "a.py", line 3\n    x()\nValueError: no\n'
     page = page_of(evidence(recording([], stderr=Output("fine\n" * 30), stdout=Output(f"hello\n{trace}bye\n"))))
     assert page.index('id="log-stdout"') < page.index('id="log-stderr"')
     log = page[page.index('id="log-stdout"') :]
-    errors = log[: log.index("The whole of it")]
+    errors = log[: log.index("The whole log")]
     assert "ValueError: no" in errors
     assert "bye" not in errors
     assert "hello" not in errors
 
 
-def test_the_player_gets_the_trajectory_without_what_is_no_number() -> None:
+def test_the_player_gets_no_values_that_are_not_finite() -> None:
     given = evidence(recording(every(0.5, 2.0, float("nan"))))
     page = page_of(given)
     data = json.loads(re.findall(r'id="data">(.*?)</script>', page)[0])[0]
@@ -205,7 +205,7 @@ def test_the_player_gets_the_trajectory_without_what_is_no_number() -> None:
     assert data["commands"][0][2] is None
 
 
-def test_what_differs_from_run_to_run_is_not_on_the_page() -> None:
+def test_the_page_has_nothing_that_differs_from_run_to_run() -> None:
     given = evidence(good())
     first, second = (
         html_page(given, report_of(given, seconds={"build": seconds}, recording=path))
@@ -214,10 +214,10 @@ def test_what_differs_from_run_to_run_is_not_on_the_page() -> None:
     assert first == second
 
 
-def test_what_a_recording_could_not_keep_is_told() -> None:
-    assert "More than a recording keeps" not in page_of(evidence(good()))
+def test_the_page_says_what_a_full_recording_left_out() -> None:
+    assert "The recording was full" not in page_of(evidence(good()))
     full = replace(good(), dropped=1, interventions_dropped=300, graph_dropped=20)
-    told = "left out: 1 message, 300 calls of the simulator&#39;s services and 20 parts of the graph."
+    told = "These are left out: 1 message, 300 calls of the simulator&#39;s services and 20 parts of the graph."
     assert told in page_of(evidence(full))
 
 
@@ -236,7 +236,7 @@ def test_each_trial_of_an_exercise_is_shown() -> None:
     assert page.count('class="player"') == len(data) == 4
 
 
-def test_a_circle_that_another_trial_asks_for_is_not_drawn() -> None:
+def test_a_circle_of_another_trial_is_not_drawn() -> None:
     given = EVIDENCE["passed"]
     checks = tuple(replace(spec, trial="other") for spec in given.exercise.checks)
     page = html_page(replace(given, exercise=replace(given.exercise, checks=checks)), report_of(given))
@@ -257,7 +257,7 @@ def test_regrade_makes_the_same_page(tmp_path: Path) -> None:
     assert (tmp_path / "1.html").read_bytes() == (tmp_path / "2.html").read_bytes()
 
 
-def test_a_page_that_cannot_be_written_is_told(tmp_path: Path) -> None:
+def test_a_page_that_cannot_be_written_is_a_usage_error(tmp_path: Path) -> None:
     from grader.errors import UsageError
 
     given = EVIDENCE["passed"]

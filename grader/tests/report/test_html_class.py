@@ -1,4 +1,4 @@
-"""The page on a class, from a folder of reports."""
+"""The page of a class, made from a folder of reports."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Seven reports: three passed, two failed, one not built, one that the machine could not judge."""
+    """A folder with seven reports: three passed, two failed, one was not built, and one could not be judged."""
     for number, status in enumerate(("passed", "passed", "passed", "failed", "failed", "skipped", "error")):
         given = report(status, submission=f"class/student{number}/step")
         (tmp_path / f"student{number}").mkdir()
@@ -30,17 +30,17 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_reports_are_named_by_what_tells_them_apart(folder: Path) -> None:
+def test_a_report_is_named_by_the_part_of_its_path_that_differs(folder: Path) -> None:
     assert [entry.name for entry in read_class(folder).entries] == [f"student{number}" for number in range(7)]
 
 
-def test_a_report_with_a_page_beside_it_is_linked(folder: Path) -> None:
+def test_a_report_with_a_page_next_to_it_is_linked(folder: Path) -> None:
     links = {entry.name: entry.link for entry in read_class(folder).entries}
     assert links["student1"] == "./student1/report.html"
     assert links["student2"] == ""
 
 
-def test_checks_that_fail_most_come_first_with_their_causes(folder: Path) -> None:
+def test_the_most_frequent_failures_come_first_with_causes(folder: Path) -> None:
     found = failures(entry for entry in read_class(folder).entries if entry.tone != "error")
     amounts = [len(check.entries) for check in found]
     assert amounts == sorted(amounts, reverse=True)
@@ -49,7 +49,7 @@ def test_checks_that_fail_most_come_first_with_their_causes(folder: Path) -> Non
     assert "linear.x divided by angular.z" in circle.diagnoses[0].text
 
 
-def test_the_machines_errors_stand_apart_and_out_of_the_averages(folder: Path) -> None:
+def test_errors_of_the_machine_have_their_own_list_and_do_not_count_in_averages(folder: Path) -> None:
     tags = Tags(class_page(read_class(folder)))
     page = class_page(read_class(folder))
     table = page[page.index("<tbody>") : page.index("</tbody>")]
@@ -60,17 +60,17 @@ def test_the_machines_errors_stand_apart_and_out_of_the_averages(folder: Path) -
     assert any("6 submissions judged: 3 passed, 3 not yet" in text for text in tags.texts["p"])
 
 
-def test_who_ends_with_an_error_again_and_again_is_named(folder: Path) -> None:
+def test_a_submission_that_ends_with_an_error_repeatedly_is_listed(folder: Path) -> None:
     assert 'id="attention"' not in class_page(read_class(folder))
     file = folder / "student6" / "report.json"
     file.write_text(json.dumps({**json.loads(file.read_text()), "errors": 2}))
     page = class_page(read_class(folder))
     attention = page[page.index('id="attention"') :]
     assert "student6" in attention
-    assert "suspicious: it could not be judged 2 times in a row, while others could" in attention
+    assert "suspicious: it could not be judged 2 times in a row, but other submissions could" in attention
 
 
-def test_what_is_no_report_is_passed_over_and_what_is_a_damaged_one_is_told(folder: Path) -> None:
+def test_other_files_are_ignored_and_damaged_reports_are_listed(folder: Path) -> None:
     (folder / "results.json").write_text('{"tests": []}')
     (folder / "damaged.json").write_text('{"schema": 1, "outcomes": [{}]}')
     (folder / "later.json").write_text(json.dumps({**to_data(report("passed")), "schema": 99}))
@@ -81,17 +81,17 @@ def test_what_is_no_report_is_passed_over_and_what_is_a_damaged_one_is_told(fold
 
 
 @pytest.mark.parametrize("share", [0.0, 0.09999999, 0.1, 0.5, 0.899999, 0.9, 0.999, 1.0])
-def test_each_share_of_the_points_is_counted_where_it_belongs(share: float) -> None:
+def test_each_bar_counts_the_submissions_in_its_range(share: float) -> None:
     found = counts([share])
     assert found.index(1) == int(share * 10)
     assert sum(found) == 1
 
 
-def test_all_the_points_are_not_counted_with_nearly_all() -> None:
+def test_all_points_have_a_bar_of_their_own() -> None:
     assert counts([1.0, 0.99])[-2:] == [1, 1]
 
 
-def test_a_hostile_name_adds_no_element_and_no_address(folder: Path) -> None:
+def test_a_hostile_name_adds_no_element_and_no_link(folder: Path) -> None:
     plain = {name for name, _ in Tags(class_page(read_class(folder))).elements}
     hostile = report("failed", submission=f"class/{ALL}/step")
     wicked = tuple(
@@ -109,14 +109,14 @@ def test_a_hostile_name_adds_no_element_and_no_address(folder: Path) -> None:
     assert not [name for _, attributes in tags.elements for name in attributes if name.startswith("on")]
 
 
-def test_a_folder_without_reports_is_told(tmp_path: Path) -> None:
+def test_a_folder_without_reports_is_a_usage_error(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="There is no report below"):
         read_class(tmp_path)
     with pytest.raises(UsageError, match="There is no folder"):
         read_class(tmp_path / "no")
 
 
-def test_the_page_of_several_exercises_tells_them_apart(folder: Path) -> None:
+def test_the_page_of_several_exercises_has_an_exercise_column(folder: Path) -> None:
     other = replace(report("failed", submission="class/student0/other"), exercise="04-pose-subscriber")
     (folder / "other.json").write_text(to_json(other), "utf-8")
     save_class_page(folder, folder / "index.html")

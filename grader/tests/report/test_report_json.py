@@ -18,13 +18,16 @@ GOLDEN = Path(__file__).parent.parent / "golden" / "report"
 
 
 @pytest.mark.parametrize("status", sorted(EVIDENCE))
-def test_the_format_is_what_it_was(status: str) -> None:
-    """Others read these files. Where a change is meant, raise SCHEMA, and write the new text into golden/report/."""
+def test_the_format_has_not_changed(status: str) -> None:
+    """Other programs read these files.
+
+    If a change is intended, raise SCHEMA and write the new text into golden/report/.
+    """
     assert to_json(report(status)) == (GOLDEN / f"{status}.json").read_text("utf-8")
 
 
 @pytest.mark.parametrize("status", sorted(EVIDENCE))
-def test_back_from_json_it_is_the_same_report(status: str) -> None:
+def test_a_report_survives_json_unchanged(status: str) -> None:
     made = report(status, recording="kept/here", seed=7, confined=False)
     assert from_json(to_json(made)) == made
 
@@ -52,7 +55,7 @@ FINDINGS = st.builds(
 
 
 @given(FINDINGS, TEXTS)
-def test_any_text_goes_there_and_back(finding: Finding, name: str) -> None:
+def test_any_text_survives_json_unchanged(finding: Finding, name: str) -> None:
     outcome = Outcome("a", "b", "c", 0.5, 1.0, finding, hidden=True, advice=True)
     made = report("passed", outcomes=(outcome,), submission=name)
     assert from_json(to_json(made)) == made
@@ -66,25 +69,25 @@ def test_a_file_name_that_is_not_utf8_makes_valid_json() -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("", "no report of the grader"),
-        ("[]", "no report of the grader"),
-        ("{}", "no report of the grader"),
-        ('{"schema": 4}', "schema 4; this version of the grader reads schema 1 to 3"),
+        ("", "not a report of the grader"),
+        ("[]", "not a report of the grader"),
+        ("{}", "not a report of the grader"),
+        ('{"schema": 4}', "schema 4; this version of the grader reads schemas 1 to 3"),
         ('{"schema": 1}', "damaged"),
     ],
 )
-def test_what_is_no_report_of_ours_is_told(text: str, told: str) -> None:
+def test_a_text_that_is_not_a_report_is_a_usage_error(text: str, told: str) -> None:
     with pytest.raises(UsageError, match=told):
         from_json(text)
 
 
-def test_an_unknown_status_is_damage() -> None:
+def test_a_report_with_an_unknown_status_is_damaged() -> None:
     text = to_json(report("passed")).replace('"status": "passed"', '"status": "splendid"')
     with pytest.raises(UsageError, match="damaged"):
         from_json(text)
 
 
-def test_what_the_machine_could_not_judge_stays_in_the_maximum() -> None:
+def test_checks_that_were_not_judged_stay_in_the_maximum() -> None:
     made = report("passed")
     broken = replace(made.outcomes[-2], points=0.0, finding=Finding(Status.ERROR, "The disk is full."))
     data = json.loads(to_json(replace(made, outcomes=(*made.outcomes[:-2], broken))))

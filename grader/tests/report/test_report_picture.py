@@ -1,4 +1,4 @@
-"""The picture, by its pixels: colours where they must be."""
+"""The picture of a run, tested by the colours of its pixels."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def around(pixels: Pixels, x: float, y: float, metres: float = 0.15) -> Pixels:
     return pixels[max(row - size, 0) : row + size, max(column - size, 0) : column + size]
 
 
-def test_a_good_run_is_drawn_where_it_was_driven() -> None:
+def test_the_path_is_drawn_where_the_turtle_drove() -> None:
     pixels = canvas(evidence(good()))
     for angle in np.linspace(0.3, 5.8, 9):
         place = around(pixels, 5.53 + 2.0 * np.cos(angle), 7.54 + 2.0 * np.sin(angle))
@@ -61,7 +61,7 @@ def test_a_wrong_radius_shows_both_circles_apart() -> None:
     assert any(has(place, EXPECTED) for place in ring)
 
 
-def test_another_start_moves_what_was_asked_for() -> None:
+def test_another_start_moves_the_required_circle() -> None:
     moved = canvas(evidence(recording(every(0.5, 2.0, 1.0), start=Pose(4.0, 6.0, 2.2))))
     assert (moved != canvas(evidence(good()))).any()
     assert has(around(moved, 4.0, 6.0), FITTED)
@@ -73,7 +73,7 @@ def test_the_wall_is_marked() -> None:
 
 
 @pytest.mark.parametrize("shape", ["no messages", "all zero", "nan", "infinity"])
-def test_where_there_is_no_way_it_says_so(shape: str) -> None:
+def test_a_picture_without_a_path_says_so(shape: str) -> None:
     pixels = canvas(evidence(SHAPES[shape]()))
     words = around(pixels, SIDE_M / 2, SIDE_M * 0.28, 1.0)
     assert has(words, TICK)
@@ -122,7 +122,7 @@ def test_every_trial_has_a_canvas_of_its_own() -> None:
     assert [has(pixels, PEN) for pixels in canvases] == [True, True, False, False]
 
 
-def test_a_file_that_cannot_be_written_is_told(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_written_is_a_usage_error(tmp_path: Path) -> None:
     given = evidence(good())
     with pytest.raises(UsageError, match="cannot be written"):
         save_picture(given, report_of(given), tmp_path / "no" / "such" / "folder.png")

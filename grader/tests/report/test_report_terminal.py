@@ -24,7 +24,7 @@ ESCAPE = "\x1b"
 
 
 class Latin1(io.StringIO):
-    """A stream that knows few characters, as on an old terminal."""
+    """A stream with few characters, as on an old terminal."""
 
     encoding = "latin-1"
 
@@ -43,19 +43,19 @@ def told(
     return file.getvalue()
 
 
-def test_piped_there_is_no_escape_sequence_and_no_wrapping() -> None:
+def test_a_pipe_gets_no_escape_sequences_and_no_wrapping() -> None:
     text = told(report("failed"), width=30)
     assert ESCAPE not in text
     assert "    seen: All 19 commands were wrong: linear.x 2.2 m/s.\n" in text
 
 
-def test_the_verdict_stands_at_the_end() -> None:
+def test_the_verdict_comes_last() -> None:
     lines = told(report("failed")).splitlines()
     assert lines[0] == "Draw a circle: alice/my_robot_controller"
     assert lines[-1] == "Not passed yet: 55 of 100 points, 2 checks failed."
 
 
-def test_simulated_time_is_told_to_whom_asks_and_wall_time_to_all() -> None:
+def test_simulated_time_is_printed_on_request_and_wall_time_always() -> None:
     simulated = report("failed")
     assert "Judged in" not in told(simulated)
     assert told(simulated, verbose=True).endswith("\nJudged in simulated time: The node waits only for ROS time.\n")
@@ -64,14 +64,14 @@ def test_simulated_time_is_told_to_whom_asks_and_wall_time_to_all() -> None:
     assert "eight in wall time" in told(other)
 
 
-def test_what_ran_without_a_sandbox_is_told_in_one_line() -> None:
+def test_a_run_without_a_sandbox_is_reported_in_one_line() -> None:
     lines = told(report("passed", confined=False), width=200).splitlines()
     assert [line for line in lines if "sandbox" in line] == [UNCONFINED]
     assert "sandbox" not in told(report("passed"))
 
 
 def worth(points: float, *, others: tuple[float, ...] = (100.0,)) -> Report:
-    """A report with one failed check that is worth so many points, beside passed ones."""
+    """Return a report with passed checks and one failed check that is worth this many points."""
     first = report("passed").outcomes[0]
     good = [replace(first, id=str(place), points=each, max=each) for place, each in enumerate(others)]
     bad = replace(first, id="bad", points=0.0, max=points, finding=failed("Too slow.", "Faster.", Cause("wrong-rate")))
@@ -86,7 +86,7 @@ def worth(points: float, *, others: tuple[float, ...] = (100.0,)) -> Report:
         (worth(0.0, others=(0.0,)), "Not passed yet: 0 of 0 points, 1 check failed.", 1),
     ],
 )
-def test_a_check_that_is_worth_nothing_is_a_warning(made: Report, verdict: str, exit_code: int) -> None:
+def test_a_failed_check_without_points_is_a_warning(made: Report, verdict: str, exit_code: int) -> None:
     assert (told(made).splitlines()[-1], made.exit_code) == (verdict, exit_code)
 
 
@@ -108,7 +108,7 @@ def test_a_check_that_passed_takes_one_line() -> None:
     assert "seen" not in text
 
 
-def test_a_failure_says_what_why_and_where() -> None:
+def test_a_failed_check_has_seen_expected_why_and_where() -> None:
     text = told(report("failed"))
     start = text.index("✗ The turtle drives a circle  0/25\n")
     assert text[start:].splitlines()[1:5] == [
@@ -119,7 +119,7 @@ def test_a_failure_says_what_why_and_where() -> None:
     ]
 
 
-def test_brief_is_what_is_to_be_mended() -> None:
+def test_brief_lists_only_what_did_not_pass() -> None:
     console = Console(file=io.StringIO(), width=200)
     made = report("skipped")
     render(made, console, brief=True)
@@ -127,27 +127,27 @@ def test_brief_is_what_is_to_be_mended() -> None:
     signs = [line[0] for line in console.file.getvalue().splitlines()[1:] if line and line[0] in "✓✗-"]
     assert signs == ["✗"]
     amount = len(made.with_status(Status.PASSED))
-    assert f"{amount} checks passed. In a higher window" in console.file.getvalue()
+    assert f"{amount} checks passed. A higher window" in console.file.getvalue()
 
 
-def test_an_error_has_no_points_yet_and_says_what_to_do() -> None:
+def test_an_error_has_no_points_so_far_and_says_what_to_do() -> None:
     text = told(report("error"))
     assert "! The turtle drives a circle  0/25 so far\n" in text
     assert "    seen: The disk is full: make room, then grade again.\n" in text
 
 
-def test_one_cause_for_many_checks_is_told_once() -> None:
+def test_the_same_cause_of_several_checks_is_printed_once() -> None:
     assert told(report("error")).count("The disk is full") == 1
     assert told(report("skipped")).count("Not judged, because") == 1
 
 
-def test_where_the_stream_cannot_say_more_signs_are_ascii() -> None:
+def test_signs_are_ascii_if_the_stream_knows_no_others() -> None:
     text = told(report("failed"), stream=Latin1())
     assert text.isascii()
     assert "FAIL The turtle drives a circle" in text
 
 
-def test_of_a_hidden_check_only_the_line_is_shown() -> None:
+def test_a_hidden_check_is_one_line_without_details() -> None:
     made = report("failed")
     hidden = tuple(replace(outcome, hidden=True) for outcome in made.outcomes)
     text = told(replace(made, outcomes=hidden))
@@ -155,7 +155,7 @@ def test_of_a_hidden_check_only_the_line_is_shown() -> None:
     assert "radius" not in text
 
 
-def test_advice_is_told_apart_from_failures() -> None:
+def test_advice_looks_different_from_a_failure() -> None:
     made = report("passed")
     advice = replace(made.outcomes[-1], finding=failed("The node does not use a timer.", "A timer.", Cause("no-timer")))
     text = told(replace(made, outcomes=(*made.outcomes[:-1], advice)))
@@ -163,7 +163,7 @@ def test_advice_is_told_apart_from_failures() -> None:
     assert "Passed: 100 of 100 points." in text
 
 
-def test_the_seed_and_the_recording_are_named() -> None:
+def test_the_seed_and_the_recording_are_printed() -> None:
     text = told(report("passed", seed=7, recording="kept/here"))
     assert "The turtle's start was drawn with seed 7.\nRecording: kept/here\n" in text
 
@@ -172,7 +172,7 @@ HOSTILE = st.text(alphabet=st.sampled_from("ab\x1b[]{}/\\\n\r\t\u202e\x9b\x07:re
 
 
 @given(HOSTILE, st.sampled_from([20, 60, 120]), st.booleans())
-def test_nothing_of_a_students_acts_on_the_terminal(text: str, width: int, terminal: bool) -> None:
+def test_text_of_a_student_cannot_control_the_terminal(text: str, width: int, terminal: bool) -> None:
     made = report("passed")
     finding = failed(text, text, Cause("crash", text, Where(text, 3)))
     outcomes = (replace(made.outcomes[0], title=text, finding=finding), replace(made.outcomes[1], finding=passed(text)))
@@ -182,7 +182,7 @@ def test_nothing_of_a_students_acts_on_the_terminal(text: str, width: int, termi
     assert [char for char in shown if not char.isprintable() and char != "\n"] == []
 
 
-def test_markup_stays_text() -> None:
+def test_markup_is_printed_as_plain_text() -> None:
     made = report("passed", submission="[bold]alice[/bold] [link=x]y[/link]")
     assert told(made).startswith("Draw a circle: [bold]alice[/bold] [link=x]y[/link]\n")
 
@@ -196,7 +196,7 @@ def test_no_line_is_wider_than_the_terminal(status: str, width: int) -> None:
     assert max(len(line) for line in plain.getvalue().splitlines()) <= width
 
 
-def test_statuses_are_told_by_sign_and_not_by_colour_alone() -> None:
+def test_every_status_has_its_own_sign() -> None:
     made = report("skipped")
     signs = {line[0] for line in told(made).splitlines()[1:18] if not line.startswith(" ")}
     assert signs == {"✓", "✗", "-"}
