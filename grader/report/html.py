@@ -17,6 +17,7 @@ from grader.report.html_run import runs_of
 from grader.report.logs import logs_of
 from grader.report.page import make_page, save_page
 from grader.report.plain import plain_line
+from grader.report.template import compiled
 from grader.report.verdict import UNCONFINED, tone, verdict
 from grader.submission.reader import read
 
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
     from grader.submission.where import Where
 
+TEMPLATE = "report.html"
 CODE_BYTES = 50_000
 """The size of all code excerpts together. When it is reached, later checks show the file and the line only."""
 
@@ -77,6 +79,7 @@ def html_page(evidence: Evidence, report: Report) -> str:
 
     If the output of a submission cannot be drawn, the page still has the verdict, but no drawings.
     """
+    compiled(TEMPLATE)
     try:
         return read(_page, evidence, report)
     except UnreadableError:
@@ -111,7 +114,7 @@ def _page(evidence: Evidence, report: Report) -> str:
         "again": _again(report),
         "fault": fault,
     }
-    return make_page("report.html", "report.js", [run.data for run in runs], values)
+    return make_page(TEMPLATE, "report.js", [run.data for run in runs], values)
 
 
 def _shown(evidence: Evidence, report: Report) -> Iterator[ShownCheck]:

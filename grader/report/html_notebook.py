@@ -13,7 +13,7 @@ from grader.checks.outcome import Status
 from grader.errors import UnreadableError
 from grader.report.html import ShownCheck, without_content
 from grader.report.html_run import runs_of
-from grader.report.template import fill
+from grader.report.template import compiled, fill
 from grader.report.verdict import UNCONFINED, tone, verdict
 from grader.submission.reader import read
 
@@ -22,8 +22,12 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 
+TEMPLATE = "notebook.html"
+
+
 def html_fragment(evidence: Evidence, report: Report) -> str:
     """Return the HTML; without drawings if the output of the submission cannot be drawn."""
+    compiled(TEMPLATE)
     try:
         return read(_fragment, evidence, report)
     except UnreadableError:
@@ -41,7 +45,7 @@ def _fragment(evidence: Evidence, report: Report) -> str:
         "silent": len(report.outcomes) - len(worth),
         "runs": runs_of(evidence.views(), _key(report)),
     }
-    return fill("notebook.html", values)
+    return fill(TEMPLATE, values)
 
 
 def _key(report: Report) -> str:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 
 from grader.report.plain import plain_line
 
@@ -17,6 +18,12 @@ ASSETS = Path(__file__).parent / "assets"
 
 def fill(template: str, values: Mapping[str, object]) -> str:
     """Return the text of a template with these values. Raises jinja2.UndefinedError if a value is missing."""
+    return compiled(template).render(values)
+
+
+@cache
+def compiled(template: str) -> Template:
+    """Return the compiled template. Compiling takes longer than filling in, so do it before a child process is forked."""
     environment = Environment(
         loader=FileSystemLoader(ASSETS),
         autoescape=True,
@@ -25,4 +32,4 @@ def fill(template: str, values: Mapping[str, object]) -> str:
         lstrip_blocks=True,
     )
     environment.filters["plain"] = plain_line
-    return environment.get_template(template).render(values)
+    return environment.get_template(template)

@@ -190,11 +190,13 @@ def _too_much() -> str:
 
 
 class _Packer(pickle.Pickler):
-    """Packs an enumeration's member as its value: some Pythons pack it as a call of `getattr`."""
+    """Packs members of enumerations and errors of ours as calls of their classes, whatever others have registered."""
 
     def reducer_override(self, obj: object) -> Any:  # noqa: ANN401 - as the base class
         """How to make it again."""
-        return (type(obj), (obj.value,)) if isinstance(obj, Enum) else NotImplemented
+        if isinstance(obj, Enum):
+            return type(obj), (obj.value,)
+        return (type(obj), obj.args) if isinstance(obj, GraderError) else NotImplemented
 
 
 class _Unpacker(pickle.Unpickler):

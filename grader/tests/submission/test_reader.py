@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copyreg
 import ctypes
 import os
 import resource
@@ -107,6 +108,15 @@ def test_the_limits_are_of_the_child_alone() -> None:
 def test_it_holds_no_descriptor_of_its_parents() -> None:
     with Path("/dev/null").open("rb"):
         assert len(read(os.listdir, "/proc/self/fd")) <= 5  # the standard ones, its pipe, and the listing itself
+
+
+def test_errors_come_back_whatever_others_have_made_of_pickling() -> None:
+    copyreg.pickle(UsageError, lambda error: (eval, (repr(error),)))
+    try:
+        with pytest.raises(UsageError, match="not so"):
+            read(refuses)
+    finally:
+        copyreg.dispatch_table.pop(UsageError)
 
 
 def test_threads_read_at_the_same_time() -> None:

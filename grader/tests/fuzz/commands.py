@@ -1,0 +1,109 @@
+"""What commands do with a submission, as far as no code of it runs: build and trials are made up."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from grader.checks.exercises import find_exercise
+from grader.checks.outcome import Status
+from grader.classroom.content import Refused, fingerprint, read
+from grader.classroom.found import find_submissions, passed_over
+from grader.classroom.order import Order, sources_for
+from grader.classroom.task import perform
+from grader.colcon.workspace import Built
+from grader.errors import UsageError
+from grader.grading.grade import Options, grade
+from grader.report.github import to_annotations, to_summary
+from grader.report.gradescope import to_gradescope
+from grader.report.html import html_page
+from grader.report.html_notebook import html_fragment
+from grader.report.json import from_json, to_json
+from grader.report.junit import to_junit
+from grader.tests.checks.made import BUILD, good, submission
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+    from pathlib import Path
+
+    from grader.colcon.build import Build
+    from grader.grading.grade import ClockChoice
+    from grader.report.report import Report
+    from grader.submission.package import Submission
+    from grader.trial.recording import Recording
+
+STEP = "03-circle-publisher"
+
+
+class Trials:
+    """Stands in for the class of trials: each of them sees this recording."""
+
+    def __init__(self, recording: Recording) -> None:
+        self._recording = recording
+
+    def __call__(self, *_: object, **__: object) -> Any:  # noqa: ANN401 - a Trial to whoever makes it
+        return self
+
+    def __enter__(self) -> Trials:  # noqa: PYI034 - typing.Self is Python 3.11's
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def await_ready(self) -> None:
+        """It is."""
+
+    def run(self, *_: object) -> Recording:
+        """What it saw."""
+        return self._recording
+
+    run_alone = run
+
+
+def graded(
+    given: Submission,
+    step: str = STEP,
+    build: Build = BUILD,
+    recording: Recording | None = None,
+    clock: ClockChoice = "wall",
+    unjudged: Collection[str] = (),
+) -> Report:
+    """The report, written in every form that there is; no check of it but those `unjudged` is an `error`."""
+    options = Options(in_cell=False, clock=clock, trials_at_once=1)
+    trials = Trials(recording or good())
+    done = grade(find_exercise(step), given, options, build=lambda *_, **__: Built(build, b""), trial=trials)
+    report = done.report
+    errors = [outcome for outcome in report.with_status(Status.ERROR) if outcome.id not in unjudged]
+    assert not errors, errors
+    html_page(done.evidence, report)
+    html_fragment(done.evidence, report)
+    assert from_json(to_json(report)).points == report.points
+    to_junit([("anna", report)])
+    to_gradescope(report)
+    to_summary([("anna", report)])
+    to_annotations([("anna", report)], "")
+    return report
+
+
+def graded_files(files: dict[str, bytes], step: str = STEP, **more: Any) -> Report:  # noqa: ANN401
+    """The report on our package with these files in it."""
+    ours = submission()
+    return graded(type(ours)("anna", ours.package_dir, {**ours.files, **files}, (), "0" * 64), step, **more)
+
+
+def graded_class(folder: Path) -> None:
+    """Every submission found in the folder is graded or refused."""
+    try:
+        found = find_submissions([folder], STEP, folder / "grades")
+        passed_over([folder], folder / "grades")
+    except UsageError:
+        return
+    for one in found:
+        exercise = find_exercise(one.exercise)
+        fingerprint(one, exercise)
+        content = read(one, exercise, "anna")
+        if isinstance(content, Refused):
+            assert not content.of_the_machine, content.reason
+            order = Order(found=(one,), roster={}, sources=sources_for((one,), None), ros="none", trusted=True)
+            assert not perform(order.task(one)).report.with_status(Status.ERROR)
+        else:
+            graded(content)

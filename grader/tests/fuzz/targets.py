@@ -1,0 +1,213 @@
+"""The targets: for each reader of what students hand in a function of bytes, and bytes to begin with."""
+
+from __future__ import annotations
+
+import dataclasses
+import gzip
+import io
+import json
+import tarfile
+import tempfile
+from contextlib import redirect_stdout
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.checks.exercises import find_exercise, load_exercise
+from grader.checks.judge import judge
+from grader.classroom import unpack
+from grader.colcon import workspace
+from grader.colcon.workspace import _described
+from grader.errors import GraderError, UnreadableError
+from grader.evidence import archive
+from grader.exercise.model import course_folder
+from grader.gradebook.put_together import graded_folder
+from grader.report.html_class import save_class_page
+from grader.report.json import to_json
+from grader.sandbox.process import Finished
+from grader.submission.reader import read
+from grader.tests.checks.made import FILES, NODE_FILE, evidence, good
+from grader.tests.fuzz.choices import Choices
+from grader.tests.fuzz.commands import STEP, graded_class, graded_files
+from grader.tests.fuzz.folders import archive as odd_archive
+from grader.tests.fuzz.folders import fill
+from grader.trial.recording import Output
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+ROOT = course_folder().parent
+
+
+@dataclasses.dataclass(frozen=True)
+class Target:
+    """`run` does what a command does with the bytes; it is through when it returns. `seeds`: bytes to vary."""
+
+    run: Callable[[bytes], object]
+    seeds: Callable[[], Iterable[bytes]]
+
+
+def names(data: bytes) -> None:
+    """`grade` of a folder with anything in it."""
+    with tempfile.TemporaryDirectory() as folder:
+        fill(Path(folder), Choices(data))
+        graded_class(Path(folder))
+
+
+def archives(data: bytes) -> None:
+    """Unpacking: the first byte says whether the rest is an archive, or what it is made of."""
+    made = odd_archive(Choices(data[1:])) if data[:1] == b"z" else data[1:]
+    said = io.StringIO()
+    with tempfile.TemporaryDirectory() as folder, redirect_stdout(said):
+        file = Path(folder) / "a.zip"
+        file.write_bytes(made)
+        assert unpack.main(str(file), str(Path(folder) / "out")) == 0
+    assert json.loads(said.getvalue()).keys() == {"why"}
+
+
+def sources(data: bytes) -> None:
+    """`check` of a package with this node."""
+    graded_files({NODE_FILE: data}, clock="auto")
+
+
+def setup_py(data: bytes) -> None:
+    """`check` of a package with this setup.py."""
+    graded_files({"setup.py": data})
+
+
+def package_xml(data: bytes) -> None:
+    """`check` of a package with this package.xml."""
+    graded_files({"package.xml": data}, step="04-package-files")
+
+
+def answers(data: bytes) -> None:
+    """`check` of these answers."""
+    # The trial that is made up has none of the messages that one question is about.
+    graded_files({"answers.toml": data}, step="02-discover-topics", unjudged=("pose-rate",))
+
+
+def install_tree(data: bytes) -> None:
+    """`check` of a package that built to this: a line of the build's log, and a tar stream."""
+    log, _, tree = data.partition(b"\n")
+    done = Finished(0, tree, workspace._READY + log.replace(b"\r", b"\n"), 1.0)
+    try:
+        build, _ = read(_described, done)
+    except UnreadableError:
+        return
+    graded_files({}, build=build)
+
+
+def output(data: bytes) -> None:
+    """`check` of a node that prints this."""
+    text = data.decode("utf-8", "replace")
+    recording = dataclasses.replace(good(), stderr=Output(text), stdout=Output(text))
+    graded_files({}, recording=recording)
+
+
+def notebooks(data: bytes) -> None:
+    """`gradebook sync` of this notebook, with nothing else or a package beside it."""
+    with tempfile.TemporaryDirectory() as folder:
+        submitted, together = Path(folder) / "in", Path(folder) / "out"
+        submitted.mkdir()
+        (submitted / f"{STEP}.ipynb").write_bytes(data)
+        try:
+            graded_folder(find_exercise(STEP), submitted, together)
+        except GraderError:
+            return
+        graded_class(Path(folder))
+
+
+def recordings(data: bytes) -> None:
+    """`regrade` of a recording with one of its files changed: the first byte says which."""
+    files = _recording()
+    changed = sorted(files)[data[0] % len(files)] if data else ""
+    with tempfile.TemporaryDirectory() as folder:
+        for path, content in files.items():
+            (Path(folder) / path).parent.mkdir(parents=True, exist_ok=True)
+            (Path(folder) / path).write_bytes(data[1:] if path == changed else content)
+        try:
+            kept = read(archive.load, Path(folder), load_exercise)
+        except GraderError:
+            return
+        try:
+            read(judge, kept.evidence)
+        except UnreadableError:
+            return
+
+
+def reports(data: bytes) -> None:
+    """`class-page` of this report beside a good one."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "anna.json").write_bytes(data)
+        (Path(folder) / "ben.json").write_bytes(_report())
+        save_class_page(Path(folder), Path(folder) / "index.html")
+
+
+@cache
+def _recording() -> dict[str, bytes]:
+    with tempfile.TemporaryDirectory() as folder:
+        archive.save(Path(folder), evidence(good()), "none", ())
+        return {str(path.relative_to(folder)): path.read_bytes() for path in Path(folder).rglob("*") if path.is_file()}
+
+
+@cache
+def _report() -> bytes:
+    return to_json(graded_files({})).encode()
+
+
+def _files(pattern: str) -> Callable[[], Iterable[bytes]]:
+    return lambda: [path.read_bytes() for path in sorted(ROOT.glob(pattern))]
+
+
+def _archives() -> Iterable[bytes]:
+    yield b"z" + bytes(range(1, 200))
+    plain = io.BytesIO()
+    with tarfile.open(fileobj=plain, mode="w") as tar:
+        tar.add(ROOT / "solutions" / STEP, "p")
+    yield b"a" + plain.getvalue()
+    yield b"a" + gzip.compress(plain.getvalue())
+
+
+def _install_trees() -> Iterable[bytes]:
+    tree = io.BytesIO()
+    with tarfile.open(fileobj=tree, mode="w", format=tarfile.GNU_FORMAT) as tar:
+        for path, text in {
+            "my_robot_controller/lib/my_robot_controller/draw_circle": b"x",
+            "my_robot_controller/lib/p.egg-info/entry_points.txt": b"[console_scripts]\ndraw_circle = a.b:main\n",
+            f"my_robot_controller/{'long' * 40}": b"",
+        }.items():
+            member = tarfile.TarInfo(path)
+            member.size = len(text)
+            tar.addfile(member, io.BytesIO(text))
+    log = b"Traceback (most recent call last):\r  File \"setup.py\", line 3, in <module>\rNameError: name 'x'"
+    yield log + b"\n" + tree.getvalue()
+
+
+def _outputs() -> Iterable[bytes]:
+    yield b"[INFO] [1795197264.452119571] [draw_circle]: x=5.5, y=5.5\n" * 3
+    yield (
+        b'Traceback (most recent call last):\n  File "/ws/install/my_robot_controller/lib/python3.11/site-packages/'
+        b'my_robot_controller/draw_circle.py", line 12, in send\n    msg.linear.y.z = 2\n'
+        b"AttributeError: 'float' object has no attribute 'z'. Did you mean: 'x'?\n"
+    )
+
+
+def _recordings() -> Iterable[bytes]:
+    return [bytes([number]) + _recording()[path] for number, path in enumerate(sorted(_recording()))]
+
+
+TARGETS = {
+    "names": Target(names, lambda: [bytes(range(n, 250, 3)) for n in range(8)]),
+    "archives": Target(archives, _archives),
+    "sources": Target(sources, _files("grader/tests/mistakes/*/**/draw_circle.py")),
+    "setup.py": Target(setup_py, _files("grader/tests/mistakes/*/**/setup.py")),
+    "package.xml": Target(
+        package_xml, lambda: [*_files("solutions/*/**/package.xml")(), FILES["package.xml"].encode()]
+    ),
+    "answers": Target(answers, _files("solutions/*/answers.toml")),
+    "install tree": Target(install_tree, _install_trees),
+    "output": Target(output, _outputs),
+    "notebooks": Target(notebooks, _files("exercises/*/*.ipynb")),
+    "recordings": Target(recordings, _recordings),
+    "reports": Target(reports, lambda: [_report()]),
+}

@@ -1,0 +1,54 @@
+"""Some of what atheris would try, the same every time: through the real door, with its process and its limits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from grader.tests.fuzz.targets import TARGETS
+from grader.tests.no_ros import without_ros
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+MOST = 4000
+"""Bytes of an input that is made up; changed ones are as long as what was changed."""
+
+
+@pytest.fixture(autouse=True)
+def no_ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    without_ros(tmp_path, monkeypatch)
+
+
+def changed(seed: bytes) -> st.SearchStrategy[bytes]:
+    """The seed with some bytes in its middle replaced, cut out or doubled."""
+
+    def change(start: int, length: int, new: bytes) -> bytes:
+        return seed[:start] + new + seed[start + length :]
+
+    return st.builds(change, st.integers(0, len(seed)), st.integers(0, 40), st.binary(max_size=40))
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_whatever_is_handed_in_has_an_outcome(name: str) -> None:
+    target = TARGETS[name]
+    seeds = sorted(target.seeds(), key=len)[:4]
+
+    @settings(
+        max_examples=12,
+        derandomize=True,
+        deadline=None,
+        database=None,
+        phases=(Phase.explicit, Phase.generate),
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(st.one_of(st.binary(max_size=MOST), *map(changed, seeds)))
+    def run(data: bytes) -> None:
+        target.run(data)
+
+    for seed in seeds:
+        target.run(seed)
+    run()
