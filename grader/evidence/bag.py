@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from rosbags.interfaces import Nodetype
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from grader.ros.typestore import jazzy_types, register
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
     from rosbags.interfaces import Connection
-    from rosbags.typesys.store import Typestore
 
     from grader.trial.recording import Message
 
@@ -27,7 +26,7 @@ def write_bag(folder: Path, messages: Sequence[Message], prefixes: Iterable[Path
     A bag's stamp is the arrival on the trial's clock (ns); what came before the scenario began stands at 0. Messages of
     one instant are a nanosecond apart, since readers sort by stamps.
     """
-    store = get_typestore(Stores.ROS2_JAZZY)
+    store = jazzy_types()
     known = list(prefixes)
     with Writer(folder, version=_VERSION, storage_plugin=StoragePlugin.MCAP) as writer:
         connections: dict[tuple[str, str], Connection] = {}
@@ -35,7 +34,7 @@ def write_bag(folder: Path, messages: Sequence[Message], prefixes: Iterable[Path
         for message in messages:
             key = (message.topic, message.type)
             if key not in connections:
-                _register(store, message.type, known)
+                register(store, message.type, known)
                 connections[key] = writer.add_connection(message.topic, message.type, typestore=store)
             stamp = max(stamp + 1, round(message.t_s * 1e9))
             writer.write(connections[key], stamp, message.data)
@@ -56,28 +55,3 @@ def read_payloads(folder: Path) -> Iterator[bytes]:
     except Exception as error:  # a damaged file shows itself in any way: as a bad offset, text or checksum
         message = f"the bag is damaged: {error}"
         raise ValueError(message) from error
-
-
-def _register(store: Typestore, name: str, prefixes: Sequence[Path]) -> None:
-    """Teach the store a type and those that it is made of, from the .msg files as installed."""
-    if name in store.types:
-        return
-    package, _, short = name.partition("/msg/")
-    for prefix in prefixes:
-        file = prefix / "share" / package / "msg" / f"{short}.msg"
-        if file.is_file():
-            types = get_types_from_msg(file.read_text(encoding="utf-8"), name)
-            for _constants, fields in types.values():
-                for _field, field in fields:
-                    for part in _names(field):
-                        _register(store, part, prefixes)
-            store.register({key: value for key, value in types.items() if key not in store.types})
-            return
-
-
-def _names(field: object) -> Iterator[str]:
-    match field:
-        case (Nodetype.NAME, str(name)):
-            yield name
-        case (Nodetype.ARRAY | Nodetype.SEQUENCE, ((_, _) as inner, _)):
-            yield from _names(inner)

@@ -29,6 +29,16 @@ GROUPS = {
             "type": "Print a action's type",
         },
     ),
+    "bag": Group(
+        "Various rosbag related sub-commands",
+        {
+            "convert": "Given an input bag, write out a new bag with different settings",
+            "info": "Print information about a bag to the screen",
+            "play": "Play back ROS data from a bag",
+            "record": "Record ROS data to a bag",
+            "reindex": "Reconstruct metadata file for a bag",
+        },
+    ),
     "daemon": Group(
         "Various daemon related sub-commands",
         {

@@ -1,0 +1,1 @@
+"""The verbs of `ros2 bag`, one module each. rosbags reads and writes the files."""

@@ -1,0 +1,71 @@
+"""Options and checks that several verbs of `ros2 bag` share."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+STORAGES = ("mcap", "sqlite3")
+LEVELS = ("debug", "info", "warn", "error", "fatal")
+
+
+def add_bag(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of a verb that reads a bag."""
+    parser.add_argument("bag_path", type=existing_path, help="Bag to open")
+    parser.add_argument(
+        "-s",
+        "--storage",
+        default="",
+        choices=STORAGES,
+        help="Storage implementation of bag. By default attempts to detect automatically - use this argument to "
+        "override.",
+    )
+
+
+def add_log_level(parser: argparse.ArgumentParser) -> None:
+    """Add the option that decides which messages are printed."""
+    parser.add_argument("--log-level", default="info", choices=LEVELS, help="Logging level.")
+
+
+def existing_path(text: str) -> Path:
+    """A path that exists, for argparse."""
+    path = Path(text)
+    if not path.exists():
+        message = f"Bag path '{text}' does not exist!"
+        raise argparse.ArgumentTypeError(message)
+    return path
+
+
+def above_zero(text: str) -> float:
+    """A number above 0, for argparse."""
+    value = _number(text)
+    if not 0 < value < float("inf"):
+        message = f"{text} is not in the valid range (> 0.0)"
+        raise argparse.ArgumentTypeError(message)
+    return value
+
+
+def not_negative(text: str) -> float:
+    """A number from 0 on, for argparse."""
+    value = _number(text)
+    if not 0 <= value < float("inf"):
+        message = f"Value {text} is less than zero."
+        raise argparse.ArgumentTypeError(message)
+    return value
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError as error:
+        message = f"{text} is not the valid type (float)"
+        raise argparse.ArgumentTypeError(message) from error
+
+
+def absolute(names: Iterable[str]) -> list[str]:
+    """Names of topics with the slash that they begin with."""
+    return [name if name.startswith("/") else f"/{name}" for name in names]

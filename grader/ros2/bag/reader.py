@@ -1,0 +1,65 @@
+"""Reading a bag: of any storage, made by rosbag2 or by our own `ros2 bag`."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from rosbags.rosbag2 import Reader
+
+from grader.ros.failure import Ros2Error
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+
+@contextmanager
+def open_bag(path: Path) -> Iterator[Reader]:
+    """Open a bag: its folder, or a file of it.
+
+    Raises:
+        Ros2Error: it is not a bag, or it is damaged.
+    """
+    if path.is_dir() and not (path / "metadata.yaml").exists():
+        files = [file for ending in ("*.mcap", "*.db3") for file in path.glob(ending)]
+        text = f"[ERROR] [ros2bag]: No metadata.yaml in '{path}'."
+        if files:
+            text += f"\nThe recording did not end in order. Type: ros2 bag reindex {path}"
+        raise Ros2Error(text)
+    try:
+        reader = Reader(path)
+        reader.open()
+    except Exception as error:  # a damaged file shows itself in any way: as a bad offset, text or checksum
+        raise _damaged(path, error) from error
+    try:
+        yield reader
+    finally:
+        reader.close()
+
+
+def messages(
+    reader: Reader, path: Path, topics: set[str], start: int | None = None
+) -> Iterator[tuple[str, int, bytes]]:
+    """Topic, stamp (ns since the epoch) and data of the messages on `topics`, in order, from a stamp on.
+
+    Raises:
+        Ros2Error: the bag is damaged.
+    """
+    chosen = [connection for connection in reader.connections if connection.topic in topics]
+    if not chosen:
+        return
+    found = reader.messages(chosen, start=start)
+    while True:
+        try:
+            connection, stamp, data = next(found)
+        except StopIteration:
+            return
+        except Exception as error:
+            raise _damaged(path, error) from error
+        yield connection.topic, stamp, bytes(data)
+
+
+def _damaged(path: Path, error: Exception) -> Ros2Error:
+    lines = str(error).strip().splitlines() or [type(error).__name__]
+    return Ros2Error(f"[ERROR] [ros2bag]: The bag '{path}' cannot be read: {lines[0]}")

@@ -1,0 +1,96 @@
+"""What can still be read of a bag whose recording was killed, written as a whole bag."""
+
+from __future__ import annotations
+
+import heapq
+import shutil
+import sqlite3
+import tempfile
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from mcap.exceptions import McapError
+from mcap.records import Channel, Message, Schema
+from mcap.stream_reader import StreamReader
+
+from grader.ros.failure import Ros2Error
+from grader.ros2.bag.say import Logger
+from grader.ros2.bag.writer import BagWriter
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+class Saved(NamedTuple):
+    """A message of a damaged file."""
+
+    stamp_ns: int
+    topic: str
+    type: str
+    data: bytes
+
+
+def recover(folder: Path) -> None:
+    """Replace the files of a bag by a whole bag with all messages that can be read, in order.
+
+    The old files stay until the new ones are complete.
+
+    Raises:
+        Ros2Error: there is no file of a bag, or none can be read.
+    """
+    files = sorted(file for file in folder.iterdir() if file.suffix in (".mcap", ".db3"))
+    if not files:
+        message = f"[ERROR] [ros2bag]: No .mcap or .db3 file in '{folder}'"
+        raise Ros2Error(message)
+    storage = "mcap" if files[0].suffix == ".mcap" else "sqlite3"
+    log = Logger("rosbag2_cpp")
+    log.info(f"Beginning reindexing bag in directory: {folder}")
+    with tempfile.TemporaryDirectory(prefix=".reindex-", dir=folder) as temporary:
+        made = Path(temporary, folder.resolve().name)
+        with BagWriter(made, storage) as writer:
+            known: set[tuple[str, str]] = set()
+            for saved in heapq.merge(*map(_messages, files), key=lambda saved: saved.stamp_ns):
+                if (saved.topic, saved.type) not in known:
+                    writer.add_topic(saved.topic, saved.type)
+                    known.add((saved.topic, saved.type))
+                writer.write(saved.topic, saved.type, saved.stamp_ns, saved.data)
+        for file in (*files, *folder.glob("*.db3-journal")):
+            file.unlink()
+        for new in sorted(made.iterdir(), reverse=True):
+            shutil.move(new, folder / new.name)
+    log.info("Reindexing complete.")
+
+
+def _messages(file: Path) -> Iterator[Saved]:
+    return iter(sorted(_mcap(file) if file.suffix == ".mcap" else _sqlite(file), key=lambda saved: saved.stamp_ns))
+
+
+def _mcap(file: Path) -> Iterator[Saved]:
+    schemas: dict[int, str] = {}
+    channels: dict[int, Channel] = {}
+    with file.open("rb") as stream:
+        try:
+            for record in StreamReader(stream).records:
+                match record:
+                    case Schema():
+                        schemas[record.id] = record.name
+                    case Channel():
+                        channels[record.id] = record
+                    case Message():
+                        channel = channels[record.channel_id]
+                        yield Saved(record.log_time, channel.topic, schemas[channel.schema_id], record.data)
+        except (McapError, EOFError, ValueError, KeyError):
+            # The file ends in the middle of a record.
+            return
+
+
+def _sqlite(file: Path) -> Iterator[Saved]:
+    query = "SELECT timestamp, name, type, data FROM messages JOIN topics ON topics.id = topic_id ORDER BY timestamp"
+    try:
+        # Opening it undoes what was half written.
+        with closing(sqlite3.connect(file)) as database:
+            yield from (Saved(*row) for row in database.execute(query))
+    except sqlite3.Error as error:
+        message = f"[ERROR] [ros2bag]: '{file}' cannot be read: {error}"
+        raise Ros2Error(message) from error

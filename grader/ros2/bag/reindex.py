@@ -1,0 +1,31 @@
+"""The verb `bag reindex`: make a bag readable whose recording did not end in order."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.ros.failure import Ros2Error
+from grader.ros2.bag.options import add_bag
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    add_bag(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the metadata again, and the end of a file that was cut off.
+
+    Raises:
+        Ros2Error: it is not the folder of a bag, or nothing of it can be read.
+    """
+    if not args.bag_path.is_dir():
+        message = "[ERROR] [ros2bag]: Must specify a bag directory"
+        raise Ros2Error(message)
+    from grader.ros2.bag.recovery import recover
+
+    recover(args.bag_path)
+    return 0

@@ -1,0 +1,134 @@
+"""Writing a bag as rosbag2 does, so that it can be read whenever the writer ends, killed or not."""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import TYPE_CHECKING, Literal
+
+import yaml
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
+from rosbags.rosbag2 import Writer as RosbagsWriter
+from rosbags.rosbag2.storage_mcap import McapWriter
+from rosbags.rosbag2.storage_sqlite3 import Sqlite3Writer
+
+from grader.ros import index
+from grader.ros.failure import Ros2Error
+from grader.ros.typestore import jazzy_types, register
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+    from types import TracebackType
+    from typing import Self
+
+    from rosbags.interfaces import Connection, Qos
+
+_VERSION: Literal[9] = 9
+"""Of rosbag2's metadata: what Jazzy reads and writes."""
+_INFORMATION = "rosbag2_bagfile_information"
+_KEEP_S = 1.0
+"""How often what has arrived is handed to the file: what a killed recorder can lose."""
+_ENDINGS = {"mcap": ".mcap", "sqlite3": ".db3"}
+
+
+class BagWriter:
+    """A new bag as a context manager; leaving it writes what is left and the metadata.
+
+    Args:
+        folder: The folder of the bag; it must not exist.
+        storage: "mcap" or "sqlite3".
+        compression: "none", "file", "message" or "storage" (inside of the MCAP file).
+
+    Raises:
+        Ros2Error: the folder cannot be made.
+    """
+
+    def __init__(self, folder: Path, storage: str, compression: str = "none") -> None:
+        self.folder = folder.absolute()
+        self._storage = storage
+        self._types = jazzy_types()
+        self._connections: dict[tuple[str, str], Connection] = {}
+        self._kept_at = time.monotonic()
+        try:
+            plugin = StoragePlugin[storage.upper()]
+            self._writer = RosbagsWriter(self.folder, version=_VERSION, storage_plugin=plugin)
+            self._writer.set_compression(CompressionMode[compression.upper()], CompressionFormat.ZSTD)
+            self._writer.open()
+        except Exception as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            message = f"[ERROR] [ros2bag]: Could not create bag folder '{folder}'.\n{reason}"
+            raise Ros2Error(message) from error
+
+    def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = ()) -> None:
+        """Add a topic; messages of it may be written then.
+
+        Raises:
+            Ros2Error: its type is not installed here.
+        """
+        register(self._types, kind, index.prefixes())
+        if kind not in self._types.types:
+            message = f"The type {kind} is not installed"
+            raise Ros2Error(message)
+        made = self._writer.add_connection(topic, kind, typestore=self._types, offered_qos_profiles=list(offered))
+        self._connections[topic, kind] = made
+
+    def write(self, topic: str, kind: str, stamp_ns: int, data: bytes) -> None:
+        """Write a message.
+
+        Args:
+            topic: A topic that was added.
+            kind: Its type.
+            stamp_ns: When it arrived (ns since the epoch).
+            data: The message as it was sent (CDR).
+
+        Raises:
+            OSError: the file cannot be written.
+        """
+        self._writer.write(self._connections[topic, kind], stamp_ns, data)
+
+    def keep(self) -> None:
+        """Hand to the file what was written, at most once per second; then it outlives this process."""
+        if time.monotonic() - self._kept_at < _KEEP_S:
+            return
+        self._kept_at = time.monotonic()
+        match self._writer.storage:
+            case McapWriter() as mcap:
+                if mcap.chunk.msgs:
+                    mcap.close_chunk()
+                mcap.bio.flush()
+            case Sqlite3Writer() as sqlite:
+                sqlite.conn.commit()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self._writer.close()
+            _as_rosbag2_names_it(self.folder, _ENDINGS[self._storage])
+        except OSError as failure:
+            text = f"[ERROR] [ros2bag]: {self.folder}: {failure.strerror}."
+            text += f"\nWhat was written before is in it. When there is room, type: ros2 bag reindex {self.folder}"
+            raise Ros2Error(text) from failure
+
+
+def _as_rosbag2_names_it(folder: Path, ending: str) -> None:
+    """Name the file and the distribution as rosbag2 does: bag/bag_0.mcap, jazzy.
+
+    The metadata is replaced last: without it, `ros2 bag reindex` makes it again.
+    """
+    metadata = folder / "metadata.yaml"
+    data = yaml.safe_load(metadata.read_text("utf-8"))
+    (file,) = (path for path in folder.iterdir() if ending in path.suffixes)
+    renamed = file.with_name(file.name.replace(ending, f"_0{ending}", 1))
+    told = data[_INFORMATION]
+    told["relative_file_paths"] = [renamed.name]
+    told["files"][0]["path"] = renamed.name
+    told["ros_distro"] = os.environ.get("ROS_DISTRO", "jazzy")
+    new = metadata.with_suffix(".yaml.tmp")
+    new.write_text(yaml.safe_dump(data, sort_keys=False), "utf-8")
+    file.rename(renamed)
+    new.replace(metadata)

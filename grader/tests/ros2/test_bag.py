@@ -1,0 +1,181 @@
+"""`ros2 bag`: what was on the wire is in the bag and comes out of it again, however the recorder ended."""
+
+from __future__ import annotations
+
+import json
+import signal
+from typing import TYPE_CHECKING
+
+import pexpect
+import pytest
+from mcap.reader import make_reader
+
+from grader.tests.ros2.world import World, world
+from grader.tests.waiting import HANG_S
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from grader.tests.ros2.world import Running
+
+TALKER = """
+import sys, rclpy
+from rclpy.qos import QoSProfile
+from rclpy.serialization import serialize_message
+from std_msgs.msg import Int32
+rclpy.init()
+node = rclpy.create_node("talker")
+publisher = node.create_publisher(Int32, "/count", QoSProfile(depth=1000))
+while not publisher.get_subscription_count():
+    rclpy.spin_once(node, timeout_sec=0.05)
+for number in range(int(sys.argv[1])):
+    publisher.publish(Int32(data=number))
+publisher.wait_for_all_acked()
+print("sent", flush=True)
+while rclpy.ok():
+    rclpy.spin_once(node, timeout_sec=0.05)
+"""
+LISTENER = """
+import rclpy
+from rclpy.qos import QoSProfile
+from std_msgs.msg import Int32
+rclpy.init()
+node = rclpy.create_node("listener")
+def heard(message, info):
+    print("heard", message.data, info["received_timestamp"], flush=True)
+node.create_subscription(Int32, "/heard", heard, QoSProfile(depth=1000))
+print("listening", flush=True)
+rclpy.spin(node)
+"""
+
+
+@pytest.fixture
+def quiet(tmp_path: Path) -> Iterator[World]:
+    """A domain with nobody in it; the home has two programs."""
+    for made in world(tmp_path):
+        made.home.joinpath("talker.py").write_text(TALKER)
+        made.home.joinpath("listener.py").write_text(LISTENER)
+        yield made
+
+
+def record(here: World, options: str = "/count", count: int = 300) -> Running:
+    """Start a recording of so many messages; returns the recorder when all have been received."""
+    recorder = here.start(f"ros2 bag record -o bag {options}", "Recording...")
+    here.start(f"python3 talker.py {count}", "sent")
+    return recorder
+
+
+def numbers(folder: Path) -> list[int]:
+    """What a bag holds, read by another library than the one that wrote it."""
+    (file,) = folder.glob("*.mcap")
+    with file.open("rb") as stream:
+        found = list(make_reader(stream).iter_messages())
+    assert all(schema is not None and schema.name == "std_msgs/msg/Int32" for schema, _, _ in found)
+    return [int.from_bytes(message.data[4:8], "little", signed=True) for _, _, message in found]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_all_that_arrived_before_the_end_is_in_the_bag(quiet: World, number: signal.Signals) -> None:
+    recorder = record(quiet, count=500)
+    assert recorder.stop(number) == 0
+    assert numbers(quiet.home / "bag") == list(range(500))
+    told = quiet.run("ros2 bag info bag").stdout
+    assert "Files:             bag_0.mcap\n" in told
+    assert "ROS Distro:        jazzy\n" in told
+    assert "Messages:          500\n" in told
+    assert "Topic: /count | Type: std_msgs/msg/Int32 | Count: 500 | Serialization Format: cdr\n" in told
+    assert quiet.run("ros2 bag info -t bag").stdout == "/count\n"
+
+
+def test_a_bag_is_played_in_its_rhythm_to_another_topic(quiet: World) -> None:
+    record(quiet, count=50).stop()
+    listener = quiet.start("python3 listener.py", "listening")
+    done = quiet.run("ros2 bag play bag --remap /count:=/heard --rate 4")
+    listener.wait_for("heard", 50)
+    assert done.code == 0
+    assert "Set rate to 4" in done.stderr
+    assert [line.split()[1] for line in listener.lines if "heard" in line] == [str(number) for number in range(50)]
+
+
+@pytest.mark.parametrize(("storage", "ending"), [("mcap", ".mcap"), ("sqlite3", ".db3")])
+def test_a_killed_recording_is_made_whole(quiet: World, storage: str, ending: str) -> None:
+    recorder = record(quiet, f"-s {storage} /count")
+    recorder.wait_for("All requested topics are subscribed")
+    # What has been handed to the file a second ago outlives the recorder.
+    quiet.run("while [ $(stat -c %s bag/bag* | sort -n | tail -1) -lt 10000 ]; do sleep 0.1; done")
+    quiet.run("sleep 2")
+    recorder.stop(signal.SIGKILL)
+    refused = quiet.run("ros2 bag info bag")
+    assert refused.code == 1
+    assert "ros2 bag reindex bag" in refused.stderr
+    assert quiet.run("ros2 bag reindex bag").code == 0
+    assert "Messages:          300\n" in quiet.run("ros2 bag info bag").stdout
+    assert sorted(path.name for path in (quiet.home / "bag").iterdir()) == [f"bag_0{ending}", "metadata.yaml"]
+
+
+def test_a_disk_that_is_full_is_told_and_the_bag_can_be_read(quiet: World) -> None:
+    # A limit on the size of a file fails as a full disk does, and needs no disk.
+    recorder = quiet.start("bash -c 'ulimit -f 8; exec ros2 bag record -o bag /count'", "Recording...")
+    quiet.start("python3 talker.py 3000", "sent")
+    assert recorder.process.wait(HANG_S) == 1
+    recorder.wait_for("File too large")
+    quiet.run("ros2 bag reindex bag")
+    assert quiet.run("ros2 bag info bag").code == 0
+    found = numbers(quiet.home / "bag")
+    assert found == list(range(len(found)))
+
+
+def test_convert_puts_bags_together(quiet: World) -> None:
+    record(quiet, count=20).stop()
+    options = quiet.home / "options.yaml"
+    options.write_text("output_bags:\n- {uri: new, storage_id: sqlite3, all_topics: true}\n")
+    assert quiet.run("ros2 bag convert -i bag -i bag -o options.yaml").code == 0
+    assert "Count: 40 " in quiet.run("ros2 bag info new").stdout
+    options.write_text("output_bags: 3\n")
+    refused = quiet.run("ros2 bag convert -i bag -o options.yaml")
+    assert refused.code == 1
+    assert "an example:" in refused.stderr
+
+
+def test_space_pauses_and_the_right_arrow_steps(quiet: World) -> None:
+    record(quiet, count=5).stop()
+    listener = quiet.start("python3 listener.py", "listening")
+    command = "ros2 bag play bag --start-paused --remap /count:=/heard"
+    player = pexpect.spawn("bash", ["-c", command], env=quiet.env, cwd=quiet.home, timeout=HANG_S, encoding="utf-8")
+    player.expect_exact("Press SPACE for Pause/Resume")
+    player.expect_exact("Playback until timestamp: -1")
+    player.send("\x1b[C")
+    listener.wait_for("heard 0")
+    assert sum("heard" in line for line in listener.lines) == 1
+    player.send(" ")
+    player.expect_exact("Resuming play.")
+    listener.wait_for("heard 4")
+    player.expect(pexpect.EOF)
+
+
+@pytest.mark.parametrize(
+    ("command", "text", "code"),
+    [
+        ("ros2 bag record", "Need to specify at least one option out of --all", 1),
+        ("ros2 bag record -o there -a", "Output folder 'there' already exists.", 1),
+        ("ros2 bag record -e '('  -o new", "cannot be read", 1),
+        ("ros2 bag record -a --use-sim-time --no-discovery", "are incompatible settings", 1),
+        ("ros2 bag record -a --max-bag-size 3", "--max-bag-size needs a whole ROS 2", 1),
+        ("ros2 bag record -a -o /proc/bag", "Could not create bag folder '/proc/bag'.", 1),
+        ("ros2 bag play nowhere", "Bag path 'nowhere' does not exist!", 2),
+        ("ros2 bag play there --rate 0", "0 is not in the valid range (> 0.0)", 2),
+        ("ros2 bag play there --remap x", "'x' is not a remapping", 1),
+        ("ros2 bag info there", "No metadata.yaml in 'there'.", 1),
+        ("ros2 bag info broken", "The bag 'broken' cannot be read", 1),
+        ("ros2 bag reindex there", "No .mcap or .db3 file in 'there'", 1),
+    ],
+)
+def test_what_cannot_be_done_is_one_sentence(quiet: World, command: str, text: str, code: int) -> None:
+    quiet.home.joinpath("there").mkdir()
+    quiet.home.joinpath("broken").mkdir()
+    quiet.home.joinpath("broken/metadata.yaml").write_text(json.dumps({"rosbag2_bagfile_information": []}))
+    done = quiet.run(command)
+    assert text in done.stderr
+    assert "Traceback" not in done.stderr
+    assert done.code == code
