@@ -100,7 +100,7 @@ def check(
     from grader.grading.grade import grade
     from grader.grading.options import Options
     from grader.report.files import check_writable
-    from grader.report.progress import progress
+    from grader.report.progress_line import progress
     from grader.report.terminal import early
     from grader.sandbox import bubblewrap
 

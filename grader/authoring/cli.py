@@ -40,7 +40,7 @@ def validate(
 ) -> None:
     """See whether exercises, solutions, starting points and lessons are as they should be, for authors."""
     from grader.authoring.validate import validate as problems_of
-    from grader.report.progress import progress
+    from grader.report.progress_line import progress
 
     with progress() as tell:
         problems = problems_of(exercises or [], tell)

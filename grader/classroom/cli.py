@@ -146,7 +146,7 @@ def build(
     ] = False,
 ) -> None:
     """Make the archive to upload to Gradescope as an autograder."""
-    from grader.classroom.gradescope import build_archive
+    from grader.classroom.gradescope_archive import build_archive
 
     if file.is_dir() or file.suffix != ".zip":
         message = f"{file} does not end in .zip. Name a .zip file."

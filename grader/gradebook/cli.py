@@ -60,7 +60,7 @@ def sync(
     from grader.common.words import a_list, count, printable
     from grader.gradebook.folders import open_class
     from grader.gradebook.scores import sync as write
-    from grader.report.progress import progress
+    from grader.report.progress_line import progress
 
     folders = open_class(course)
     with progress() as tell:
@@ -117,7 +117,7 @@ def install(
     from grader.exercise.model import course_folder
     from grader.notebook.kernel import DISPLAY_NAME
     from grader.notebook.kernel import install as install_kernel
-    from grader.report.progress import progress
+    from grader.report.progress_line import progress
     from grader.ros import underlay
     from grader.ros.installation import find_ros
 

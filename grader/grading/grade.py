@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from grader.checks.judge import in_words
-from grader.colcon import workspace
+from grader.colcon import runner
 from grader.common.refusal import refusal
 from grader.errors import MachineError
 from grader.evidence.evidence import Evidence, Fault
@@ -53,7 +53,7 @@ def grade(
     tell: Callable[[str], None] = lambda _: None,
     *,
     early: Callable[[Sequence[Outcome]], object] = lambda _: None,
-    build: Callable[..., workspace.Built] = workspace.build,
+    build: Callable[..., runner.Built] = runner.build,
     trial: Callable[..., Trial] = Trial,
 ) -> Graded:
     """Grade a submission.
@@ -76,7 +76,7 @@ class _Grading:
     options: Options
     tell: Callable[[str], None]
     early: Callable[[Sequence[Outcome]], object]
-    build: Callable[..., workspace.Built]
+    build: Callable[..., runner.Built]
     trial: Callable[..., Trial]
     turns: Turns
     stage: Stage = "build"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from grader.checks.kinds import KINDS
 from grader.grading.clock import stops_at_doubt
 from grader.trial.inputs import draw_inputs
-from grader.trial.start import start_pose
+from grader.trial.start_pose import start_pose
 from grader.trial.trial import Plan
 
 if TYPE_CHECKING:

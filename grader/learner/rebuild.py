@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from grader.colcon import workspace
+from grader.colcon import runner
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class Rebuild:
 
     def __init__(self) -> None:
         self.runs = 0
-        self._last: tuple[Submission, workspace.Built] | None = None
+        self._last: tuple[Submission, runner.Built] | None = None
 
     def __call__(
         self,
@@ -36,19 +36,19 @@ class Rebuild:
         *,
         in_cell: bool,
         tell: Callable[[str], None],
-    ) -> workspace.Built:
+    ) -> runner.Built:
         """Build the submission, with colcon or without; `tell` hears which."""
         built = read(renewed, submission, *self._last) if self._last else None
         if built is not None:
             tell("Taking the last build, with the modules as they are now")
         else:
             self.runs += 1
-            built = workspace.build(submission, ros, in_cell=in_cell, tell=tell)
+            built = runner.build(submission, ros, in_cell=in_cell, tell=tell)
         self._last = (submission, built)
         return built
 
 
-def renewed(submission: Submission, before: Submission, built: workspace.Built) -> workspace.Built | None:
+def renewed(submission: Submission, before: Submission, built: runner.Built) -> runner.Built | None:
     """What was `built` of a submission `before`, with the modules of this one; None where more than those differ."""
     if submission.files.keys() != before.files.keys() or submission.executable != before.executable:
         return None
@@ -57,10 +57,10 @@ def renewed(submission: Submission, before: Submission, built: workspace.Built) 
     if built.build.exit_code != 0 or not all(installed.values()):
         return None
     texts = {f"{built.build.package}/{place}": changed[path] for path, place in installed.items() if place}
-    return workspace.Built(replace(built.build, seconds=0.0), _with_texts(built.tree, texts))
+    return runner.Built(replace(built.build, seconds=0.0), _with_texts(built.tree, texts))
 
 
-def _installed(path: str, built: workspace.Built) -> str | None:
+def _installed(path: str, built: runner.Built) -> str | None:
     """Where a module of the submission was installed; None for what is no module, or was not."""
     if not path.endswith(".py") or "/" not in path:
         return None

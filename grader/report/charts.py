@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from grader.common.words import number
 from grader.evidence import activity
-from grader.report.requested import requested_interval, requested_values
+from grader.report.expectations import requested_interval, requested_values
 from grader.report.svg import coordinate, picture, points, tag, words
 from grader.trial.recording import FIELDS
 

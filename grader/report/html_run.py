@@ -11,8 +11,8 @@ from markupsafe import Markup
 from grader.common.words import a_list, count
 from grader.evidence import activity
 from grader.report import charts
+from grader.report.expectations import must_drive
 from grader.report.graph_drawing import GraphDrawing, draw_graph
-from grader.report.requested import must_drive
 from grader.report.scene import scene_of
 from grader.report.shapes import SIDE_M
 from grader.report.svg import LEFT, SIDE, TOP, scene_svg, sign

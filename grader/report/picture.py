@@ -10,9 +10,9 @@ from PIL import Image, ImageDraw, ImageFont
 
 from grader.checks.outcome import Status
 from grader.common.words import printable
-from grader.report.canvas import paint
 from grader.report.files import not_written
 from grader.report.scene import Scene, scene_of
+from grader.report.scene_image import paint
 from grader.report.shapes import DEEP, LOOKS, SEA, SIDE_M, Rgb, Role
 from grader.submission.reader import read
 

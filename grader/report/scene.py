@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.evidence import activity
-from grader.report.requested import requested_path, shapes_of
+from grader.report.expectations import requested_path, shapes_of
 from grader.report.shapes import SIDE_M, Arrow, Line, Point, Ring, Role
 
 if TYPE_CHECKING:

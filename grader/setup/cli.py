@@ -23,7 +23,7 @@ def doctor() -> None:
     """See whether this machine can grade: which ROS 2, colcon, compiler, sandbox; and what to do about the rest."""
     from rich.console import Console
 
-    from grader.report.progress import progress
+    from grader.report.progress_line import progress
     from grader.setup.doctor import exit_code, render, run_doctor
 
     with progress() as tell:
@@ -40,7 +40,7 @@ Domain = Annotated[
 
 def env(domain: Domain = None) -> None:
     """Print shell code that puts ROS 2 into this shell: for `source <(grader env)`, in bash and zsh."""
-    from grader.report.progress import progress
+    from grader.report.progress_line import progress
     from grader.ros import shell
     from grader.ros.installation import find_ros, who_hears
 
@@ -60,7 +60,7 @@ def env(domain: Domain = None) -> None:
 
 def shell(domain: Domain = None) -> None:
     """Open a shell in which ROS 2 is there, until you type exit."""
-    from grader.report.progress import progress
+    from grader.report.progress_line import progress
     from grader.ros import shell as shells
     from grader.ros.installation import who_hears
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from grader.checks.exercises import find_exercise
-from grader.colcon import workspace
+from grader.colcon import runner
 from grader.errors import UsageError
 from grader.grading.grade import grade
 from grader.grading.options import Options
@@ -46,7 +46,7 @@ class Builds:
         *,
         in_cell: bool,
         tell: Callable[[str], None],
-    ) -> workspace.Built:
+    ) -> runner.Built:
         """Build the submission, with colcon or without."""
         with self._lock:
             kept = self._known.setdefault(_alike(submission), _Kept(threading.Lock()))
@@ -54,7 +54,7 @@ class Builds:
             again = renewed(submission, *kept.first) if kept.first else None
             if again is not None:
                 return again
-            built = workspace.build(submission, ros, in_cell=in_cell, tell=tell)
+            built = runner.build(submission, ros, in_cell=in_cell, tell=tell)
             kept.first = kept.first or (submission, built)
             return built
 
@@ -62,7 +62,7 @@ class Builds:
 @dataclass
 class _Kept:
     lock: threading.Lock
-    first: tuple[Submission, workspace.Built] | None = None
+    first: tuple[Submission, runner.Built] | None = None
 
 
 def _alike(submission: Submission) -> object:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.classroom.gradescope import TEMPLATES
+from grader.classroom.gradescope_archive import TEMPLATES
 from grader.ros import installation, underlay
 from grader.sandbox import bubblewrap
 from grader.tests.case import ROOT, copy_solution

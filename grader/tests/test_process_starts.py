@@ -44,7 +44,7 @@ OTHERS = {
     ("measure", "cost"): "what a benchmark measures",
     ("node_process", "__init__"): "bubblewrap, with what conductor._command made inside",
     ("notebooks", "seconds"): "what `nbgrader` below it made",
-    ("process", "run"): "bubblewrap, with what colcon.workspace.build made inside",
+    ("process", "run"): "bubblewrap, with what colcon.runner.build made inside",
     ("ros2", "_measure"): "our command ros2",
     ("ros2", "main"): "our command ros2",
     ("reader", "_fork"): "this process again, which then only reads",

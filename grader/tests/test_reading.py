@@ -40,8 +40,8 @@ BEHIND_THE_DOOR = {
     ("scores", "_scores_in"): "scores",
     ("unpack", "_tar"): "archives: a process of its own, with limits",
     ("unpack", "_zip"): "archives: a process of its own, with limits",
-    ("workspace", "_described"): "workspace",
-    ("workspace", "_entry_points"): "workspace",
+    ("runner", "_described"): "runner",
+    ("runner", "_entry_points"): "runner",
 }
 """Other functions that read there, and the module that has the door."""
 OURS = {
@@ -50,7 +50,7 @@ OURS = {
     ("conductor", "_conduct"): "an order of trial.py",
     ("conductor", "main"): "an order of trial.py",
     ("dask_engine", "perform_here"): "a task of the instructor's command",
-    ("gradescope", "build_archive"): "our own archive, written",
+    ("gradescope_archive", "build_archive"): "our own archive, written",
     ("judging", "so_far"): "a submission that is not read any more",
     ("launcher", "main"): "an order of the conductor",
     ("node_process", "_find_pid"): "what bubblewrap says",
@@ -60,7 +60,7 @@ OURS = {
     ("results", "load"): "a result of our own",
     ("source", "refreshed"): "a notebook of the course",
     ("trial", "_answer"): "what the conductor says",
-    ("workspace", "_pack"): "our own stream, written",
+    ("runner", "_pack"): "our own stream, written",
     ("workspace", "add_missing"): "a starting point",
 }
 """Functions that read what is no student's, and what that is."""

@@ -76,11 +76,11 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
         from grader.trial.simulated import SimulatedTrial
         from grader.trial.wall import WallTrial
 
-        stage: SimulatedTrial | WallTrial
+        trial: SimulatedTrial | WallTrial
         if order["clock"] == "simulated":
-            stage = SimulatedTrial(node, start, prefixes, inputs, order["judged"], stop_at_doubt=order["stop_at_doubt"])
+            trial = SimulatedTrial(node, start, prefixes, inputs, order["judged"], stop_at_doubt=order["stop_at_doubt"])
         else:
-            stage = WallTrial(node, start, prefixes, inputs, order["judged"])
+            trial = WallTrial(node, start, prefixes, inputs, order["judged"])
         node.await_ready()
         _say(answers, {"ready": True})
         line = sys.stdin.buffer.readline()
@@ -88,10 +88,10 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             return
         go = json.loads(line)
         node.start(go, sys.stdin.buffer.read(go.pop("tree_bytes")))
-        sigint_s = _run(stage, order["duration_s"])
+        sigint_s = _run(trial, order["duration_s"])
         stdout, stderr = node.output()
-        doubts = tuple(stage.doubts)
-        recorder = stage.recorder
+        doubts = tuple(trial.doubts)
+        recorder = trial.recorder
         recording = Recording(
             clock=order["clock"],
             why="",
@@ -102,28 +102,28 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             messages=tuple(recorder.messages),
             dropped=recorder.dropped,
             commands=tuple(recorder.commands),
-            frames=frames_of(stage.frames),
+            frames=frames_of(trial.frames),
             log=tuple(recorder.log),
             graphs=tuple(recorder.graphs),
             topics={topic: tuple(sorted(types)) for topic, types in sorted(recorder.topics.items())},
             stdout=stdout,
             stderr=stderr,
             end=node.end(sigint_s),
-            interventions=tuple(stage.interventions),
-            interventions_dropped=stage.interventions_dropped,
+            interventions=tuple(trial.interventions),
+            interventions_dropped=trial.interventions_dropped,
             graph_dropped=recorder.graph_dropped,
             doubts=doubts,
-            stalls=tuple(stall for stall in stage.stalls if not _own_doing(stall, node, stage)),
-            crowded=stage.crowded(),
-            seconds=stage.seconds,
+            stalls=tuple(stall for stall in trial.stalls if not _own_doing(stall, node, trial)),
+            crowded=trial.crowded(),
+            seconds=trial.seconds,
         )
         _say(answers, {"recording": to_json(recording)})
 
 
-def _run(stage: SimulatedTrial | WallTrial, duration_s: float) -> float:
+def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
     """Run the scenario; when SIGINT was sent. From here on, what breaks was broken by what the node sent."""
     try:
-        return stage.run(duration_s)
+        return trial.run(duration_s)
     except (DoubtError, KeyboardInterrupt):
         raise
     except BaseException as error:
@@ -131,14 +131,14 @@ def _run(stage: SimulatedTrial | WallTrial, duration_s: float) -> float:
         raise Overwhelmed(message[:500]) from error
 
 
-def _own_doing(stall: tuple[float, float], node: NodeProcess, stage: SimulatedTrial | WallTrial) -> bool:
+def _own_doing(stall: tuple[float, float], node: NodeProcess, trial: SimulatedTrial | WallTrial) -> bool:
     """Whether the node has made the stall itself: by its own work, or by what it had the simulator do."""
-    now_s = stage.now()
+    now_s = trial.now()
     offset = time.monotonic() - now_s
     begin, end = stall
-    if node.worked_s(offset, time.monotonic()) + stage.worked_for_node_s(0.0, now_s) >= BUSY * now_s:
+    if node.worked_s(offset, time.monotonic()) + trial.worked_for_node_s(0.0, now_s) >= BUSY * now_s:
         return True
-    worked_s = node.worked_s(begin + offset, end + offset) + stage.worked_for_node_s(begin, end)
+    worked_s = node.worked_s(begin + offset, end + offset) + trial.worked_for_node_s(begin, end)
     return worked_s >= max(BUSY_S, BUSY * (end - begin))
 
 

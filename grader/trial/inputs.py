@@ -6,7 +6,7 @@ import random
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from grader.trial.start import MARGIN_M
+from grader.trial.start_pose import MARGIN_M
 from grader.turtlesim.turtle import FRAME_S, SIDE_M, Start, Turtle
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from rosgraph_msgs.msg import Clock
 
 from grader.trial.patience import HandshakePatience, TickPatience
 from grader.trial.rest import DoubtError, GoneError, Threads, not_of_dds, of_dds, only_sends, receives
-from grader.trial.stage import Stage
+from grader.trial.simulation import Simulation
 from grader.turtlesim.turtle import FRAME_S
 
 if TYPE_CHECKING:
@@ -47,8 +47,8 @@ ENDING_S = 0.5
 _POLL_S = 0.00005
 
 
-class SimulatedTrial(Stage):
-    """A stage whose clock the node follows."""
+class SimulatedTrial(Simulation):
+    """A simulation that publishes /clock, which the node follows."""
 
     def __init__(
         self,

@@ -5,15 +5,15 @@ from __future__ import annotations
 import time
 
 from grader.trial.crowd import Others, Stalls, is_crowded
-from grader.trial.stage import Stage
+from grader.trial.simulation import Simulation
 from grader.turtlesim.turtle import FRAME_S
 
 DISCOVERY_S = 10.0
 GRAPH_EVERY = 31
 
 
-class WallTrial(Stage):
-    """A stage on CLOCK_MONOTONIC. Frames keep their schedule: a late one is caught up, never left out."""
+class WallTrial(Simulation):
+    """A simulation on CLOCK_MONOTONIC. Frames keep their schedule: a late frame is caught up, never left out."""
 
     _begun: float | None = None
     _crowded = False

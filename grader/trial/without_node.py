@@ -6,7 +6,7 @@ import time
 from typing import TYPE_CHECKING, cast
 
 from grader.trial.recording import Output, ProcessEnd, Recording, frames_of
-from grader.trial.stage import Stage
+from grader.trial.simulation import Simulation
 from grader.turtlesim.turtle import FRAME_S
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ GRAPH_S = 5.0
 """How long to wait until the simulator has found its own topics in the graph."""
 
 
-class AloneTrial(Stage):
-    """A stage on which nobody plays; its clock is the number of frames."""
+class AloneTrial(Simulation):
+    """A simulation without a node. Its clock is the number of frames."""
 
     def __init__(self, start: Pose, prefixes: list[Path], inputs: Inputs) -> None:
         self._now_s = 0.0

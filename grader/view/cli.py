@@ -37,7 +37,7 @@ def sim(
     """Run turtlesim as a node, at wall time, until Ctrl-C; it has no window, so --view shows it."""
     from grader.common.interpreter import interpreter
     from grader.report.files import check_writable
-    from grader.report.progress import progress
+    from grader.report.progress_line import progress
     from grader.ros.installation import find_ros, users_environment, who_hears
     from grader.ros.underlay import with_turtlesim
 

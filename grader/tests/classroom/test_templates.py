@@ -16,7 +16,7 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 import yaml
 
-from grader.classroom.gradescope import TEMPLATES, build_archive
+from grader.classroom.gradescope_archive import TEMPLATES, build_archive
 from grader.classroom.unpack import unpack
 from grader.errors import UsageError
 from grader.sandbox import bubblewrap

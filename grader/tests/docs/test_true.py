@@ -7,14 +7,14 @@ import re
 import pytest
 
 from grader.checks.kinds import KINDS
-from grader.colcon import workspace
+from grader.colcon import runner
 from grader.errors import UsageError
 from grader.exercise.exercise_toml import SCHEMA, parse_exercise
 from grader.sandbox.bubblewrap import MIB, NODE_LIMITS, USER_ID, Limits
 from grader.submission import answers, code, package_xml, tree
 from grader.tests.docs.pages import ROOT, text_of
 
-COLUMNS = (workspace.LIMITS, NODE_LIMITS, Limits())
+COLUMNS = (runner.LIMITS, NODE_LIMITS, Limits())
 """Build, node and kernel, in the order of the table."""
 KEYS = {
     "[exercise]": '[exercise]\nwrong = 1\npackage = "p"\n',

@@ -10,9 +10,10 @@ from grader.classroom.content import Refused, fingerprint, read
 from grader.classroom.found import find_submissions, passed_over
 from grader.classroom.order import Order, sources_for
 from grader.classroom.task import perform
-from grader.colcon.workspace import Built
+from grader.colcon.runner import Built
 from grader.errors import UsageError
-from grader.grading.grade import Options, grade
+from grader.grading.grade import grade
+from grader.grading.options import Options
 from grader.report.github import to_annotations, to_summary
 from grader.report.gradescope import to_gradescope
 from grader.report.html import html_page
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.colcon.build import Build
-    from grader.grading.grade import ClockChoice
+    from grader.grading.clock import ClockChoice
     from grader.report.report import Report
     from grader.submission.package import Submission
     from grader.trial.recording import Recording

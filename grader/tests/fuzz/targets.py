@@ -17,7 +17,7 @@ from grader.checks.exercises import find_exercise, load_exercise
 from grader.checks.judge import judge
 from grader.classroom import unpack
 from grader.colcon import workspace
-from grader.colcon.workspace import _described
+from grader.colcon.runner import _described
 from grader.errors import GraderError, UnreadableError
 from grader.evidence import archive
 from grader.exercise.model import course_folder

@@ -141,8 +141,8 @@ grader.sandbox.bubblewrap.room = lambda *_, **__: ['sh', '-c', 'echo no namespac
         ),
         (
             """
-import grader.colcon.workspace as workspace
-workspace._COLCON = "import sys; sys.modules['em'] = None\\n" + workspace._COLCON
+import grader.colcon.runner as runner
+runner._COLCON = "import sys; sys.modules['em'] = None\\n" + runner._COLCON
 """,
             "The build could not be started: ModuleNotFoundError",
         ),

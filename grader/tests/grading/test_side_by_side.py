@@ -13,7 +13,7 @@ import pytest
 from grader.checks.exercises import find_exercise
 from grader.checks.kinds import KINDS
 from grader.checks.outcome import Status
-from grader.colcon.workspace import Built
+from grader.colcon.runner import Built
 from grader.errors import MachineError
 from grader.grading.grade import grade
 from grader.grading.options import Options

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from grader.checks.outcome import Status
-from grader.colcon.workspace import Built
+from grader.colcon.runner import Built
 from grader.grading import turns
 from grader.grading.clock import WALL_TRIALS
 from grader.grading.grade import grade

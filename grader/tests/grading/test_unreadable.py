@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import pytest
 
 from grader.checks.outcome import Status
-from grader.colcon.workspace import Built
+from grader.colcon.runner import Built
 from grader.errors import MachineError
 from grader.evidence import evidence as of_evidence
 from grader.grading import clock as of_clock

@@ -13,7 +13,7 @@ READ = """
 import pickle, resource, sys
 resource.setrlimit(resource.RLIMIT_CPU, (20, 20))
 resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
-from grader.colcon.workspace import read_entry_points
+from grader.colcon.runner import read_entry_points
 from grader.errors import TooLargeError
 from grader.submission.code import read_code
 from grader.submission.setup_py import read_setup_py

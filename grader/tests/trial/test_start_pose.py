@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.trial.recording import Pose
-from grader.trial.start import MARGIN_M, start_pose
+from grader.trial.start_pose import MARGIN_M, start_pose
 from grader.turtlesim.turtle import SIDE_M
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.exercises import find_exercise
-from grader.report.requested import requested_path, shapes_of
+from grader.report.expectations import requested_path, shapes_of
 from grader.report.shapes import Line, Ring
 from grader.tests.checks.made import every, evidence, legs, recording
 from grader.trial.recording import Pose

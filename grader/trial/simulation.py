@@ -1,4 +1,4 @@
-"""The stage of a trial: simulator, recorder and the node's process in one place, whatever the clock."""
+"""Simulation: the ROS side of a trial, with simulator, recorder and the process of the node, whatever the clock."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ _MOST_INTERVENTIONS = 1000
 """Interventions in order; of those after that each name is kept once, and the others are counted."""
 
 
-class Stage:
-    """Owns the ROS side of a trial. `frame` moves the turtle, `spin` handles what has arrived.
+class Simulation:
+    """The ROS side of a trial. `frame` moves the turtle, `spin` handles what has arrived.
 
-    An executor asks each service and each event anew, which takes longer than anything else in a frame. `hear` does
-    without, for moments in which only messages can have come: as long as nobody is there who `may_ask`.
+    An executor looks at every service and every event each time, which takes longer than anything else in a frame.
+    `hear` only takes messages. It is enough as long as no other node `may_ask` for a service.
     """
 
     def __init__(
@@ -186,7 +186,7 @@ class Stage:
         self.node.read_output(self.now())
 
     def tick(self, now_s: float) -> None:
-        """Make one frame; a stage that publishes the time does so too."""
+        """Make one frame, and publish the time if this clock does so."""
         self.frame(now_s)
 
 
