@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from grader.checks.outcome import Outcome
-    from grader.evidence.evidence import Evidence
 
 OBSERVATIONS = frozenset(
     {
@@ -116,16 +115,19 @@ def judged(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judge
     graded = grade(find_exercise(made.exercise), open_submission(folder / made.name), options, build=builds)
     seconds = time.monotonic() - begun
     if keep is not None:
-        (keep / f"{made.name}.pickle").write_bytes(pickle.dumps(dataclasses.replace(graded.evidence)))
+        mistakes = [(operator.name, change) for operator, change in made.mistakes]
+        kept = (dataclasses.replace(made, mistakes=()), mistakes, dataclasses.replace(graded.evidence))
+        (keep / f"{made.name}.pickle").write_bytes(pickle.dumps(kept))
     return Judged(made, graded.report.outcomes, seconds)
 
 
-def again(made: Made, keep: Path) -> Judged:
+def again(kept: Path) -> Judged:
     """Judge a stored recording anew."""
-    evidence: Evidence = pickle.loads((keep / f"{made.name}.pickle").read_bytes())
+    made, mistakes, evidence = pickle.loads(kept.read_bytes())
+    known = {operator.name: operator for operator in OPERATORS}
+    made = dataclasses.replace(made, mistakes=tuple((known[name], change) for name, change in mistakes))
     begun = time.monotonic()
-    # Without what the properties have kept of the source, which may be read otherwise now.
-    return Judged(made, judge(dataclasses.replace(evidence)), time.monotonic() - begun)
+    return Judged(made, judge(evidence), time.monotonic() - begun)
 
 
 def tell(all_: Iterable[Judged]) -> None:
@@ -173,7 +175,7 @@ def main() -> None:
         mades = [make(right, number, wanted.seed, operators) for number in range(wanted.count)]
         begun = time.monotonic()
         if wanted.again:
-            found = [again(made, wanted.again) for made in mades if (wanted.again / f"{made.name}.pickle").is_file()]
+            found = [again(kept) for kept in sorted(wanted.again.glob("*.pickle"))]
         else:
             if wanted.keep:
                 wanted.keep.mkdir(parents=True, exist_ok=True)

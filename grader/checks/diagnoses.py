@@ -189,6 +189,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "sleep-period": "a loop sleeps for the wrong time",
         "several-timers": "there are several timers",
         "timer-in-callback": "a callback creates a new timer each time it is called",
+        "publisher-in-callback": "a callback creates a new publisher each time it is called",
         "loop-without-pause": "a loop has no pause",
         "every-message": "the node publishes or logs once for every message that arrives",
         "wrong-rate": "the rate is wrong, and the source code does not show why",

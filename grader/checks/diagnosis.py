@@ -170,6 +170,7 @@ Diagnosis = Literal[
     "sleep-period",
     "several-timers",
     "timer-in-callback",
+    "publisher-in-callback",
     "loop-without-pause",
     "every-message",
     "wrong-rate",

@@ -111,8 +111,11 @@ def methods(of: ast.ClassDef) -> list[Function]:
 
 
 def attributes_set(of: ast.ClassDef) -> Iterator[tuple[str, int]]:
-    """Yield every attribute that is assigned on self, with its line."""
+    """Yield every attribute that is given a value on self, with its line; += needs one before it."""
+    raised = {id(node.target) for node in ast.walk(of) if isinstance(node, ast.AugAssign)}
     for node in ast.walk(of):
+        if id(node) in raised:
+            continue
         if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store) and dotted(node) == f"self.{node.attr}":
             yield node.attr, node.lineno
 

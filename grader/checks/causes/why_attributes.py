@@ -145,6 +145,9 @@ def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
 
 
 def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
+    if any(isinstance(each, ast.AugAssign) and dotted(each.target) == f"self.{name}" for each in scene.on_line):
+        text = f"Nothing has set self.{shorten(name)} before this line, so there is no value to change."
+        return Cause("attribute-too-early", text)
     compared = [each for each in scene.on_line if isinstance(each, ast.Expr) and isinstance(each.value, ast.Compare)]
     if compared:
         return Cause("equals", "== compares two values. = gives a value to a name.", scene.at(compared[0]))

@@ -33,25 +33,51 @@ def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> 
         return None
     for module, name in _callbacks(evidence):
         for node in module.nodes:
-            if isinstance(node, ast.FunctionDef) and node.name == name and _calls(node, call):
-                text = f"{name} is called for every message, 62.5 times per second, and calls {call} each time."
+            if isinstance(node, ast.FunctionDef) and node.name == name and _reaches(module, node, call):
+                text = f"{name} is called for every message, 62.5 times per second, and each time it calls {call}."
                 return Cause("every-message", text, Where(module.file, node.lineno))
     return None
 
 
+def _reaches(module: Module, function: ast.FunctionDef, call: str) -> bool:
+    """Return whether a function calls `call` itself or in another method of its object."""
+    if _calls(function, call):
+        return True
+    names = [dotted(node.func) or "" for node in ast.walk(function) if isinstance(node, ast.Call)]
+    own = {name.removeprefix("self.") for name in names if name.startswith("self.")}
+    methods = [node for node in module.nodes if isinstance(node, ast.FunctionDef) and node.name in own]
+    return any(_calls(method, call) for method in methods)
+
+
+def why_publishers_grow(evidence: Evidence) -> Cause | None:
+    """Return the cause if a callback creates a publisher, else None."""
+    found = _made_in_callback(evidence, "create_publisher")
+    if found is None:
+        return None
+    name, where = found
+    text = f"{name} creates a new publisher each time it is called. Create it once, in __init__."
+    return Cause("publisher-in-callback", text, where)
+
+
 def why_timers_grow(evidence: Evidence) -> Cause | None:
     """Return the cause if a callback creates a timer, else None."""
+    found = _made_in_callback(evidence, "create_timer")
+    if found is None:
+        return None
+    name, where = found
+    text = f"{name} creates a new timer each time it is called. One timer is enough, because it repeats."
+    return Cause("timer-in-callback", text, where)
+
+
+def _made_in_callback(evidence: Evidence, maker: str) -> tuple[str, Where] | None:
+    """Return a callback that calls the maker, and where it does, or None."""
     for module in evidence.code.modules:
         called = {name for each, name in _callbacks(evidence, "create_timer", "create_subscription") if each is module}
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef) and node.name in called:
                 for inner in ast.walk(node):
-                    if isinstance(inner, ast.Call) and getattr(inner.func, "attr", "") == "create_timer":
-                        text = (
-                            f"{node.name} creates a new timer each time it is called. "
-                            "One timer is enough, because it repeats."
-                        )
-                        return Cause("timer-in-callback", text, Where(module.file, inner.lineno))
+                    if isinstance(inner, ast.Call) and getattr(inner.func, "attr", "") == maker:
+                        return node.name, Where(module.file, inner.lineno)
     return None
 
 

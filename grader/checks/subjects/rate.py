@@ -9,7 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
-from grader.checks.causes.why_rate import why_often, why_timers_grow
+from grader.checks.causes.why_rate import why_often, why_publishers_grow, why_timers_grow
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.requested import Interval, Requested
@@ -21,6 +21,7 @@ from grader.submission.constants import number as constant
 if TYPE_CHECKING:
     from grader.evidence.arrivals import Measured
     from grader.evidence.evidence import Evidence
+    from grader.submission.code import Call
 
 FEWEST = 3
 """With fewer commands there is at most one interval, which is not enough for a rate."""
@@ -28,6 +29,11 @@ TRUSTED = 0.5
 """If the machine stalled in a wall-clock trial, the other intervals are judged if they are at least this share."""
 SAME = 0.1
 """A number in the source code explains a measured interval if they differ by less than this share."""
+
+
+PERIOD = "The first argument of create_timer is the timer period in seconds."
+FASTEST_HZ = 40.0
+"""Simulated time moves in steps of 16 ms, so what is faster than this looks slower than it is."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,9 +79,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
     period = 1.0 / params.rate_hz
     expected = f"One {what.noun} every {period:.2f} s ({params.rate_hz:.1f} Hz)."
     if len(measured.arrivals) < FEWEST:
-        return _few(
-            evidence, what, measured, f"One {what.noun} every {period:.2f} s ({params.rate_hz:.1f} Hz) until Ctrl-C."
-        )
+        return _few(evidence, params, what, measured, f"{expected[:-1]} until Ctrl-C.")
     if measured.trusted < TRUSTED:
         return Finding(
             Status.ERROR, "The machine was too busy to measure a rate in wall time. Try again when it is less busy."
@@ -86,6 +90,7 @@ def rate_of(evidence: Evidence, params: Rate, what: Subject, measured: Measured)
     each = Band.around(period, period - params.min_interval_s, params.max_interval_s - period)
     first = Band.at_most(params.first_within_s)
     near = mean.near(mean_hz) or each.near(*_extremes(measured), measured.rest_s) or first.near(measured.first_s)
+    near |= mean_hz > FASTEST_HZ and evidence.recording.clock == "simulated"
     if not mean.holds(mean_hz):
         return _wrong_mean(evidence, what, measured, params, expected, near_edge=near)
     worst = max(measured.intervals, key=lambda interval: abs(interval - period))
@@ -122,7 +127,23 @@ def _extremes(measured: Measured) -> tuple[float, float]:
     return min(measured.intervals), max(measured.intervals)
 
 
-def _few(evidence: Evidence, what: Subject, measured: Measured, expected: str) -> Finding:
+def _slow_timer(evidence: Evidence, params: Rate, amount: int) -> Cause | None:
+    """Return the cause if a timer is so slow that no more than this amount can have arrived, else None."""
+    for timer, period in _timers(evidence):
+        if period is not None and abs(evidence.recording.duration_s / period - amount) <= 1.0:
+            return _period_cause(Cause("timer-period", PERIOD, timer.where), period, params)
+    return None
+
+
+def _period_cause(cause: Cause, period: float, params: Rate) -> Cause:
+    """Return the cause of a wrong timer period: the rate in its place, if the numbers say so."""
+    if abs(period - params.rate_hz) > SAME * params.rate_hz:
+        return cause
+    text = "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate."
+    return Cause("rate-for-period", text, cause.where)
+
+
+def _few(evidence: Evidence, params: Rate, what: Subject, measured: Measured, expected: str) -> Finding:
     amount = len(measured.arrivals)
     crash = crash_of(evidence)
     observed = f"{count(amount, what.noun)} arrived in {activity.end_s(evidence.recording):.0f} s."
@@ -132,8 +153,11 @@ def _few(evidence: Evidence, what: Subject, measured: Measured, expected: str) -
     if evidence.recording.end.by == "itself":
         why = why_ended(evidence)
         return failed(f"{observed} {end_observed(evidence)}", expected, why)
+    slow = _slow_timer(evidence, params, amount)
+    if slow is not None:
+        return failed(observed, expected, slow)
     if amount == 1:
-        cause = f"{what.call} is called only once. A timer calls a method again and again."
+        cause = f"A timer calls a method again and again, so that {what.call} is called more than once."
         return failed(observed, expected, Cause("published-once" if what is COMMAND else "logged-once", cause, where))
     return failed(
         observed,
@@ -146,7 +170,11 @@ def _wrong_mean(
     evidence: Evidence, what: Subject, measured: Measured, params: Rate, expected: str, *, near_edge: bool
 ) -> Finding:
     mean = measured.mean_s
-    often = why_often(evidence, what.call, mean, 1.0 / params.rate_hz) or why_timers_grow(evidence)
+    often = (
+        why_often(evidence, what.call, mean, 1.0 / params.rate_hz)
+        or why_timers_grow(evidence)
+        or why_publishers_grow(evidence)
+    )
     if mean < 0.01:
         observed = f"{count(len(measured.arrivals), what.noun)} arrived, one every {1000.0 * mean:.2f} ms."
     else:
@@ -154,23 +182,24 @@ def _wrong_mean(
     if often is not None:
         return failed(observed, expected, often, near_edge=near_edge)
     why = _why_mean(evidence, what, mean)
-    if why.diagnosis == "timer-period" and abs(mean - params.rate_hz) <= SAME * params.rate_hz:
-        text = "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate."
-        why = Cause("rate-for-period", text, why.where)
+    if why.diagnosis == "timer-period":
+        why = _period_cause(why, mean, params)
     return failed(observed, expected, why, near_edge=near_edge)
+
+
+def _timers(evidence: Evidence) -> list[tuple[Call, float | None]]:
+    """Return the calls of create_timer, each with its period (s) if that is a constant."""
+    calls = evidence.code.calls("create_timer")
+    return [(call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in calls]
 
 
 def _why_mean(evidence: Evidence, what: Subject, mean: float) -> Cause:
     """Return the cause: a timer or a sleep with that period, or neither."""
     code = evidence.code
-    timers = [
-        (call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in code.calls("create_timer")
-    ]
+    timers = _timers(evidence)
     for timer, period in timers:
         if period is not None and abs(period - mean) <= SAME * mean:
-            return Cause(
-                "timer-period", "The first argument of create_timer is the timer period in seconds.", timer.where
-            )
+            return Cause("timer-period", PERIOD, timer.where)
     for sleep in code.calls("sleep"):
         length = constant(sleep.argument(0, "secs"), sleep.module.names)
         if timers and length is not None:
