@@ -40,7 +40,12 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     read = (*(each for each in known.read if each != index), index)
     progress.update(root, lambda before: before.with_step(exercise.id, replace(before.step(exercise.id), read=read)))
     place = f"{sum(each in read for each in wanted)} of {len(wanted)}"
-    return f"Hint {place}{_about(exercise, index, known)}: {exercise.hints[index].text}"
+    return f"Hint {place}{_about(exercise, index, known)}: {_flowing(exercise.hints[index].text)}"
+
+
+def _flowing(text: str) -> str:
+    """Return the text without the line breaks of its file: a terminal has a width of its own."""
+    return "\n\n".join(" ".join(paragraph.split()) for paragraph in text.split("\n\n"))
 
 
 def _exercise(step: str | None, folder: Path | None) -> Exercise:

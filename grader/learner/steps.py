@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.checks.exercises import find_exercise
+from grader.checks.exercises import exercise_of_folder, find_exercise
 from grader.common.words import count
 from grader.errors import UsageError
 from grader.exercise.model import catalogue
@@ -92,10 +92,15 @@ def current(folder: Path | None) -> tuple[Exercise, Path] | None:
 
 
 def note(exercise: Exercise, submission: Path, report: Report, folder: Path | None = None) -> str:
-    """Remember a verdict on the work in the learner's workspace; return what to do next once it has passed, else ""."""
+    """Remember a verdict on the work in the learner's workspace; return what to do next, if anything."""
     root = progress.workspace_of(folder)
-    if not submission.resolve().is_relative_to(root) or progress.load(root).current is None:
+    begun = progress.load(root)
+    if begun.current is None:
         return ""
+    if not submission.resolve().is_relative_to(root):
+        lesson_named_it = report.exit_code == 1 and exercise.id in begun.steps and exercise_of_folder(submission)
+        own = workspace.work_folder(exercise, root)
+        return f"Your own work on this step is in {own}: grader check {exercise.id[:2]}" if lesson_named_it else ""
     known = progress.update(root, lambda before: before.graded(exercise.id, report))
     if report.exit_code != 0:
         return ""

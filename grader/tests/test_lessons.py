@@ -71,13 +71,21 @@ def test_every_block_says_what_it_is(lesson: Path) -> None:
     }
 
 
+def home_of_a_reader(folder: Path) -> dict[str, str]:
+    """The variables of a home in which the course is where the lessons say."""
+    (folder / "home/ros2-course").mkdir(parents=True)
+    (folder / "home/ros2-course/.venv").symlink_to(sys.prefix)
+    cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    return {"HOME": str(folder / "home"), "XDG_CACHE_HOME": cache}
+
+
 @pytest.mark.parametrize("block", [*blocks_of("console", ""), *blocks_of("console", "solved")])
 def test_commands_print_what_the_lesson_shows(block: Block, tmp_path: Path) -> None:
     for name in ("course", "exercises", "solutions"):
         shutil.copytree(ROOT / name, tmp_path / name)
     if block.about == "solved":  # the reader has written it by now
         shutil.copytree(ROOT / "solutions", tmp_path / "exercises", dirs_exist_ok=True)
-    env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", **home_of_a_reader(tmp_path)}
     for step, printed, _ in run(block, tmp_path, env, 300.0):
         assert differs(step.printed, printed) is None, printed
 
@@ -103,9 +111,8 @@ def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
     build = next(block for block in shown if block.language == "console")
     start, said = next((s.command, s.printed[0]) for b in shown if b.about == "running" for s in b.steps())
     path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
-    ours = {"PATH": path, "HOME": str(tmp_path), "ROS_DOMAIN_ID": str(own_domain()), "PS1": "", "TERM": "dumb"}
-    env = {**os.environ, **ours}
-    env["XDG_CACHE_HOME"] = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    ours = {"PATH": path, "ROS_DOMAIN_ID": str(own_domain()), "PS1": "", "TERM": "dumb"}
+    env = {**os.environ, **ours, **home_of_a_reader(tmp_path)}
     shell = pexpect.spawn(
         "bash", ["--norc", "--noprofile"], env=env, cwd=tmp_path, encoding="utf-8", timeout=120, echo=False
     )

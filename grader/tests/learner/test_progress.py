@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
+from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
 from grader.errors import MachineError, UsageError
-from grader.exercise.model import catalogue
+from grader.exercise.model import catalogue, course_folder
 from grader.exercise.own_numbers import draw_numbers, from_toml
 from grader.learner import progress, steps, workspace
 from grader.learner.compare import print_solution
@@ -142,6 +143,19 @@ def test_after_the_last_step_there_is_no_next() -> None:
     passed("07-challenges")
     with pytest.raises(UsageError, match="you are through"):
         steps.start("next", None)
+
+
+def test_a_verdict_on_the_folder_that_a_lesson_names_says_where_ones_own_work_is(home: Path) -> None:
+    failed, named = report("failed"), course_folder().parent / "exercises" / FIRST
+    exercise = find_exercise(FIRST)
+    assert steps.note(exercise, named, failed) == ""
+    steps.start("02", None)
+    assert steps.note(exercise, named, failed) == ""
+    steps.start("01", None)
+    own = home / "ros2_ws/src/my_robot_controller"
+    assert steps.note(exercise, named, failed) == f"Your own work on this step is in {own}: grader check 01"
+    assert steps.note(exercise, named, report("passed")) == ""
+    assert steps.note(exercise, home, failed) == ""
 
 
 def test_a_workspace_that_is_a_file_is_told(home: Path) -> None:
