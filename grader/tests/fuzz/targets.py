@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING
 from grader.checks.exercises import find_exercise, load_exercise
 from grader.checks.judge import judge
 from grader.classroom import unpack
-from grader.colcon import workspace
-from grader.colcon.runner import _described
+from grader.colcon.runner import _READY, _described
 from grader.errors import GraderError, UnreadableError
 from grader.evidence import archive
 from grader.exercise.model import course_folder
@@ -89,7 +88,7 @@ def answers(data: bytes) -> None:
 def install_tree(data: bytes) -> None:
     """`check` of a package that built to this: a line of the build's log, and a tar stream."""
     log, _, tree = data.partition(b"\n")
-    done = Finished(0, tree, workspace._READY + log.replace(b"\r", b"\n"), 1.0)
+    done = Finished(0, tree, _READY + log.replace(b"\r", b"\n"), 1.0)
     try:
         build, _ = read(_described, done)
     except UnreadableError:
