@@ -1,4 +1,4 @@
-"""The command `grader`: what its verbs take, and which part of the grader does them. No logic."""
+"""The command `grader`: its subcommands and their options. This module has no logic."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     name="grader",
-    help="Grade ROS 2 packages by running them: built with colcon, run against a headless turtlesim, judged by what "
-    "the turtle did.",
+    help="Grade ROS 2 packages: build them with colcon, run them with a headless turtlesim, and judge what the turtle "
+    "did.",
     epilog="Example: grader check exercises/03-circle-publisher",
     no_args_is_help=True,
     add_completion=False,
@@ -42,12 +42,12 @@ app = typer.Typer(
 )
 
 LEARN, TEACH = learner.PANEL, classroom.PANEL
-# The learner's verbs stand first in --help.
+# The learner's commands come first in --help.
 learner.add_to(app)
 
 
 class Clock(str, Enum):
-    """Which clock judges."""
+    """The clock by which a submission is judged."""
 
     auto = "auto"
     simulated = "simulated"
@@ -55,15 +55,15 @@ class Clock(str, Enum):
 
 
 Json = Annotated[Optional[Path], typer.Option("--json", help="Write the report as JSON.", metavar="FILE")]  # noqa: UP045
-Image = Annotated[Optional[Path], typer.Option(help="Draw the turtle's path as a PNG.", metavar="FILE.png")]  # noqa: UP045
+Image = Annotated[Optional[Path], typer.Option(help="Draw the turtle's trajectory as a PNG.", metavar="FILE.png")]  # noqa: UP045
 Html = Annotated[
     Optional[Path],  # noqa: UP045
-    typer.Option("--html", help="Write a page to look at: checks, code, replay, graph, logs.", metavar="FILE.html"),
+    typer.Option("--html", help="Write an HTML page with checks, code, replay, graph and logs.", metavar="FILE.html"),
 ]
-Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Also tell which clock judged, and why.")]
+Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Also print which clock was used, and why.")]
 ExerciseId = Annotated[
     Optional[str],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
-    typer.Option("--exercise", help="Which exercise; in exercises/ and solutions/ it follows from the folder."),
+    typer.Option("--exercise", help="The exercise. Not needed in exercises/ and solutions/."),
 ]
 
 
@@ -75,27 +75,25 @@ def check(
     submission: Annotated[
         Optional[Path],  # noqa: UP045
         typer.Argument(
-            help="A package's folder, a folder with one below it, or a step, as in 03; your current step when left out."
+            help="Folder of a package, a folder that contains one, or a step such as 03. [default: your current step]"
         ),
     ] = None,
     exercise: ExerciseId = None,
-    clock: Annotated[
-        Clock, typer.Option(help="auto: simulated time, and wall time where that may misjudge.")
-    ] = Clock.auto,
+    clock: Annotated[Clock, typer.Option(help="auto: simulated time, and wall time in doubtful cases.")] = Clock.auto,
     json: Json = None,
     image: Image = None,
     html: Html = None,
     recording: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Option(help="Keep all that was seen, to judge it again with `grader regrade`.", metavar="DIR"),
+        typer.Option(help="Save a recording that `grader regrade` can judge again.", metavar="DIR"),
     ] = None,
-    seed: Annotated[Optional[int], typer.Option(help="Start the turtle at a place drawn from this number.")] = None,  # noqa: UP045
+    seed: Annotated[Optional[int], typer.Option(help="Seed for a random start pose of the turtle.")] = None,  # noqa: UP045
     confined: Annotated[
-        bool, typer.Option("--sandbox", help="Run nothing unless it is confined; else that is done where it can be.")
+        bool, typer.Option("--sandbox", help="Run only in a sandbox. By default, the sandbox is used if possible.")
     ] = False,
     verbose: Verbose = False,
 ) -> None:
-    """Build and run one submission, and say what is right and what is not."""
+    """Build and run one submission, and print what is right and what is wrong."""
     from grader.evidence import archive
     from grader.grading.grade import grade
     from grader.grading.options import Options
@@ -122,17 +120,17 @@ def check(
 
 @app.command(rich_help_panel=TEACH, epilog="Example: grader regrade my-recording --image path.png")
 def regrade(
-    recording: Annotated[Path, typer.Argument(help="What `grader check --recording` wrote.", metavar="RECORDING")],
+    recording: Annotated[Path, typer.Argument(help="A folder from `grader check --recording`.", metavar="RECORDING")],
     exercise: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option(help="Judge by this exercise as it is now, instead of as it was then."),
+        typer.Option(help="Judge with the current version of this exercise, not with the recorded one."),
     ] = None,
     json: Json = None,
     image: Image = None,
     html: Html = None,
     verbose: Verbose = False,
 ) -> None:
-    """Judge a stored recording again; nothing of the student's is run."""
+    """Judge a recording again. No code of the student is run."""
     from grader.checks.exercises import find_exercise, load_exercise
     from grader.report.files import check_writable
     from grader.report.report import report_of
@@ -149,14 +147,14 @@ def regrade(
 @app.command("class-page", rich_help_panel=TEACH, epilog="Example: grader class-page reports")
 def class_page(
     folder: Annotated[
-        Path, typer.Argument(help="Holds the reports of a class, as --json writes them; pages beside them.")
+        Path, typer.Argument(help="Folder with the reports of a class (from --json), and their pages if there are any.")
     ],
     out: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Option(help="Where the page goes; index.html in the folder when left out.", metavar="FILE.html"),
+        typer.Option(help="The page to write. [default: index.html in the folder]", metavar="FILE.html"),
     ] = None,
 ) -> None:
-    """Make one page of a class: who got what, what fails most and why, what to teach again."""
+    """Make a page of a class: points, the most frequent failures, and what to teach again."""
     from grader.report.html_class import PAGE, save_class_page
 
     file = out or folder / PAGE
@@ -172,9 +170,9 @@ authoring.add_to(app)
 
 
 def main() -> None:
-    """Run the command; an error of ours is a sentence, and its exit code is that of docs/design.md, decision 9."""
+    """Run the command. An error is printed as a sentence; docs/design.md, decision 9, lists the exit codes."""
     clean_own()
-    if "_GRADER_COMPLETE" in os.environ:  # a shell asks which words may follow (grader.ros.shell)
+    if "_GRADER_COMPLETE" in os.environ:  # the shell requests completions (grader.ros.shell)
         from typer.completion import completion_init  # type: ignore[attr-defined]
 
         completion_init()
@@ -187,7 +185,7 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.exit(130)
     except BrokenPipeError:
-        # Whoever read us has gone, as in `grader check | head`.
+        # The reader of the pipe is gone, as in `grader check | head`.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.exit(1)
     except Exception as error:
@@ -197,8 +195,10 @@ def main() -> None:
         if refused:
             typer.secho(f"grader: {refused}", err=True)
             sys.exit(3)
-        told = f"grader: a fault of the grader itself, not of your work: {type(error).__name__}: {error}"
-        typer.secho(f"{told}\nGRADER_DEBUG=1 before the command shows where; please report that.", err=True)
+        told = f"grader: internal error of the grader, not of your work: {type(error).__name__}: {error}"
+        typer.secho(
+            f"{told}\nPut GRADER_DEBUG=1 before the command to see where it happened. Please report it.", err=True
+        )
         sys.exit(3)
 
 
@@ -211,7 +211,7 @@ def _judged(recording: Path, read_exercise: Callable[[Path], Exercise]) -> tuple
 
 
 def _opened(path: Path | None, name: str | None) -> tuple[Exercise, Submission]:
-    """Open what was named; where the folder alone does not tell the exercise, the package found below it may."""
+    """Open the submission. If the folder does not say which exercise it is for, the package in it may."""
     from grader.learner.meant import guessed, meant
     from grader.submission.package import open_answers, open_submission
 

@@ -1,10 +1,10 @@
-"""What the grader raises. Every message is written for the person who reads it: seen, expected, what to do."""
+"""The exceptions of the grader. Each message says what was observed, what was expected, and what to do."""
 
 from __future__ import annotations
 
 
 class GraderError(Exception):
-    """Base of all errors of the grader; `exit_code` is what a command ends with (docs/design.md, decision 9)."""
+    """Base class of all errors of the grader; a command exits with `exit_code` (docs/design.md, decision 9)."""
 
     exit_code = 3
 
@@ -16,16 +16,16 @@ class UsageError(GraderError):
 
 
 class UnreadableError(UsageError):
-    """What a student handed in could not be read: the student's fault."""
+    """A submission could not be read. This is the student's fault."""
 
 
 class TooLargeError(UnreadableError):
-    """It is too large, or nested too deeply, to be read."""
+    """A submission is too large or too deeply nested to be read."""
 
 
 class MachineError(GraderError):
-    """The grader or the machine is broken: never the student's fault."""
+    """The grader or the machine is broken. This is never the student's fault."""
 
 
 class DiskError(MachineError):
-    """The disk that the grader itself writes to has failed: no other submission would fare better."""
+    """The disk to which the grader writes has failed, so no submission can be graded."""

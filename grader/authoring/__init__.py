@@ -1,1 +1,1 @@
-"""For authors: solutions become exercises, and the course is validated."""
+"""For authors: make exercises from solutions, and validate the course."""

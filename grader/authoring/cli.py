@@ -1,4 +1,4 @@
-"""An author's verbs of the command `grader`: release, validate. No logic."""
+"""The author's commands: `grader release` and `grader validate`. This module has no logic."""
 
 from __future__ import annotations
 
@@ -11,19 +11,21 @@ PANEL = "For authors"
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add these verbs to the command."""
+    """Add these commands to `app`."""
     app.command(epilog="Example: grader release --to ../for-students", rich_help_panel=PANEL)(release)
     app.command(epilog="Example: grader validate 03-circle-publisher", rich_help_panel=PANEL)(validate)
 
 
 def release(
-    check: Annotated[bool, typer.Option("--check", help="Change nothing; fail when exercises/ is stale.")] = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="Change nothing, and fail if exercises/ is out of date.")
+    ] = False,
     to: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Option(help="Write the students' repository, without solutions, into this new folder.", metavar="DIR"),
+        typer.Option(help="Write the repository for students, without solutions, to this new folder.", metavar="DIR"),
     ] = None,
 ) -> None:
-    """Make exercises/ from solutions/, for authors."""
+    """Make exercises/ from solutions/ (for authors)."""
     from grader.authoring.release import main as make_exercises
 
     if to:
@@ -36,9 +38,11 @@ def release(
 
 
 def validate(
-    exercises: Annotated[list[str] | None, typer.Argument(help="Which ones; all when left out.", metavar="ID")] = None,
+    exercises: Annotated[
+        list[str] | None, typer.Argument(help="Exercises to validate. [default: all]", metavar="ID")
+    ] = None,
 ) -> None:
-    """See whether exercises, solutions, starting points and lessons are as they should be, for authors."""
+    """Check exercises, solutions, starting points and lessons (for authors)."""
     from grader.authoring.validate import validate as problems_of
     from grader.report.progress_line import progress
 
@@ -46,5 +50,5 @@ def validate(
         problems = problems_of(exercises or [], tell)
     for problem in problems:
         typer.echo(f"- {problem}")
-    typer.echo(f"{len(problems)} problems." if problems else "Everything is as it should be.")
+    typer.echo(f"{len(problems)} problems." if problems else "No problems found.")
     raise typer.Exit(1 if problems else 0)

@@ -1,4 +1,4 @@
-"""Handout: the course as an instructor gives it to students, without solutions and without what tests them."""
+"""Make the repository for students: the course without solutions and without the tests of the solutions."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from grader.exercise.model import catalogue, course_folder
 _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitignore", "COLCON_IGNORE")
 _NOT_FOR_STUDENTS = ("tests", "benchmarks", "__pycache__", "*.pyc")
 _IN_A_WHEEL = ("course", "exercises", "solutions", "repository")
-"""What an installed wheel has within the package, and a checkout beside it (see hatch_build.py)."""
+"""Folders that are inside the package in a wheel, and next to it in a checkout (see hatch_build.py)."""
 
 
 def hand_out(to: Path) -> None:
-    """Write the students' repository into the new folder `to`.
+    """Write the repository for students to the new folder `to`.
 
     Raises:
-        UsageError: the folder holds something already, or this copy of the course has no solutions itself.
-        MachineError: it cannot be written.
+        UsageError: the folder is not empty, or this copy of the course has no solutions.
+        MachineError: the folder cannot be written.
     """
     root = course_folder().parent
     if to.exists() and (not to.is_dir() or any(to.iterdir())):
-        message = f"{to} is not an empty folder: name a new one."
+        message = f"{to} is not an empty folder. Name a new one."
         raise UsageError(message)
     if not (root / "solutions").is_dir():
-        message = f"The course is handed out from its solutions/, and {root} has none."
+        message = f"The repository for students is made from solutions/, but {root} has none."
         raise UsageError(message)
     package = Path(__file__).parent.parent
     files = package / "repository" if (package / "repository").is_dir() else root
@@ -55,7 +55,7 @@ def _readme() -> str:
     )
     return f"""# ROS 2 topics, graded by doing
 
-You need Linux on x86-64 and Python 3.10 or newer; nothing of ROS. Once:
+You need Linux on x86-64 and Python 3.10 or newer. You do not need ROS. Set up once:
 
     make demo
     source .venv/setup.bash
@@ -63,7 +63,7 @@ You need Linux on x86-64 and Python 3.10 or newer; nothing of ROS. Once:
 Then, step by step:
 
     grader start 01      # puts the step's starting point into ~/ros2_ws
-    grader watch         # a verdict after every save; h is for a hint
+    grader watch         # a verdict after every save; press h for a hint
     grader start next    # when the step has passed
 
 Or in notebooks: `make notebooks`, then `jupyter lab exercises`. More: [docs/learner.md](docs/learner.md).

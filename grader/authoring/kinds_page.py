@@ -1,8 +1,8 @@
-"""Write docs/kinds.md: every kind of check with its parameters, made from the registry of kinds.
+"""Write docs/kinds.md, which lists every kind of check with its parameters, from the registry of kinds.
 
-    python -m grader.authoring.kinds_page [--check]
+   python -m grader.authoring.kinds_page [--check]
 
-The examples are checks of the course: the first one of each kind.
+The examples come from the course: the first check of each kind.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ UNITS = {
     "_m": "m",
     "_s": "s",
 }
-"""How the name of a parameter ends -> its unit; the longer endings come first."""
+"""Ending of a parameter's name -> its unit. Longer endings come first."""
 STAGES = {
     "source": ("Judged from the files", "These checks read the submission's files. Nothing is built or run for them."),
     "build": ("Judged from the build", "These checks read what `colcon build` printed and installed."),
@@ -54,7 +54,7 @@ Every `[[check]]` in `exercise.toml` has a `kind`. This page lists all kinds wit
 
 
 def page() -> str:
-    """The whole page."""
+    """Return the whole page."""
     examples = _examples()
     parts = [HEAD, _contents()]
     for stage, (title, about) in STAGES.items():
@@ -76,17 +76,17 @@ def _contents() -> str:
 
 
 def _examples() -> dict[str, tuple[str, CheckSpec]]:
-    """Kind -> the first step and check of the course that have it. Raises UsageError where a kind has none."""
+    """Return kind -> the first step and check of this kind in the course. Raises UsageError if there is none."""
     found: dict[str, tuple[str, CheckSpec]] = {}
     for step, file in catalogue().items():
         exercise = load_exercise(file)
         for spec in exercise.checks:
-            # A check of the first trial need not name it.
+            # The first trial is the default.
             trial = "" if spec.trial == exercise.trials[0].id else spec.trial
             found.setdefault(spec.kind, (step, replace(spec, trial=trial)))
     missing = [name for name in KINDS if name not in found]
     if missing:
-        message = f"No exercise of the course has a check of the kind {missing[0]}, so the page has no example of it."
+        message = f"No exercise of the course has a check of the kind {missing[0]}, so the page has no example for it."
         raise UsageError(message)
     return found
 
@@ -107,17 +107,17 @@ def _section(kind: Kind[Any], step: str, spec: CheckSpec) -> str:
 
 
 def _default(value: Param) -> str:
-    """A default as the page shows it; an empty string only means that the parameter may be left out."""
+    """Return a default as text. An empty string as default only means that the parameter is optional."""
     return f"`{_toml(value)}`" if str(value).strip() else "empty"
 
 
 def unit_of(parameter: str) -> str:
-    """The unit that a parameter's name ends with; empty for none."""
+    """Return the unit at the end of a parameter's name, or an empty string."""
     return next((unit for end, unit in UNITS.items() if parameter.endswith(end)), "")
 
 
 def _check(kind: Kind[Any], spec: CheckSpec) -> Iterable[str]:
-    """The check as an author writes it, without what its kind gives it anyway."""
+    """Return the check as an author writes it, without the defaults of its kind."""
     yield "[[check]]"
     yield f"id = {_toml(spec.id)}"
     yield f"kind = {_toml(spec.kind)}"
@@ -140,7 +140,7 @@ def _toml(value: Param) -> str:
     if isinstance(value, float):
         return f"{value:g}" if value == int(value) or abs(value) >= 1e-4 else f"{value:.0e}".replace("e-0", "e-")
     if isinstance(value, str):
-        # A JSON string is a TOML string.
+        # A JSON string is also a valid TOML string.
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, tuple):
         return f"[{', '.join(map(_toml, value))}]"
@@ -152,15 +152,15 @@ def _file() -> Path:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """The author's command; exit code 1 when --check finds the page stale."""
+    """Run the command. Return 1 if --check finds that the page is out of date."""
     parser = argparse.ArgumentParser(prog="python -m grader.authoring.kinds_page", description="Write docs/kinds.md.")
-    parser.add_argument("--check", action="store_true", help="change nothing; fail when the page is stale")
+    parser.add_argument("--check", action="store_true", help="change nothing, and fail if the page is out of date")
     options = parser.parse_args(arguments)
     file = _file()
     try:
         if options.check:
             fresh = file.is_file() and file.read_text(encoding="utf-8") == page()
-            print(f"{file} is up to date." if fresh else f"{file} is stale. Run: {parser.prog}")
+            print(f"{file} is up to date." if fresh else f"{file} is out of date. Run: {parser.prog}")
             return 0 if fresh else 1
         file.write_text(page(), encoding="utf-8")
     except OSError as error:

@@ -2,9 +2,9 @@
 
     python -m grader.authoring.release [--check]
 
-Marked regions (grader/exercise/markers.py) are replaced by their starting point, notebooks are made as nbgrader makes
-them (grader/notebook/released.py), every other file is copied as it is. A file of which nothing is left is one that the
-student makes: it is not written. Before that, what a source notebook repeats of the solution is brought up to date.
+Marked regions (grader/exercise/markers.py) are replaced by their starting point. Notebooks are made as nbgrader makes
+them (grader/notebook/released.py). All other files are copied. A file that becomes empty is not written, because the
+student creates it. Before all this, source notebooks are updated from the files and checks of the solution.
 """
 
 from __future__ import annotations
@@ -36,16 +36,16 @@ else:
 
 @dataclass(frozen=True)
 class ReleasedFile:
-    """A file as the student gets it."""
+    """A file as students get it."""
 
     data: bytes
     executable: bool
 
 
 def released(solution: Path) -> dict[str, ReleasedFile]:
-    """What the student starts from, by POSIX path; `solution` is one step's folder in solutions/.
+    """Return the starting point as POSIX path -> file; `solution` is the folder of a step in solutions/.
 
-    Raises UsageError, with file and line, where markers are amiss or what is left does not parse.
+    Raises UsageError, with file and line, if markers are wrong or the result does not parse.
     """
     files: dict[str, ReleasedFile] = {}
     found = _read(solution)
@@ -57,7 +57,7 @@ def released(solution: Path) -> dict[str, ReleasedFile]:
 
 
 def release(solution: Path, to: Path) -> None:
-    """Make the folder `to` hold what `released` says and nothing else."""
+    """Make the content of the folder `to` equal to `released`."""
     wanted = released(solution)
     present = _read(to) if to.is_dir() else tree.Tree()
     for path in present.files.keys() - wanted.keys():
@@ -70,17 +70,17 @@ def release(solution: Path, to: Path) -> None:
 
 
 def refresh_notebook(solution: Path) -> None:
-    """Bring the step's source notebook up to date with its files and checks, if there is one.
+    """Update the step's source notebook, if there is one, from its files and checks.
 
     Raises:
-        UsageError: it is amiss, or the exercise is.
+        UsageError: the notebook or the exercise is invalid.
     """
     for path, data in _fresh_notebooks(solution).items():
         (solution / path).write_bytes(data)
 
 
 def _fresh_notebooks(solution: Path) -> dict[str, bytes]:
-    """The source notebooks that are not as they should be, as they should be."""
+    """Return the correct text of each source notebook that is out of date."""
     exercise_file = solution.parent.parent / "course" / solution.name / FILE_NAME
     if not solution.is_dir() or not exercise_file.is_file():
         return {}
@@ -92,7 +92,7 @@ def _fresh_notebooks(solution: Path) -> dict[str, bytes]:
 
 
 def stale(solutions: Path, exercises: Path) -> tuple[str, ...]:
-    """How exercises/ differs from what `release` would make of solutions/; a sentence a file."""
+    """Return how exercises/ differs from the result of `release`, one sentence per file."""
     steps = sorted({folder.name for root in (solutions, exercises) for folder in root.iterdir() if folder.is_dir()})
     return tuple(line for step in steps for line in _stale_step(solutions / step, exercises / step))
 
@@ -101,29 +101,29 @@ def _stale_step(solution: Path, exercise: Path) -> list[str]:
     wanted = released(solution) if solution.is_dir() else {}
     present = _read(exercise) if exercise.is_dir() else tree.Tree()
     lines = [
-        f"{solution}/{path} is not what the solution's files and checks make." for path in _fresh_notebooks(solution)
+        f"{solution}/{path} does not match the files and checks of the solution." for path in _fresh_notebooks(solution)
     ]
     for path in sorted(wanted.keys() | present.files.keys()):
         if path not in present.files:
             lines.append(f"{exercise}/{path} is missing.")
         elif path not in wanted:
-            lines.append(f"{exercise}/{path} comes from no solution: delete it.")
+            lines.append(f"{exercise}/{path} does not come from a solution. Delete it.")
         elif present.files[path] != wanted[path].data:
-            lines.append(f"{exercise}/{path} is not what its solution makes.")
+            lines.append(f"{exercise}/{path} does not match its solution.")
         elif (path in present.executable) != wanted[path].executable:
-            lines.append(f"{exercise}/{path} has another executable bit than its solution.")
+            lines.append(f"{exercise}/{path} has a different executable bit than its solution.")
     return lines
 
 
 def release_file(data: bytes, path: str, name: str) -> bytes | None:
-    """One file as it is released, None for a file that the student makes. `name` stands in messages."""
+    """Return a file as it is released, or None for a file that the student creates. Messages contain `name`."""
     if path.endswith(".ipynb"):
         return released_notebook(data, name)
     syntax = syntax_of(path)
     if syntax is None:
         if MEANT.search(data.decode("utf-8", "replace")):
             message = (
-                f"{name}: a marker in a file of an unknown kind; grader/exercise/markers.py lists the known endings."
+                f"{name}: a marker in an unknown type of file. grader/exercise/markers.py lists the known endings."
             )
             raise UsageError(message)
         return data
@@ -149,7 +149,9 @@ def _must_parse(text: str, path: str, name: str) -> None:
     try:
         parse(text)
     except (SyntaxError, ET.ParseError, tomllib.TOMLDecodeError) as error:
-        message = f"{name}: what is released does not parse: {error}. Let a STARTER block below the region mend it."
+        message = (
+            f"{name}: the released file does not parse: {error}. Add a STARTER block below the region to correct it."
+        )
         raise UsageError(message) from error
 
 
@@ -162,12 +164,12 @@ def _read(folder: Path) -> tree.Tree:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """The author's command; exit code 1 when --check finds something stale."""
+    """Run the command. Return 1 if --check finds something out of date."""
     parser = argparse.ArgumentParser(
         prog="python -m grader.authoring.release", description="Make exercises/ from solutions/."
     )
-    parser.add_argument("--check", action="store_true", help="change nothing; fail when exercises/ is stale")
-    parser.add_argument("--root", type=Path, help="the folder that holds both; the course's own when left out")
+    parser.add_argument("--check", action="store_true", help="change nothing, and fail if exercises/ is out of date")
+    parser.add_argument("--root", type=Path, help="the folder that contains both (default: the course)")
     options = parser.parse_args(arguments)
     root = options.root or course_folder().parent
     solutions, exercises = root / "solutions", root / "exercises"

@@ -1,4 +1,4 @@
-"""Validate the course, for its authors: every exercise, its solution, its starting point, its lesson."""
+"""Validate the course for its authors: every exercise, its solution, its starting point and its lesson."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ _CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 def validate(
     names: list[str], tell: Callable[[str], None] = lambda _: None, *, course: Path | None = None
 ) -> list[str]:
-    """The problems of these exercises (all of the course when empty), a sentence each, with what to do.
+    """Return the problems of these exercises (all if empty), each as a sentence that says what to do.
 
-    `tell` hears what is being done: grading takes its time. `course` is the folder course/, ours when left out.
+    `tell` reports the progress, because grading takes some time. `course` is the folder course/ (default: ours).
 
     Raises:
-        UsageError: there is no exercise of such a name.
+        UsageError: there is no exercise of this name.
     """
     course = course or course_folder()
     files = catalogue(course)
@@ -61,7 +61,7 @@ def validate(
 
 
 class _Validation:
-    """What is wrong with one exercise; its gradings begin at once, beside those of others."""
+    """Find the problems of one exercise. Its gradings start at once and run in parallel with others."""
 
     def __init__(self, name: str, file: Path, root: Path, pool: Executor, tell: Callable[[str], None]) -> None:
         self._name = name
@@ -78,12 +78,12 @@ class _Validation:
             self._starting_point = pool.submit(self._graded, "starting point", "exercises")
 
     def problems(self) -> Iterator[str]:
-        """A sentence each."""
+        """Yield the problems, one sentence each."""
         if self._unreadable:
             yield self._unreadable
             return
         if not self._exercise.hints:
-            yield f"{self._file}: there is no [[hint]]; a learner who is stuck needs some."
+            yield f"{self._file}: there is no [[hint]]. Learners need hints."
         elif all(hint.checks for hint in self._exercise.hints):
             helped = {check for hint in self._exercise.hints for check in hint.checks}
             for check in self._exercise.unsolved:
@@ -132,7 +132,7 @@ def _starting_point(exercise: Exercise, report: Report) -> Iterator[str]:
             yield f"exercises/{exercise.id} fails for a reason that was not intended: {_told(outcome)}"
     for name in exercise.unsolved:
         if name not in failed:
-            yield f"exercises/{exercise.id} was to fail the check {name!r}, and does not."
+            yield f"exercises/{exercise.id} should fail the check {name!r} but does not."
 
 
 def _lesson(file: Path) -> Iterator[str]:
@@ -143,13 +143,13 @@ def _lesson(file: Path) -> Iterator[str]:
     words = len(_CODE.sub("", text).split())
     low, high = LESSON_WORDS
     if not low <= words <= high:
-        yield f"{file} has {words} words (code left out); a lesson has {low} to {high}."
+        yield f"{file} has {words} words (without code). A lesson should have {low} to {high}."
     for target in _LINK.findall(_CODE.sub("", text)):
         if (
             not target.startswith(("http://", "https://", "#"))
             and not (file.parent / target.partition("#")[0]).exists()
         ):
-            yield f"{file} links to {target}, which is not there."
+            yield f"{file} links to {target}, which does not exist."
 
 
 def _told(outcome: Outcome) -> str:

@@ -1,1 +1,1 @@
-"""Learning alone: a workspace of one's own, steps in order, hints, progress."""
+"""Learning alone: the learner's workspace, the steps, hints and progress."""

@@ -1,4 +1,4 @@
-"""The learner's verbs of the command `grader`: start, watch, hint, status, solution. No logic."""
+"""The learner's commands: start, watch, hint, status and solution. This module has no logic."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 Workspace = Annotated[
     Optional[Path],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
-    typer.Option(help="Your colcon workspace; else $ROS2_WORKSPACE, else ~/ros2_ws.", metavar="DIR"),
+    typer.Option(help="Your colcon workspace. [default: $ROS2_WORKSPACE or ~/ros2_ws]", metavar="DIR"),
 ]
-Step = Annotated[Optional[str], typer.Argument(help="A step, as in 03-circle-publisher or 03.", metavar="STEP")]  # noqa: UP045
+Step = Annotated[Optional[str], typer.Argument(help="A step such as 03-circle-publisher or 03.", metavar="STEP")]  # noqa: UP045
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add these verbs to the command."""
+    """Add these commands to `app`."""
     app.command(rich_help_panel=PANEL, epilog="Example: grader start 01")(start)
     app.command(rich_help_panel=PANEL, epilog="Example: grader watch")(watch)
     app.command(rich_help_panel=PANEL, epilog="Example: grader hint")(hint)
@@ -30,14 +30,16 @@ def add_to(app: typer.Typer) -> None:
 
 
 def start(
-    step: Annotated[str, typer.Argument(help="A step, as in 03-circle-publisher or 03; or next.", metavar="STEP|next")],
+    step: Annotated[
+        str, typer.Argument(help="A step such as 03-circle-publisher or 03, or next.", metavar="STEP|next")
+    ],
     workspace: Workspace = None,
-    student: Annotated[Optional[str], typer.Option(help="Who you are; your numbers are drawn from it.")] = None,  # noqa: UP045
+    student: Annotated[Optional[str], typer.Option(help="Your student id. Your own numbers depend on it.")] = None,  # noqa: UP045
     fresh: Annotated[
-        bool, typer.Option("--fresh", help="Begin from the step's starting point; your work is kept aside.")
+        bool, typer.Option("--fresh", help="Begin again from the step's starting point. Your work is moved aside.")
     ] = False,
 ) -> None:
-    """Add to your workspace what a step needs and you lack. Nothing of yours is overwritten."""
+    """Add the files of a step to your workspace. Your own files are not overwritten."""
     from grader.learner import steps
 
     begun = steps.start(step, workspace, student=student, fresh=fresh)
@@ -48,18 +50,18 @@ def hint(
     step: Step = None,
     part: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Argument(help="A part of the step, as in d.", metavar="PART"),
+        typer.Argument(help="A part of the step, such as d.", metavar="PART"),
     ] = None,
     workspace: Workspace = None,
 ) -> None:
-    """Show the next hint for the step you are at, first for what failed: from a nudge to nearly the answer."""
+    """Show the next hint for a step. The first hints are small, and the last ones are nearly the answer."""
     from grader.learner import hints
 
     _print(hints.hint(step, workspace, part))
 
 
 def status(workspace: Workspace = None) -> None:
-    """Show how far you are."""
+    """Show your progress."""
     from rich.console import Console
 
     from grader.learner import steps
@@ -68,10 +70,10 @@ def status(workspace: Workspace = None) -> None:
 
 
 def solution(
-    step: Annotated[str, typer.Argument(help="A step that has passed, as in 03.", metavar="STEP")],
+    step: Annotated[str, typer.Argument(help="A step that you have passed, such as 03.", metavar="STEP")],
     workspace: Workspace = None,
 ) -> None:
-    """Show a step's solution beside your own, once yours has passed."""
+    """Show the solution of a step next to yours, after yours has passed."""
     from rich.console import Console
 
     from grader.learner.compare import print_solution
@@ -80,8 +82,8 @@ def solution(
 
 
 def watch(
-    path: Annotated[Path | None, typer.Argument(help="A package's folder; your current step's when left out.")] = None,
-    exercise: Annotated[Optional[str], typer.Option(help="Which exercise, where the folder does not say it.")] = None,  # noqa: UP045
+    path: Annotated[Path | None, typer.Argument(help="Folder of a package. [default: your current step]")] = None,
+    exercise: Annotated[Optional[str], typer.Option(help="The exercise, if the folder does not determine it.")] = None,  # noqa: UP045
     workspace: Workspace = None,
 ) -> None:
     """Grade again after every save. Keys: h hint, l list, n next, r rerun, q quit."""
@@ -91,7 +93,7 @@ def watch(
 
 
 def _print(text: str) -> None:
-    """Print sentences: wrapped at words on a terminal, whole where another program reads them."""
+    """Print text. On a terminal, it is wrapped at words. In a pipe, lines stay whole."""
     from rich.console import Console
 
     console = Console(highlight=False)

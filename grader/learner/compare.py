@@ -19,24 +19,25 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 WIDE = 120
-"""From this many columns on, the two stand side by side; below it, as a unified diff."""
+"""The columns that a terminal needs to show both side by side. A narrower one shows a unified diff."""
 
 
 def print_solution(step: str, folder: Path | None, console: Console) -> None:
-    """Print where the two differ.
+    """Print where the solution of a step differs from the learner's files.
 
     Raises:
-        UsageError: the step has not passed yet.
+       UsageError: the step has not passed yet.
     """
     exercise = find_exercise(step)
     root = progress.workspace_of(folder)
     if not progress.load(root).step(exercise.id).passed:
         message = (
-            f"The solution of {exercise.id} is shown once yours has passed. Until then: `grader hint {exercise.id}`."
+            f"You can see the solution of {exercise.id} after yours has passed. Until then, `grader hint "
+            f"{exercise.id}` helps."
         )
         raise UsageError(message)
     ideal = workspace.solution(exercise)
-    # The rest of the package grows with later steps: only what was to be written is compared.
+    # The rest of the package grows with later steps, so only files that the learner had to write are compared.
     ours = _texts(ideal / exercise.package if exercise.package else ideal, marked=True)
     theirs = _texts(workspace.work_folder(exercise, root))
     same = [path for path in ours if theirs.get(path) == ours[path]]
@@ -48,7 +49,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
 
 
 def _texts(folder: Path, *, marked: bool = False) -> dict[str, str]:
-    """The text of each file, by path; when `marked`, only of those with a region that is the student's to write."""
+    """Return the text of each file by path; with `marked`, only files in which the student has something to write."""
     files = read(tree.read_folder, folder).files
     texts = {}
     for path in sorted(files, key=tree.sort_key):

@@ -1,4 +1,4 @@
-"""Hints: one at a time, first for what failed in the last verdict, and none for what is done already."""
+"""Hints: one at a time. Hints for failed checks come first, and hints for passed checks are left out."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 
 def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
-    """Return the next hint of a step, the current one when left out, and of a part of it if one is named.
+    """Return the next hint of a step (the current one by default), or of a part of it.
 
-    When all were read, the last one comes again. A single letter in place of the step is a part of the current one.
+    After the last hint, the last one is returned again. A single letter as `step` is a part of the current step.
 
     Raises:
-        UsageError: no step was begun, or it has no such part.
+       UsageError: no step was started, or the step has no such part.
     """
     if step is not None and part is None and re.fullmatch("[A-Za-z]", step):
         step, part = None, step
@@ -36,7 +36,7 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     known = progress.load(root).step(exercise.id)
     index = _next(exercise, wanted, known)
     if index is None:
-        return f"{_whole(exercise, part)} has passed: there is nothing left to hint at."
+        return f"{_whole(exercise, part)} has passed. You need no more hints."
     read = (*(each for each in known.read if each != index), index)
     progress.update(root, lambda before: before.with_step(exercise.id, replace(before.step(exercise.id), read=read)))
     place = f"{sum(each in read for each in wanted)} of {len(wanted)}"
@@ -53,24 +53,26 @@ def _exercise(step: str | None, folder: Path | None) -> Exercise:
         return find_exercise(step)
     at = steps.current(folder)
     if at is None:
-        message = "Hints for which step? Name it, as in `grader hint 03`, or begin one: `grader start 01`."
+        message = "Hints for which step? Name one, as in `grader hint 03`, or start one: `grader start 01`."
         raise UsageError(message)
     return at[0]
 
 
 def _part(exercise: Exercise, part: str) -> str:
-    """Return the letter of a part, however it was typed: d, D, d)."""
+    """Return the letter of a part, whether it was typed as d, D or d)."""
     letter = part.lower().rstrip(")")
     parts = sorted({each.part for each in exercise.hints if each.part})
     if letter not in parts:
         has = f"has the parts {a_list(parts)}" if parts else "has no parts"
-        message = f"{exercise.id} {has}: {part!r} is none of them. `grader hint {exercise.id[:2]}` gives the next hint."
+        message = (
+            f"{exercise.id} {has}: {part!r} is not one of them. `grader hint {exercise.id[:2]}` gives the next hint."
+        )
         raise UsageError(message)
     return letter
 
 
 def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | None:
-    """Return the place of the hint to give; None where all that they help with is done."""
+    """Return the index of the next hint, or None if everything that the hints help with is done."""
     open_ = [index for index in wanted if not _is_done(exercise.hints[index], known)]
     if known.passed and not known.failed:
         open_ = []
@@ -79,7 +81,7 @@ def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | N
     unread = [index for index in in_order if index not in known.read]
     if unread:
         return unread[0]
-    # All were read: once more the last one for what fails, or the last of all.
+    # All were read: repeat the last one for a failed check, or the last of all.
     return max(failed or open_, default=None)
 
 
@@ -88,7 +90,7 @@ def _is_done(hint: Hint, known: StepProgress) -> bool:
 
 
 def _about(exercise: Exercise, index: int, known: StepProgress) -> str:
-    """Return for which failed check the hint is."""
+    """Return the title of the failed check that the hint is for, as the end of a phrase."""
     titles = {check.id: check.title for check in exercise.checks if not check.hidden}
     about = [titles[check] for check in known.failed if check in exercise.hints[index].checks and check in titles]
     return f', for "{about[0]}"' if about else ""

@@ -1,4 +1,4 @@
-"""Single keys from the terminal, without Return; the terminal is put back as it was."""
+"""Read single keys from the terminal, without Return. The terminal is restored afterwards."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def single_keys() -> Iterator[Callable[[], str] | None]:
-    """Give a function that waits for a key ("" when there will be none); None where there is no terminal."""
+    """Yield a function that waits for a key and returns it ("" at the end of input); None without a terminal."""
     if not sys.stdin.isatty():
         yield None
         return

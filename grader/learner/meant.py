@@ -1,4 +1,4 @@
-"""What a learner means by the words behind `grader check` and `grader watch`: which exercise, and which folder."""
+"""Which exercise and which folder a learner means with the arguments of `grader check` and `grader watch`."""
 
 from __future__ import annotations
 
@@ -15,29 +15,31 @@ if TYPE_CHECKING:
 
 
 def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise, Path]:
-    """Return the exercise that is meant, and where the work on it lies; arguments as for `guessed`.
+    """Return the exercise and the folder with the work on it; for the arguments see `guessed`.
 
     Raises:
-        UsageError: neither path, name nor progress tells which exercise, or the step was never begun.
+       UsageError: nothing determines the exercise, or the step was never started.
     """
     known, place = guessed(path, exercise, folder)
     if known is None:
         message = (
             f"Which exercise is {place.resolve().name} for? Name it with --exercise, one of: {', '.join(catalogue())}. "
-            "Or begin a step in your workspace: `grader start 01`."
+            "Or start a step in your workspace: `grader start 01`."
         )
         raise UsageError(message)
     return known, place
 
 
 def guessed(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise | None, Path]:
-    """Return the exercise if anything tells which one it is, and where the work lies.
+    """Return the exercise, or None if nothing determines it, and the folder with the work on it.
 
-    `path` is what was typed: a package, a step ("03", "3"), the workspace (then the current step is meant), or None;
-    `exercise` is the one named by --exercise; `folder` is the workspace, the learner's own when None.
+    `path` is what was typed: a package, a step ("03", "3"), the workspace (this means the current step), or None.
+    `exercise` is the one named by --exercise. `folder` is the workspace; None means the learner's default.
+
+       guessed(Path("03"), None)  # step 03 and the package in the workspace
 
     Raises:
-        UsageError: there is no exercise of that name, or the step was never begun.
+       UsageError: there is no exercise of that name, or the step was never started.
     """
     root = progress.workspace_of(folder)
     if path is not None and not path.exists() and _is_step(str(path)):
@@ -54,7 +56,7 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
 
 
 def _is_step(name: str) -> bool:
-    """Whether this is a step's id or number, and no path."""
+    """Return whether this is the id or the number of a step, and not a path."""
     return name.isdigit() or name in catalogue()
 
 
@@ -62,6 +64,6 @@ def _step(name: str, root: Path) -> tuple[Exercise, Path]:
     exercise = find_exercise(name)
     place = workspace.work_folder(exercise, root)
     if not place.is_dir():
-        message = f"{exercise.id} was not begun in {root} yet: `grader start {exercise.id[:2]}`."
+        message = f"{exercise.id} was not started in {root} yet: `grader start {exercise.id[:2]}`."
         raise UsageError(message)
     return exercise, place

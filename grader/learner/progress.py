@@ -1,4 +1,7 @@
-"""Progress: what a learner has done so far, kept outside their package so that nothing of theirs can lose it."""
+"""Progress: what a learner has done so far.
+
+It is stored outside of the package, so that nothing there can delete it.
+"""
 
 from __future__ import annotations
 
@@ -27,41 +30,41 @@ DEFAULT_WORKSPACE = Path("~/ros2_ws")
 
 @dataclass(frozen=True)
 class StepProgress:
-    """One step: the best points so far, of `max` in that report, and whether it has passed."""
+    """One step: the best points so far, the maximum in that report, and whether the step has passed."""
 
     points: float = 0.0
     max: float = 0.0
     passed: bool = False
     read: tuple[int, ...] = ()
-    """The hints that were read, in that order, by their places in exercise.toml."""
+    """The indices in exercise.toml of the hints that were read, in the order of reading."""
     failed: tuple[str, ...] = ()
     """The ids of the checks that failed in the last verdict, in its order."""
     done: tuple[str, ...] = ()
-    """Those that passed."""
+    """The ids of the checks that passed in the last verdict."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """A learner's way through one workspace: the step they are at, and what is known of each."""
+    """A learner's progress in one workspace: the current step, and the progress in each step."""
 
     student: str
     current: str | None = None
     steps: dict[str, StepProgress] = field(default_factory=dict)
 
     def step(self, name: str) -> StepProgress:
-        """What is known of a step; nothing as long as it was not begun."""
+        """Return the progress in a step. For a step that was not started, it is empty."""
         return self.steps.get(name, StepProgress())
 
     def with_step(self, name: str, step: StepProgress) -> Progress:
-        """The same with this step's progress."""
+        """Return a copy with this progress in a step."""
         return replace(self, steps={**self.steps, name: step})
 
     def at(self, name: str) -> Progress:
-        """The same, standing at another step."""
+        """Return a copy with another current step."""
         return replace(self, current=name, steps={**self.steps, name: self.step(name)})
 
     def graded(self, name: str, report: Report) -> Progress:
-        """The same after a verdict: points never go down, and what has passed stays passed."""
+        """Return a copy after a verdict. Points never go down, and a step that has passed stays passed."""
         before = self.step(name)
         better = report.points >= before.points
         after = replace(
@@ -76,21 +79,21 @@ class Progress:
 
 
 def workspace_of(folder: Path | None) -> Path:
-    """The learner's workspace: the one named, else ROS2_WORKSPACE, else ~/ros2_ws; absolute."""
+    """Return the absolute path of the workspace: the named folder, ROS2_WORKSPACE, or ~/ros2_ws."""
     named = folder or Path(os.environ.get("ROS2_WORKSPACE") or DEFAULT_WORKSPACE)
     return named.expanduser().resolve()
 
 
 def state_file() -> Path:
-    """Where progress is kept: progress.json below XDG_STATE_HOME."""
+    """Return the path of progress.json below XDG_STATE_HOME."""
     return xdg.state() / "progress.json"
 
 
 def load(workspace: Path) -> Progress:
-    """The progress in a workspace; that of a beginner where nothing is known.
+    """Return the progress in a workspace. It is empty at the beginning.
 
     Raises:
-        MachineError: the file is damaged or cannot be read.
+       MachineError: the file is damaged or cannot be read.
     """
     data = _read(state_file())["workspaces"].get(str(workspace))
     if data is None:
@@ -100,17 +103,19 @@ def load(workspace: Path) -> Progress:
 
 
 def _step(data: dict[str, Any]) -> StepProgress:
-    # Older versions counted the hints, which came in order.
+    # Older versions stored the number of hints, which came in order.
     read = data.get("read", range(data.get("hints", 0)))
     lists = {"read": tuple(read), "failed": tuple(data.get("failed", ())), "done": tuple(data.get("done", ()))}
     return StepProgress(data["points"], data["max"], data["passed"], **lists)
 
 
 def update(workspace: Path, change: Callable[[Progress], Progress]) -> Progress:
-    """Change the progress in a workspace, whole or not at all, whoever else writes at the same time.
+    """Change the progress in a workspace, completely or not at all. Other processes may write at the same time.
+
+       update(root, lambda known: known.at("03-circle-publisher"))
 
     Raises:
-        MachineError: the file is damaged or cannot be written.
+       MachineError: the file is damaged or cannot be written.
     """
     file = state_file()
     try:
@@ -143,10 +148,13 @@ def _read(file: Path) -> dict[str, Any]:
         return {"schema": _SCHEMA, "workspaces": {}}
     except (OSError, ValueError) as error:
         message = (
-            f"Your progress in {file} cannot be read ({error}). Move the file away to begin anew; no work is lost."
+            f"Your progress in {file} cannot be read ({error}). Move the file away to start again. Your work is not "
+            "lost."
         )
         raise MachineError(message) from error
     if not isinstance(data, dict) or data.get("schema") != _SCHEMA:
-        message = f"{file} was written by another version of the grader. Move it away to begin anew; no work is lost."
+        message = (
+            f"{file} was written by another version of the grader. Move it away to start again. Your work is not lost."
+        )
         raise MachineError(message)
     return data

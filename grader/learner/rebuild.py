@@ -1,7 +1,7 @@
-"""Rebuild: what `colcon build --symlink-install` gives a learner: a changed module needs no new build.
+"""Rebuild without colcon: as with `colcon build --symlink-install`, a changed module needs no new build.
 
-Where since the last build only the text of installed modules changed, the new text takes the old one's place in the
-install tree, and colcon is not run; any other change builds anew.
+If only the text of installed modules changed since the last build, the new text is written into the install tree and
+colcon is not run. Every other change starts a new build.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Rebuild:
-    """Stands in for `workspace.build`; `runs` counts how often colcon was run."""
+    """A replacement for `workspace.build`; `runs` counts how many times colcon ran."""
 
     def __init__(self) -> None:
         self.runs = 0
@@ -37,10 +37,10 @@ class Rebuild:
         in_cell: bool,
         tell: Callable[[str], None],
     ) -> runner.Built:
-        """Build the submission, with colcon or without; `tell` hears which."""
+        """Build the submission, with or without colcon; `tell` shows which."""
         built = read(renewed, submission, *self._last) if self._last else None
         if built is not None:
-            tell("Taking the last build, with the modules as they are now")
+            tell("Using the last build with the changed modules")
         else:
             self.runs += 1
             built = runner.build(submission, ros, in_cell=in_cell, tell=tell)
@@ -49,7 +49,7 @@ class Rebuild:
 
 
 def renewed(submission: Submission, before: Submission, built: runner.Built) -> runner.Built | None:
-    """What was `built` of a submission `before`, with the modules of this one; None where more than those differ."""
+    """Return the last build with the changed modules, or None if more than modules changed."""
     if submission.files.keys() != before.files.keys() or submission.executable != before.executable:
         return None
     changed = {path: data for path, data in submission.files.items() if data != before.files[path]}
@@ -61,7 +61,7 @@ def renewed(submission: Submission, before: Submission, built: runner.Built) -> 
 
 
 def _installed(path: str, built: runner.Built) -> str | None:
-    """Where a module of the submission was installed; None for what is no module, or was not."""
+    """Return where a module of the submission was installed, or None for other files."""
     if not path.endswith(".py") or "/" not in path:
         return None
     places = [place for place in built.build.installed if place.endswith(f"/site-packages/{path}")]
@@ -69,7 +69,7 @@ def _installed(path: str, built: runner.Built) -> str | None:
 
 
 def _with_texts(tree: bytes, texts: dict[str, bytes]) -> bytes:
-    """The tree with these members' contents, and without what Python compiled of the old ones."""
+    """Return the tree with these members replaced, and without Python's compiled versions of the old ones."""
     stale = {str(PurePosixPath(path).parent / "__pycache__" / f"{PurePosixPath(path).stem}.") for path in texts}
     renewed = io.BytesIO()
     with tarfile.open(fileobj=io.BytesIO(tree)) as old, tarfile.open(fileobj=renewed, mode="w") as new:

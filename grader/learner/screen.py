@@ -1,4 +1,4 @@
-"""What `grader watch` shows, and its keys."""
+"""The screen and the keys of `grader watch`."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 BELOW = 5
-"""Lines below a report: where it watches, the keys, what a key answers."""
+"""The number of lines below a report, for the watched folder, the keys and the answer to a key."""
 KEYS = "h hint · l list · n next · r rerun · q quit"
 
 
 def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
-    """Grade, and grade again after every save, until q, Ctrl-C or the end of the terminal.
+    """Grade now and after every save, until q, Ctrl-C or the end of the terminal.
 
     Raises:
-        UsageError: there is no such folder.
+       UsageError: there is no such folder.
     """
     if not folder.is_dir():
-        message = f"There is no folder {folder}. Begin a step with `grader start`, or name the folder of your package."
+        message = f"There is no folder {folder}. Start a step with `grader start`, or name the folder of your package."
         raise UsageError(message)
     console = Console(highlight=False)
     options = Options(in_cell=bubblewrap.usable())
@@ -62,9 +62,9 @@ class _Screen:
         self._console = console
 
     def show(self, events: Events, told: str) -> steps.Begun | None:
-        """Show verdicts until the learner leaves; the step to go on with, None for the end.
+        """Show verdicts until the learner leaves. Return the step to continue with, or None to end.
 
-        `told` stands below the first verdict, which clears the screen.
+        The first verdict clears the screen. `told` is printed below it.
         """
         self._grade(told)
         for happened in events:
@@ -103,14 +103,14 @@ class _Screen:
         self._say(f"\nWatching {self.watched.folder}   {KEYS if self._console.is_terminal else ''}".rstrip())
 
     def _render(self, report: Report, more: int) -> None:
-        """Print all of the report where the window holds it and so many lines more, else what is to be mended."""
+        """Print the whole report if the window has space for it and for the lines below, otherwise only what failed."""
         with self._console.capture() as whole:
             terminal.render(report, self._console)
         fits = whole.get().count("\n") + more + BELOW <= self._console.height
         terminal.render(report, self._console, brief=self._console.is_terminal and not fits)
 
     def _hint(self) -> None:
-        # A progress file that cannot be written ends no watching.
+        # If the progress cannot be written, watching continues.
         try:
             told = hints.hint(self._exercise.id, self._workspace)
         except GraderError as error:

@@ -1,4 +1,4 @@
-"""The steps in order: begin one, note a verdict, look how far one is."""
+"""The steps in order: start one, store a verdict, show the progress."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Begun:
-    """A step that was begun: what was done for it, and where the lesson is."""
+    """A step that was started: the changes in the workspace, and the folder."""
 
     exercise: Exercise
     started: Started
@@ -32,18 +32,18 @@ class Begun:
 
 
 def start(step: str, folder: Path | None, *, student: str | None = None, fresh: bool = False) -> Begun:
-    """Begin a step, or the next one ("next"), in the workspace.
+    """Start a step, or the next one ("next"), in the workspace.
 
     Raises:
-        UsageError: there is no such step; the current one has not passed yet (for "next").
+       UsageError: there is no such step, or (for "next") the current one has not passed yet.
     """
     root = progress.workspace_of(folder)
     exercise = _next(progress.load(root)) if step == "next" else find_exercise(step)
     if student is not None and not student.strip():
-        message = "--student wants a name or a number."
+        message = "--student needs a name or a number."
         raise UsageError(message)
 
-    # First who it is, drawn once and kept; the step only when all is in its place.
+    # The student id is stored first and never changes. The step is stored when all its files are in place.
     known = progress.update(
         root, lambda before: replace(before, student=student.strip() if student else before.student)
     )
@@ -53,7 +53,7 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
 
 
 def told(begun: Begun) -> str:
-    """What `start` says: what was added, what was left as it is, what to type next."""
+    """Return the text that `start` prints: what was added, what was not changed, and what to type next."""
     started = begun.started
     lines = [f"{begun.exercise.id}: {begun.exercise.title}, in {started.folder}"]
     if started.kept:
@@ -63,7 +63,7 @@ def told(begun: Begun) -> str:
     if started.present:
         lines.append(f"Left as {'it is' if len(started.present) == 1 else 'they are'}: {', '.join(started.present)}.")
     for path, lacking in started.lacking.items():
-        lines += [f"This step begins with more in {path}; write into yours:", *(f"    {line}" for line in lacking)]
+        lines += [f"This step needs more lines in {path}. Add to yours:", *(f"    {line}" for line in lacking)]
     lesson = begun.exercise.folder / "lesson.md"
     lines += [
         "",
@@ -76,13 +76,13 @@ def told(begun: Begun) -> str:
 
 
 def _setup_file() -> Path:
-    """What brings ROS 2 and `grader` into a new terminal of the user's own shell."""
+    """Return the file that sets up ROS 2 and `grader` in a new terminal of the user's shell."""
     shell = "zsh" if Path(os.environ.get("SHELL", "")).name == "zsh" else "bash"
     return Path(sys.prefix, f"setup.{shell}")
 
 
 def current(folder: Path | None) -> tuple[Exercise, Path] | None:
-    """The step the learner is at, and where the work on it lies; None before the first `start`."""
+    """Return the current step and the folder with the work on it, or None before the first `start`."""
     root = progress.workspace_of(folder)
     name = progress.load(root).current
     if name is None or name not in catalogue():
@@ -92,7 +92,7 @@ def current(folder: Path | None) -> tuple[Exercise, Path] | None:
 
 
 def note(exercise: Exercise, submission: Path, report: Report, folder: Path | None = None) -> str:
-    """Remember a verdict on the work in the learner's workspace; return what to do next, if anything."""
+    """Store a verdict on the work in the learner's workspace. Return what to do next, or an empty string."""
     root = progress.workspace_of(folder)
     begun = progress.load(root)
     if begun.current is None:
@@ -105,12 +105,12 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
     if report.exit_code != 0:
         return ""
     if all(known.step(name).passed for name in catalogue()):
-        return "That was the last one: you have passed every step."
+        return "That was the last step. You have passed all of them."
     return f"The next step: grader start next   (our solution: grader solution {exercise.id[:2]})"
 
 
 def print_status(folder: Path | None, console: Console) -> None:
-    """Print all steps with what is known of them."""
+    """Print all steps with their progress."""
     from rich.table import Table
 
     root = progress.workspace_of(folder)
@@ -130,7 +130,7 @@ def print_status(folder: Path | None, console: Console) -> None:
     if known.current is None:
         console.print("Begin with: grader start 01")
     elif passed == len(catalogue()):
-        console.print("You are through.")
+        console.print("You have finished the course.")
     elif known.step(known.current).passed:
         console.print("Go on with: grader start next")
 
@@ -141,15 +141,17 @@ def _next(known: progress.Progress) -> Exercise:
         return find_exercise(names[0])
     if not known.step(known.current).passed:
         message = (
-            f"{known.current} has not passed yet: `grader check` tells what is missing, `grader hint` helps. To leave "
-            "it for now, name the step that you want, as in `grader start 04`."
+            f"{known.current} has not passed yet: `grader check` shows what is missing, and `grader hint` helps. To "
+            "skip "
+            "it for now, name another step, as in `grader start 04`."
         )
         raise UsageError(message)
     later = names[names.index(known.current) + 1 :]
     waiting = [name for name in later if not known.step(name).passed] or later
     if not waiting:
         message = (
-            f"{known.current} was the last step, and it has passed: you are through. `grader status` shows it all."
+            f"{known.current} was the last step, and it has passed. You have finished the course. `grader status` "
+            "shows all steps."
         )
         raise UsageError(message)
     return find_exercise(waiting[0])

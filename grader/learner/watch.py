@@ -1,7 +1,7 @@
-"""Watch: a verdict after every save.
+"""Watch a folder and grade it after every save.
 
-While the learner thinks, simulator and launcher of the next trial wait already, and the last build is kept; a save
-then costs little more than the trial itself.
+While the learner thinks, the simulator and the launcher of the next trial already wait, and the last build is kept. So
+the verdict after a save takes little longer than the trial itself.
 """
 
 from __future__ import annotations
@@ -29,29 +29,29 @@ if TYPE_CHECKING:
     from grader.submission.package import Submission
 
 DEBOUNCE_MS = 50
-"""An editor that saves by renaming makes several events; they count as one."""
+"""An editor that saves by renaming causes several events. They count as one."""
 
 
 _LOOK_MS = 200
-"""How often to look whether the path still leads to the folder that is watched."""
+"""How often to check whether the path still leads to the watched folder (s)."""
 
 
 @dataclass(frozen=True)
 class Happened:
-    """What the loop waits for: a save (perhaps one that changed nothing), a key, or the end."""
+    """An event for the loop: a save (which may have changed nothing), a key, or the end of the input."""
 
     kind: Literal["saved", "key", "end"]
     key: str = ""
 
 
 class _Sources(DefaultFilter):
-    """What a verdict may depend on: not what colcon and Python make."""
+    """Accept files that can change a verdict, and not files that colcon and Python write."""
 
     ignore_dirs = (*DefaultFilter.ignore_dirs, "build", "install", "log")
 
 
 def _identity(folder: Path) -> tuple[int, int] | None:
-    """Which folder has this path now; None while none has."""
+    """Return the identity of the folder at this path, or None if there is no folder."""
     try:
         status = folder.stat()
     except OSError:
@@ -60,43 +60,43 @@ def _identity(folder: Path) -> tuple[int, int] | None:
 
 
 class Events:
-    """Keys, and saves below the folder that is watched, in the order in which they happen."""
+    """Keys, and saves below the watched folder, in the order in which they happen."""
 
     def __init__(self, read_key: Callable[[], str] | None) -> None:
         self._queue: SimpleQueue[Happened] = SimpleQueue()
         self._stop = Event()
         self._saved = Event()
-        # One reader for all folders: a second would take keys that were meant for the first.
+        # One reader for all folders, because a second one would take keys from the first.
         if read_key is not None:
             Thread(target=self._keys, args=(read_key,), daemon=True).start()
 
     def watch(self, folder: Path) -> None:
-        """Watch this folder from now on, and no other; a first save is told once no other can be missed any more."""
+        """Watch only this folder from now on. Its first event is a save, sent when no later save can be missed."""
         self._stop.set()
         self._stop = Event()
         Thread(target=self._watch, args=(folder, self._stop), daemon=True).start()
 
     def __iter__(self) -> Iterator[Happened]:
-        """Wait for what happens next; saves that wait here together are one."""
+        """Return the next event. Several waiting saves are returned as one."""
         while (happened := self._queue.get()).kind != "end":
             if happened.kind == "saved":
                 self._saved.clear()
             yield happened
 
     def close(self) -> None:
-        """End the watching."""
+        """Stop watching."""
         self._stop.set()
         self._queue.put(Happened("end"))
 
     def _watch(self, folder: Path, stop: Event) -> None:
-        """Watch whatever folder has this path: one that is renamed takes its watch along, and another may follow."""
+        """Watch the folder at this path. If it is renamed, watch the folder that has the path then."""
         while not stop.is_set():
             watched = _identity(folder)
             if watched is None or not self._watch_one(folder, watched, stop):
                 stop.wait(_LOOK_MS / 1000)
 
     def _watch_one(self, folder: Path, watched: tuple[int, int], stop: Event) -> bool:
-        """Watch the folder until the path leads to another one; False if it could not be watched."""
+        """Watch the folder until the path leads to another one. Return False if it could not be watched."""
         begins = True
         try:
             for changes in watch(
@@ -127,7 +127,7 @@ class Events:
 
 
 class Watched:
-    """One exercise in one folder, graded again and again. Close it when done."""
+    """One exercise in one folder that is graded repeatedly. Call `close` at the end."""
 
     def __init__(self, exercise: Exercise, folder: Path, options: Options) -> None:
         self.exercise = exercise
@@ -137,20 +137,20 @@ class Watched:
         self._warm: tuple[Plan, Trial] | None = None
         self._wanted: tuple[Plan, Ros] | None = None
         self._judged = ""
-        """The digest of the last submission, or why there was none."""
+        """The digest of the last submission, or the reason why there was none."""
 
     def changed(self) -> bool:
-        """Whether the last verdict is about something else than what is in the folder now."""
+        """Return whether the folder has changed since the last verdict."""
         try:
             return self._open().digest != self._judged
         except UsageError as error:
             return str(error) != self._judged
 
     def grade(self, tell: Callable[[str], None] = lambda _: None) -> Graded:
-        """Grade the folder as it is now.
+        """Grade the current content of the folder.
 
         Raises:
-            UsageError: there is no package in it (any more).
+            UsageError: there is no package in the folder.
         """
         try:
             submission = self._open()
@@ -165,7 +165,7 @@ class Watched:
             self._warm_up()
 
     def close(self) -> None:
-        """End what waits."""
+        """End the waiting processes."""
         if self._warm is not None:
             self._warm[1].close()
             self._warm = None
@@ -174,7 +174,7 @@ class Watched:
         return open_submission(self.folder) if self.exercise.package else open_answers(self.folder)
 
     def _next_trial(self, plan: Plan, ros: Ros, *, in_cell: bool) -> Trial:
-        # The first trial of a grading is the one that the next grading begins with.
+        # The next grading begins with the first trial of this one.
         if self._wanted is None and plan.clock == "simulated":
             self._wanted = (plan, ros)
         if self._warm is not None and self._warm[0] == plan:

@@ -1,4 +1,4 @@
-"""The learner's workspace: a step's starting point goes in, and nothing of the learner's is ever overwritten."""
+"""The learner's workspace: it gets the starting point of a step, and no file of the learner is ever overwritten."""
 
 from __future__ import annotations
 
@@ -21,14 +21,15 @@ if TYPE_CHECKING:
 
 
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
-"""These grow from step to step, outside of what a step is about."""
+"""Package files. They get new lines from step to step, although a step is about something else."""
 
 
 @dataclass(frozen=True)
 class Started:
-    """What `start` did: paths relative to the workspace. `kept` is where older work went (with --fresh).
+    """What `start` did; all paths are relative to the workspace.
 
-    `lacking`: of the package files that were left alone, the lines that the step begins with and they do not have.
+    `kept` is the folder to which older work was moved (with --fresh). `lacking` has, for each package file that was not
+    changed, the lines of the step's version that are missing in it.
     """
 
     folder: Path
@@ -39,10 +40,10 @@ class Started:
 
 
 def starting_point(exercise: Exercise) -> Path:
-    """The folder in exercises/ that the step begins from.
+    """Return the folder in exercises/ with the starting point of the step.
 
     Raises:
-        MachineError: it is not there.
+       MachineError: the folder is missing.
     """
     folder = course_folder().parent / "exercises" / exercise.id
     if not folder.is_dir():
@@ -52,31 +53,31 @@ def starting_point(exercise: Exercise) -> Path:
 
 
 def solution(exercise: Exercise) -> Path:
-    """The folder in solutions/ of the step.
+    """Return the folder in solutions/ of the step.
 
     Raises:
-        UsageError: this copy of the course comes without solutions.
+       UsageError: this copy of the course has no solutions.
     """
     folder = course_folder().parent / "solutions" / exercise.id
     if not folder.is_dir():
-        message = "This copy of the course comes without solutions: your instructor has them."
+        message = "This copy of the course has no solutions. Your instructor has them."
         raise UsageError(message)
     return folder
 
 
 def work_folder(exercise: Exercise, workspace: Path) -> Path:
-    """Where the learner's work on a step lies: the package in src/, or a folder of its own for answers."""
+    """Return the folder with the learner's work on a step: the package in src/, or a folder for answers."""
     return workspace / "src" / exercise.package if exercise.package else workspace / "answers" / exercise.id
 
 
 def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = False) -> Started:
-    """Add what the step needs and the workspace lacks. With `fresh`, older work is put aside first.
+    """Add the files of the step that the workspace does not have. With `fresh`, older work is moved aside first.
 
-    Where the step has numbers of the student's own, they are those of `student`.
+    If the step has the student's own numbers, they are those of `student`.
 
     Raises:
-        UsageError: the workspace is no folder.
-        MachineError: it cannot be written.
+       UsageError: the workspace is not a folder.
+       MachineError: it cannot be written.
     """
     source = starting_point(exercise)
     if exercise.package:
@@ -87,7 +88,7 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
         added, present = add_missing(source, folder, {own_numbers.FILE: to_toml(draw_numbers(student)).encode()})
         lacking = {path: _lacking(source / path, folder / path) for path in present if path in _PACKAGE_FILES}
     except (FileExistsError, NotADirectoryError) as error:
-        message = f"{error.filename} is a file, where a folder is needed. Name another workspace with --workspace."
+        message = f"{error.filename} is a file, but a folder is needed. Name another workspace with --workspace."
         raise UsageError(message) from error
     except OSError as error:
         message = f"{error.filename or folder} could not be written: {error.strerror}."
@@ -96,9 +97,10 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
 
 
 def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Copy what `folder` lacks of `source`, but notebooks; returns the paths that were added, and those left alone.
+    """Copy the files of `source` that `folder` does not have, without notebooks.
 
-    `instead`: what stands in these files instead. Raises OSError.
+    `instead` has other contents for some of these files. Returns the paths that were added,
+    and those that were not changed. Raises OSError.
     """
     found = tree.read_folder(source)
     added, present = [], []
@@ -121,7 +123,10 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
 
 
 def _lacking(theirs: Path, mine: Path) -> tuple[str, ...]:
-    """The lines of the step's file that the learner's does not have; remarks, blanks, commas, quotes do not count."""
+    """Return the lines of the step's file that the learner's file does not have.
+
+    Comments, spaces, commas and quotes do not count.
+    """
 
     def plain(text: str) -> str:
         return "".join(text.replace("'", '"').split()).rstrip(",")
@@ -134,7 +139,7 @@ def _lacking(theirs: Path, mine: Path) -> tuple[str, ...]:
 def _put_aside(folder: Path, workspace: Path) -> Path:
     aside = workspace / "before"
     aside.mkdir(parents=True, exist_ok=True)
-    # colcon, run in the workspace, must not build old packages beside the new one.
+    # If colcon runs in the workspace, it must not build old packages next to the new one.
     (aside / IGNORE_MARKER).touch()
     for number in itertools.count(1):
         target = aside / f"{folder.name}-{number}"

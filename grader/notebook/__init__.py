@@ -1,4 +1,4 @@
-"""The course in Jupyter: `%load_ext grader.notebook` brings the magics, `check` and `simulator` into a notebook."""
+"""The course in Jupyter: `%load_ext grader.notebook` adds the magics, `check` and `simulator` to a notebook."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def load_ipython_extension(shell: InteractiveShell) -> None:
-    """What `%load_ext grader.notebook` calls."""
+    """Load the extension; `%load_ext grader.notebook` calls this."""
     from grader.notebook.extension import load
 
     load(shell)

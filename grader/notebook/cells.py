@@ -1,4 +1,4 @@
-"""The magics of a cell: `%step`, `%lesson`, `%%node`, `%%package`, `%%answers`, `%ros2`."""
+"""The magics for cells: `%step`, `%lesson`, `%%node`, `%%package`, `%%answers` and `%ros2`."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 
 
 class Cells:
-    """What the magics do, for the notebook whose folder is the kernel's."""
+    """What the magics do. The folder of the notebook is the current folder of the kernel."""
 
     def __init__(self) -> None:
         self.exercise: Exercise | None = None
         self._written: dict[Path, str] = {}
 
     def step(self, line: str) -> None:
-        """`%step 03-circle-publisher`: the step this notebook is about; adds beside it what is missing."""
+        """`%step 03-circle-publisher`: set the step of this notebook, and add missing files next to it."""
         self.exercise = find_exercise(line.strip())
         try:
             written = place.begin(self.exercise, Path.cwd(), alone=grading())
@@ -42,36 +42,36 @@ class Cells:
         if not grading():
             print(f"{self.exercise.id}: {self.exercise.title}")
             if written:
-                print(f"Added beside this notebook: {a_list(written)}.")
+                print(f"Added next to this notebook: {a_list(written)}.")
 
     def lesson(self, line: str) -> None:
-        """`%lesson`: the lesson of this notebook's step; `%lesson 03-circle-publisher` that of any step."""
+        """`%lesson`: show the lesson of this notebook's step; `%lesson 03-circle-publisher`: that of another step."""
         exercise = find_exercise(line.strip()) if line.strip() else self.current()
         if not grading():
             lesson.show(exercise.folder / "lesson.md")
 
     def node(self, line: str, cell: str) -> None:
-        """`%%node draw_circle.py`: writes the cell as a node of the package beside the notebook."""
+        """`%%node draw_circle.py`: write the cell as a node of the package next to the notebook."""
         self._write("node", line, cell)
 
     def package(self, line: str, cell: str) -> None:
-        """`%%package package.xml`: writes the cell as a file of the package beside the notebook."""
+        """`%%package package.xml`: write the cell as a file of the package next to the notebook."""
         self._write("package", line, cell)
 
     def answers(self, line: str, cell: str) -> None:
-        """`%%answers`: writes the cell as the step's answers.toml."""
+        """`%%answers`: write the cell as the answers.toml of the step."""
         self._write("answers", line, cell)
 
     def ros2(self, line: str) -> None:
-        """`%ros2 topic list`, or just `ros2 topic list`: the command of that name, its output below the cell.
+        """`%ros2 topic list`, or just `ros2 topic list`: run the command and show its output below the cell.
 
-        Whoever grades has no use for it, so that nothing is run then.
+        While nbgrader runs the notebook, nobody reads the output, so nothing is run.
         """
         if not grading():
             run_below([str(Path(sys.prefix, "bin", "ros2")), *shlex.split(line)])
 
     def current(self) -> Exercise:
-        """The step of this notebook. Raises UsageError before `%step`."""
+        """Return the step of this notebook. Raises UsageError before `%step`."""
         if self.exercise is None:
             message = "Which step is this notebook about? Run its first cell, with `%step 03-circle-publisher` or so."
             raise UsageError(message)
@@ -84,14 +84,14 @@ class Cells:
         present = file.read_text("utf-8", "replace") if file.is_file() else None
         if present is not None and place.ended(present) == text:
             self._written[file] = text
-            self._say(f"{path} says just this.")
+            self._say(f"{path} already has this content.")
             return
         worked_on = place.counts(present, start) == "file"
         if worked_on and (grading() or (start is not None and text == place.ended(start))):
-            self._say(f"{path} holds work of your own and is left as it is; this cell still holds the starting point.")
+            self._say(f"{path} has your own work and stays unchanged, because this cell is still the starting point.")
             return
         if worked_on and self._written.get(file) != present:
-            self._say(f"{path} was changed outside of this notebook; that text is kept in {_keep(file)}.")
+            self._say(f"{path} was changed outside of this notebook. The old version is kept in {_keep(file)}.")
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")
@@ -110,7 +110,7 @@ class Cells:
 def run_below(
     argv: list[str], *, cwd: Path | None = None, env: Mapping[str, str] | None = None, seconds: float | None = None
 ) -> int:
-    """Run a command and print what it prints, until it ends, `seconds` are over or the cell is interrupted."""
+    """Run a command and print its output, until it ends, `seconds` are over, or the cell is interrupted."""
     child = subprocess.Popen(
         argv, cwd=cwd, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         encoding="utf-8", errors="replace", bufsize=1, start_new_session=True,
@@ -134,7 +134,7 @@ def run_below(
 
 
 class _Alarm:
-    """Sends Ctrl-C to a child after some seconds."""
+    """Send Ctrl-C to a child after some seconds."""
 
     def __init__(self, child: subprocess.Popen[str], seconds: float | None) -> None:
         from threading import Timer

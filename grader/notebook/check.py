@@ -1,7 +1,7 @@
-"""`check("03-circle-publisher")` in a cell: grades what lies beside the notebook, and shows the verdict below the cell.
+"""`check("03-circle-publisher")` in a cell: grade the work next to the notebook and show the verdict below the cell.
 
-Text where only text can be shown, a table with pictures elsewhere. Nothing is graded twice: what has not changed since
-has its verdict already, so that the cells which ask for one check's points each cost nothing.
+The verdict is a table with pictures, or text in a program that shows only text. If nothing has changed, the last
+verdict is returned. So the cells with the points of single checks cost nothing.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from grader.notebook.cells import Cells
 
 GRACE_S = 5.0
-"""How long a worker may take to leave after the cell was interrupted."""
+"""How long a worker may take to end after the cell was interrupted (s)."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What came out: shown by Jupyter as a table with pictures, as text where there is nothing but text."""
+    """The verdict. Jupyter shows it as a table with pictures, and other programs as text."""
 
     exercise: str
     text: str
@@ -45,7 +45,7 @@ class Verdict:
     reasons: Mapping[str, str]
 
     def points(self, check: str) -> float:
-        """The points of one check; the reason is printed. Raises UsageError where there is no such check."""
+        """Return the points of one check and print the reason. Raises UsageError if there is no such check."""
         if check not in self.all_points:
             message = f"{self.exercise} has no check {check!r}. It has {', '.join(self.all_points)}."
             raise UsageError(message)
@@ -60,18 +60,20 @@ class Verdict:
 
 
 class Checking:
-    """Remembers what was graded already, in one kernel."""
+    """Check function for a kernel. It remembers what was already graded."""
 
     def __init__(self, cells: Cells) -> None:
         self._cells = cells
         self._known: dict[tuple[str, str], Verdict] = {}
 
     def check(self, step: str | None = None) -> Verdict:
-        """Grade the package (or the answers) beside this notebook; the notebook's own step when none is named.
+        """Grade the package (or the answers) next to this notebook. The default is the notebook's own step.
+
+           check("03-circle-publisher").points("circle")
 
         Raises:
-            UsageError: there is no such step, or nothing to grade.
-            MachineError: the grader or the machine is broken.
+           UsageError: there is no such step, or nothing to grade.
+           MachineError: the grader or the machine is broken.
         """
         from grader.notebook.worker import opened
 
@@ -107,7 +109,7 @@ def _graded(exercise: Exercise, folder: Path) -> Verdict:
         try:
             data = json.loads(answer.read())
         except ValueError as error:
-            message = f"The grader ended without a verdict: {(said or ['it said nothing'])[-1]}"
+            message = f"The grader ended without a verdict: {(said or ['it printed nothing'])[-1]}"
             raise MachineError(message) from error
     if "error" in data:
         raise UsageError(data["error"])
@@ -115,7 +117,7 @@ def _graded(exercise: Exercise, folder: Path) -> Verdict:
 
 
 def _end(worker: subprocess.Popen[bytes]) -> None:
-    """End a worker that is still at it: it leaves in order, or is killed."""
+    """End a worker that is still running: it is interrupted, and killed if it does not end."""
     for number, wait_s in ((signal.SIGINT, GRACE_S), (signal.SIGKILL, None)):
         if worker.poll() is not None:
             return
@@ -126,7 +128,7 @@ def _end(worker: subprocess.Popen[bytes]) -> None:
 
 
 class _Progress:
-    """A line below the cell that says what is being done, and goes when it is done; nothing under nbgrader."""
+    """Show a line below the cell with what is being done, until it is done. Under nbgrader, show nothing."""
 
     def __enter__(self) -> Self:
         from IPython.display import DisplayHandle
@@ -136,7 +138,7 @@ class _Progress:
         return self
 
     def tell(self, text: str) -> None:
-        """Show this line instead of the one before."""
+        """Replace the line."""
         if self._handle is not None and text:
             self._show(f"{text} ...")
 

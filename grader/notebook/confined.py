@@ -1,7 +1,7 @@
-"""A kernel in a cell (grader.sandbox), for `nbgrader autograde`: `python -m grader.notebook.confined FOLDER -f FILE`.
+"""A kernel in a cell (grader.sandbox) for `nbgrader autograde`: `python -m grader.notebook.confined FOLDER -f FILE`.
 
-FOLDER is a copy of the submission that can only be read. The kernel works on a copy of its own, on the cell's disk:
-what it writes goes with it.
+FOLDER is a read-only copy of the submission. The kernel works on its own copy on the cell's disk, which is deleted with
+the cell.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from grader.sandbox.bubblewrap import WORKSPACE
 
 
 def main() -> None:
-    """Become the kernel."""
-    # Before the submission's folder is the current one: its modules must not stand in for Python's.
+    """Replace this process by the kernel."""
+    # These are imported before the submission's folder becomes the current one, because its modules must not shadow
+    # Python's.
     from ipykernel import kernelapp
 
     folder = WORKSPACE / "submission"

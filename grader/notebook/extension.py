@@ -1,4 +1,4 @@
-"""What `%load_ext grader.notebook` does: magics, the names `check` and `simulator`, a guardian for what is started."""
+"""What `%load_ext grader.notebook` does: add magics, `check` and `simulator`, and start a guardian for processes."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 
 def load(shell: InteractiveShell) -> None:
-    """Put everything into the notebook of this shell."""
-    # In a cell everything goes with the cell.
+    """Add everything to the notebook of this shell."""
+    # In a cell, all processes end with the cell.
     if not confined():
         _guard()
     cells = Cells()
@@ -43,13 +43,13 @@ def _tell(
     traceback: TracebackType,  # noqa: ARG001
     tb_offset: int | None = None,  # noqa: ARG001
 ) -> list[str]:
-    """Show an error of ours as the sentence that it is, without a traceback."""
+    """Show an error of the grader as one sentence without a traceback."""
     shell._showtraceback(GraderError, error, [str(error)])  # type: ignore[no-untyped-call, unused-ignore]
     return [str(error)]
 
 
 def _guard() -> None:
-    """Mark this kernel's future children, and start the guardian that looks for the mark when the kernel has gone."""
+    """Mark the future children of this kernel, and start the guardian that ends them when the kernel is gone."""
     mark = f"{os.getpid()}-{secrets.token_hex(8)}"
     # Only this process holds the pipe: Python's descriptors are closed in its children.
     # Nothing of the kernel's: neither its folder nor its marks.
@@ -69,4 +69,4 @@ def _guard() -> None:
 
 
 _guardians: list[subprocess.Popen[bytes]] = []
-"""Kept for the kernel's life: with the object its pipe would go."""
+"""Kept as long as the kernel lives. If the object were deleted, its pipe would close."""

@@ -1,9 +1,9 @@
-"""Guardian: ends what a kernel started when the kernel is no more, however it ended.
+"""Guardian: ends the processes that a kernel started when the kernel is gone, however it ended.
 
-    python guardian.py MARK          its standard input is a pipe that only the kernel holds open
+   python guardian.py MARK          its standard input is a pipe that only the kernel holds open
 
-Every process that a notebook starts carries MARK in its environment. When the pipe closes, those and all below them
-are ended: SIGINT first, so that nodes leave in order, then SIGKILL.
+Every process that a notebook starts has MARK in its environment. When the pipe closes, these processes and all their
+descendants are ended: first with SIGINT, so that nodes can stop properly, then with SIGKILL.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ VARIABLE = "GRADER_NOTEBOOK"
 
 
 def main() -> None:
-    """Wait for the kernel's end, then clear up."""
+    """Wait until the kernel has ended, then end its processes."""
     mark = f"{VARIABLE}={sys.argv[1]}".encode()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
@@ -39,7 +39,7 @@ def main() -> None:
 
 
 def _family(mark: bytes) -> set[int]:
-    """The processes with the mark, and all below them."""
+    """Return the processes with the mark and all their descendants."""
     parents: dict[int, int] = {}
     marked: set[int] = set()
     for entry in os.scandir("/proc"):

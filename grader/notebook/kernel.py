@@ -1,8 +1,8 @@
-"""The kernel "ROS 2 Jazzy (course)": a Python kernel whose environment is right without sourcing anything.
+"""The kernel "ROS 2 Jazzy (course)": a Python kernel whose environment has ROS 2 without sourcing anything.
 
-    python -m grader.notebook.kernel -f CONNECTION_FILE     what Jupyter runs
+   python -m grader.notebook.kernel -f CONNECTION_FILE     what Jupyter runs
 
-The environment is made anew at each start, so that a ROS 2 that was installed or sourced meanwhile is found.
+The environment is made again at each start. So a ROS 2 that was installed or sourced in the meantime is found.
 """
 
 from __future__ import annotations
@@ -21,7 +21,10 @@ DISPLAY_NAME = "ROS 2 Jazzy (course)"
 
 
 def main() -> None:
-    """Become the kernel. Without a ROS 2 it is a plain Python kernel, in which `check` says what is missing."""
+    """Replace this process by the kernel.
+
+    Without ROS 2 it is a plain Python kernel, in which `check` says what is missing.
+    """
     from grader.errors import GraderError
     from grader.notebook.simulator import environment
 
@@ -35,7 +38,7 @@ def main() -> None:
 
 
 def kernelspec() -> dict[str, object]:
-    """What kernel.json says."""
+    """Return the content of kernel.json."""
     return {
         "argv": interpreter("-m", "grader.notebook.kernel", "-f", "{connection_file}").argv,
         "display_name": DISPLAY_NAME,
@@ -45,15 +48,15 @@ def kernelspec() -> dict[str, object]:
 
 
 def install(prefix: Path | None = None) -> Path:
-    """Make the kernel known to this user's Jupyter, or to the one below `prefix`; returns its folder.
+    """Install the kernel for this user's Jupyter, or for the one below `prefix`. Return the folder of the kernel.
 
     Raises:
-        MachineError: Jupyter is not here, or the folder cannot be written.
+       MachineError: Jupyter is not installed, or the folder cannot be written.
     """
     try:
         from jupyter_client.kernelspec import KernelSpecManager
     except ImportError as error:
-        message = "Jupyter is not installed here. `make notebooks` brings it."
+        message = "Jupyter is not installed. Run `make notebooks` to install it."
         raise MachineError(message) from error
     with tempfile.TemporaryDirectory() as folder:
         Path(folder).chmod(0o755)

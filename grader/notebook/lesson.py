@@ -1,4 +1,4 @@
-"""`%lesson`: the lesson of the notebook's step, below the cell, wherever the notebook lies."""
+"""`%lesson`: show the lesson of the notebook's step below the cell, wherever the notebook is."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _LOCAL_LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?!https?://|#)[^)\s]+\)")
 
 
 def pieces(lesson: Path) -> list[str | Path]:
-    """The lesson in order: Markdown, and the files of its images. Links to other files are plain text there.
+    """Return the lesson in order: Markdown, and the files of its images. Links to other files become plain text.
 
-    A notebook that was fetched or copied has no such files beside it, so that a link would lead nowhere.
+    A notebook may be copied without these files, so a link could lead nowhere.
     """
-    # Every second one is what the group matched.
+    # Every second part is what the group matched.
     split = _IMAGE.split(lesson.read_text(encoding="utf-8"))
     found: list[str | Path] = []
     for number, text in enumerate(split):

@@ -1,10 +1,10 @@
-"""The files beside a notebook: where a cell's text belongs, and which counts where cell and file differ.
+"""The files next to a notebook: which file a cell writes, and which text counts if cell and file differ.
 
-What a student hands in is the package (or the answers) beside the notebook. A cell writes one of its files:
+A student hands in the package (or the answers) next to the notebook. A cell writes one of its files:
 
-    %%node draw_circle.py    <package>/<package>/draw_circle.py
-    %%package package.xml    <package>/package.xml
-    %%answers                answers.toml
+   %%node draw_circle.py    <package>/<package>/draw_circle.py
+   %%package package.xml    <package>/package.xml
+   %%answers                answers.toml
 """
 
 from __future__ import annotations
@@ -29,43 +29,46 @@ if TYPE_CHECKING:
 
 MAGICS = ("node", "package", "answers")
 KEPT = ".kept"
-"""Where a file goes that a cell replaces though it was written elsewhere; hidden, so that nobody grades it."""
+"""The folder for a file that a cell replaces although it was changed elsewhere. It is hidden, so it is never graded."""
 _FIRST_LINE = re.compile(rf"\s*%%({'|'.join(MAGICS)})\b[ \t]*(.*?)\s*")
 
 
 @dataclass(frozen=True)
 class Part:
-    """The text that a cell gives to a file; `path` is relative to the notebook's folder."""
+    """The text that a cell writes to a file; `path` is relative to the notebook's folder."""
 
     path: str
     text: str
 
 
 def part_path(magic: str, name: str, exercise: Exercise) -> str:
-    """The file that a cell writes, relative to the notebook's folder.
+    """Return the file that a cell writes, relative to the notebook's folder.
 
     Raises:
-        UsageError: the name is none for such a file.
+       UsageError: the name is not valid for such a file.
     """
     package = exercise.package
     if magic == "answers":
         return f"{package}/{ANSWERS}" if package else ANSWERS
     if not package:
-        message = f"{exercise.id} has no package: what is handed in is {ANSWERS}, which `%%answers` writes."
+        message = f"{exercise.id} has no package. You hand in {ANSWERS}, which `%%answers` writes."
         raise UsageError(message)
     if magic == "node":
         if not re.fullmatch(r"[A-Za-z_]\w*\.py", name):
-            message = f"%%node wants the name of a Python file, as in `%%node draw_circle.py`, and got {name!r}."
+            message = f"%%node needs the name of a Python file, as in `%%node draw_circle.py`, not {name!r}."
             raise UsageError(message)
         return f"{package}/{package}/{name}"
     if not name or name.startswith("/") or posixpath.normpath(name) != name or name.split("/")[0] == "..":
-        message = f"%%package wants a file of the package, as in `%%package package.xml`, and got {name!r}."
+        message = f"%%package needs a file of the package, as in `%%package package.xml`, not {name!r}."
         raise UsageError(message)
     return f"{package}/{name}"
 
 
 def parts_of(sources: list[str], exercise: Exercise) -> list[Part]:
-    """What the cells with these sources write; a cell whose name is amiss writes nothing. The last one counts."""
+    """Return what cells with these sources write. A cell with a wrong name writes nothing.
+
+    The last cell for a file counts.
+    """
     parts: dict[str, Part] = {}
     for source in sources:
         first, _, rest = source.partition("\n")
@@ -81,14 +84,14 @@ def parts_of(sources: list[str], exercise: Exercise) -> list[Part]:
 
 
 def ended(text: str) -> str:
-    """The text with one newline at its end."""
+    """Return the text with one newline at its end."""
     return text.rstrip("\n") + "\n"
 
 
 def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
-    """Which text is handed in: the file as the student left it, or the cell's where nobody has worked on the file.
+    """Return which text is handed in: the file if the student has changed it, otherwise the cell.
 
-    `file` is the file's text, `start` that of the step's starting point; None where there is none.
+    `file` is the text of the file, `start` that of the starting point. They are None if there is no such file.
     """
     if file is None or (start is not None and ended(file) == ended(start)):
         return "cell"
@@ -96,7 +99,7 @@ def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
 
 
 def starting_text(exercise: Exercise, path: str) -> str | None:
-    """The text of a file in the step's starting point; None where it has none."""
+    """Return the text of a file in the step's starting point, or None if it has no such file."""
     file = workspace.starting_point(exercise) / path
     try:
         return file.read_text("utf-8")
@@ -105,10 +108,11 @@ def starting_text(exercise: Exercise, path: str) -> str | None:
 
 
 def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str, ...]:
-    """Put what the step needs and `folder` lacks beside the notebook; returns the paths that were written.
+    """Add the files of the step that `folder` does not have, next to the notebook. Return the paths that were written.
 
-    Where there is no package yet, that of the learner's workspace is the beginning, else the step's starting point;
-    `alone`: only the latter. Nothing of the student's is overwritten.
+    If there is no package yet, it is copied from the learner's workspace, or else from the starting point. With
+    `alone`, it
+    is always copied from the starting point. No file of the student is overwritten.
     """
     source, target = workspace.starting_point(exercise), folder
     if not exercise.package:
@@ -125,7 +129,7 @@ def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str
 
 
 def _own_numbers(source: Path, target: Path) -> tuple[str, ...]:
-    """Draw the student's own numbers where those of the starting point still stand."""
+    """Draw the student's own numbers if the file still has those of the starting point."""
     file = target / own_numbers.FILE
     if file.read_bytes() != (source / own_numbers.FILE).read_bytes():
         return ()
@@ -134,6 +138,6 @@ def _own_numbers(source: Path, target: Path) -> tuple[str, ...]:
 
 
 def _student() -> str:
-    """Who the student is to nbgrader: the user's name, JupyterHub's where that is everybody's."""
+    """Return the student's name for nbgrader: the name of the user, or of JupyterHub's user if the user is shared."""
     name = getpass.getuser()
     return os.environ.get("JUPYTERHUB_USER", name) if name == "jovyan" else name

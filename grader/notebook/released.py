@@ -1,7 +1,7 @@
-"""A step's notebook as the student gets it: the same, byte for byte, as nbgrader's generate_assignment makes.
+"""The notebook of a step as students get it: byte for byte the same as nbgrader's generate_assignment makes it.
 
-nbgrader's steps are repeated here (LockCells, ClearSolutions, ClearOutput, ClearHiddenTests, ComputeChecksums of
-nbgrader 0.9), so that a course can be released where no Jupyter is; a test compares the two.
+This module repeats the steps of nbgrader 0.9 (LockCells, ClearSolutions, ClearOutput, ClearHiddenTests,
+ComputeChecksums), so that a course can be released without Jupyter. A test compares the two.
 """
 
 from __future__ import annotations
@@ -18,60 +18,62 @@ Cell = dict[str, Any]
 
 _FILE_CELL = re.compile(r"\s*%%\w+[ \t]+(\S+)\s*")
 _HIDDEN = {"BEGIN HIDDEN TESTS": True, "END HIDDEN TESTS": False}
-"""nbgrader's marks around what only the instructor's copy tests, and whether a test is hidden from there on."""
+"""nbgrader's marks for tests that only the instructor's copy has -> whether a hidden test begins there."""
 
 
 def released_notebook(data: bytes, name: str) -> bytes:
-    """The released version of a source notebook. Raises UsageError, with `name` and cell, for what is amiss in it."""
+    """Return the released version of a source notebook. Raises UsageError with `name` and cell for a mistake in it."""
     try:
         notebook = json.loads(data)
         for number, cell in enumerate(notebook["cells"], 1):
             _release(cell, f"{name}, cell {number}")
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        message = f"{name}: is no notebook ({error!r})."
+        message = f"{name}: is not a notebook ({error!r})."
         raise UsageError(message) from error
     return to_bytes(notebook)
 
 
 def to_bytes(notebook: dict[str, Any]) -> bytes:
-    """A notebook as nbformat writes it, so that opening and saving changes nothing."""
+    """Return a notebook in the format of nbformat, so that opening and saving it changes nothing."""
     return (json.dumps(notebook, indent=1, sort_keys=True, ensure_ascii=False) + "\n").encode()
 
 
 def solved_away(source: str, cell_type: str, *, solution: bool, name: str) -> str:
-    """A cell's source without its solutions, the starting point in their place.
+    """Return a cell's source with the starting point instead of its solutions.
 
     Raises:
-        UsageError: markers are amiss, or a solution cell has none, so that all of it would be handed out.
+       UsageError: markers are wrong, or a solution cell has none, so that all of it would be released.
     """
     text = stripped(source, _syntax(source, cell_type), name)
     if solution and text == source:
-        message = f"{name}: a solution cell without a BEGIN SOLUTION; all of it would be handed out."
+        message = f"{name}: a solution cell without a BEGIN SOLUTION. All of it would be released."
         raise UsageError(message)
     return text
 
 
 def without_hidden_tests(source: str, name: str) -> str:
-    """A cell's source without its hidden tests. Raises UsageError where one has no end, or an end has no beginning."""
+    """Return a cell's source without its hidden tests. Raises UsageError if a begin or an end is missing."""
     kept, hidden = [], False
     for line in source.splitlines(keepends=True):
         mark = next((begins for words, begins in _HIDDEN.items() if words in line), None)
         if mark is None:
             kept += [] if hidden else [line]
         elif mark == hidden:
-            message = f"{name}: {line.strip()!r} where hidden tests {'are open already' if hidden else 'are not open'}."
+            message = (
+                f"{name}: {line.strip()!r} where hidden tests {'have already begun' if hidden else 'have not begun'}."
+            )
             raise UsageError(message)
         else:
             hidden = mark
     if hidden:
         message = f"{name}: BEGIN HIDDEN TESTS has no END HIDDEN TESTS."
         raise UsageError(message)
-    # As nbgrader, which joins the lines that it keeps.
+    # nbgrader also joins the lines that it keeps.
     return "".join(kept).removesuffix("\n") if len(kept) < len(source.splitlines()) else source
 
 
 def _syntax(source: str, cell_type: str) -> Syntax:
-    """How the cell writes comments: as the file that it writes, if it writes one."""
+    """Return how the cell writes comments: like the file that it writes, if any."""
     match = _FILE_CELL.fullmatch(source.partition("\n")[0])
     if cell_type != "code":
         return ANGLE
@@ -104,7 +106,7 @@ def _release(cell: Cell, name: str) -> None:
 
 
 def _checksum(source: str, kind: str, about: dict[str, Any]) -> str:
-    """The checksum that nbgrader makes: it tells whether a cell was changed, and keeps no secret."""
+    """Return nbgrader's checksum. It shows whether a cell was changed, but it does not protect a secret."""
     locked = not about["solution"] and (about["grade"] or about["locked"])
     parts = [source, kind, str(about["grade"]), str(about["solution"]), str(locked), about["grade_id"]]
     if about["grade"]:

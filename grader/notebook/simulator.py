@@ -1,10 +1,10 @@
-"""`with simulator() as sim:` in a cell: a running turtlesim whose canvas moves below the cell.
+"""`with simulator() as sim:` in a cell: run a turtlesim and show its canvas below the cell.
 
     with simulator() as sim:
         %ros2 topic list
         sim.run("draw_circle", seconds=7)
 
-It runs in a process of its own, which ends with the `with`, with an interrupt, and with the kernel.
+It runs in a process of its own, which ends with the `with` statement, an interrupt or the kernel.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 START_S = 30.0
-"""A turtlesim that has shown nothing by then is broken, even on a machine that is busy."""
+"""A turtlesim that has shown no picture after this time is broken, even on a busy machine (s)."""
 
 
 class Simulator:
-    """turtlesim, running and shown. Under nbgrader nobody looks: nothing is run then."""
+    """A running turtlesim that is shown below the cell. Under nbgrader, nothing is run."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
@@ -65,7 +65,7 @@ class Simulator:
         self._changed.wait(START_S)
         if not self._picture:
             said = self._end()
-            message = f"turtlesim did not start: {(said.strip().splitlines() or ['it said nothing'])[-1]}"
+            message = f"turtlesim did not start: {(said.strip().splitlines() or ['it printed nothing'])[-1]}"
             raise MachineError(message)
         self._handle = display(Image(self._picture), display_id=True)  # type: ignore[no-untyped-call]
         threading.Thread(target=self._show, daemon=True).start()
@@ -83,7 +83,7 @@ class Simulator:
             self._end()
 
     def run(self, executable: str, seconds: float = 7.0) -> None:
-        """Run a node of the package beside the notebook, by its file's name, for some seconds; its lines are printed.
+        """Run a node of the package next to the notebook for some seconds, and print its output.
 
         Raises:
             UsageError: there is no such file.
@@ -93,7 +93,7 @@ class Simulator:
             run_below(argv, cwd=folder, env=self._env, seconds=seconds)
 
     def start(self, executable: str) -> None:
-        """Start such a node, and go on with the cell; it is stopped when the `with` ends.
+        """Start a node and continue with the cell. The node is stopped at the end of the `with` statement.
 
         Raises:
             UsageError: there is no such file.
@@ -118,11 +118,11 @@ class Simulator:
             time.sleep(seconds)
 
     def picture(self) -> bytes:
-        """The canvas as it is now, a PNG; empty under nbgrader."""
+        """Return the current canvas as a PNG, or empty bytes under nbgrader."""
         return self._picture
 
     def _end(self) -> str:
-        """End the process, show its last picture; returns what it said on standard error."""
+        """End the process and show its last picture. Return its standard error."""
         process = self._process
         assert process is not None
         assert process.stdin is not None
@@ -172,11 +172,11 @@ def _wait_or_kill(process: subprocess.Popen[bytes]) -> None:
 
 
 def _command(executable: str) -> tuple[list[str], Path]:
-    """How a node of the package beside the notebook is started, and in which folder."""
+    """Return the command and the folder to start a node of the package next to the notebook."""
     name = executable.removesuffix(".py")
     files = [file for file in Path.cwd().glob(f"*/*/{name}.py") if file.parent.name == file.parent.parent.name]
     if not files:
-        message = f"There is no {name}.py in the package beside this notebook: write it with `%%node {name}.py`."
+        message = f"There is no {name}.py in the package next to this notebook. Write it with `%%node {name}.py`."
         raise UsageError(message)
     package = files[0].parent
     start = f"import sys; sys.path.insert(0, {str(package.parent)!r}); from {package.name}.{name} import main; main()"
@@ -184,7 +184,7 @@ def _command(executable: str) -> tuple[list[str], Path]:
 
 
 def environment() -> dict[str, str]:
-    """The kernel's environment with ROS 2 in it: the course's kernel has it already, others get it here."""
+    """Return the kernel's environment with ROS 2. The course's kernel already has it, and other kernels get it here."""
     from grader.ros.installation import find_ros, users_environment
     from grader.ros.underlay import with_turtlesim
 

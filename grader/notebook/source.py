@@ -1,7 +1,7 @@
-"""The source notebook of a step: its words are written by hand, what stands elsewhere already is put in from there.
+"""The source notebook of a step: its text is written by hand, and parts that exist elsewhere are inserted.
 
-A cell that begins with `%%node`, `%%package` or `%%answers` gets the text of that file of the solution, markers and
-all; and each check of exercise.toml has a grade cell of the same id and points, at the notebook's end.
+A cell that begins with `%%node`, `%%package` or `%%answers` gets the text of that file of the solution, including the
+markers. Each check of exercise.toml gets a grade cell with the same id and points at the end of the notebook.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from grader.exercise.model import CheckSpec, Exercise
 
 BEGIN = "begin"
-"""The id of the cell that loads everything and names the step; locked."""
+"""The id of the locked cell that loads the extension and names the step."""
 
 
 def refreshed(data: bytes, exercise: Exercise, files: Mapping[str, bytes], name: str) -> bytes:
-    """The source notebook as it is to be. `files` are the solution's, by their path in the step's folder.
+    """Return the updated source notebook. `files` are those of the solution, by their path in the step's folder.
 
     Raises:
-        UsageError: with `name` and cell, it is no notebook, or a cell writes a file that the solution does not have.
+       UsageError: it is not a notebook, or a cell writes a file that the solution does not have; with `name` and cell.
     """
     try:
         notebook: dict[str, Any] = json.loads(data)
@@ -36,7 +36,7 @@ def refreshed(data: bytes, exercise: Exercise, files: Mapping[str, bytes], name:
         notebook["cells"] = [cell for cell in cells if not _is_grade(cell)]
         notebook["cells"] += [_grade_cell(exercise, spec) for spec in exercise.checks]
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        message = f"{name}: is no notebook ({error!r})."
+        message = f"{name}: is not a notebook ({error!r})."
         raise UsageError(message) from error
     return to_bytes(notebook)
 
@@ -55,7 +55,7 @@ def _refresh(cell: Cell, exercise: Exercise, files: Mapping[str, bytes], name: s
         raise UsageError(message)
     text = files[path].decode("utf-8")
     cell["source"] = f"{first}\n{text}".rstrip("\n").splitlines(keepends=True)
-    # Not the cell's id alone: a check may be called "answers" too, and to nbgrader both are names of cells.
+    # The cell's id alone is not enough: a check may be called "answers" too, and nbgrader uses both as names of cells.
     cell["metadata"]["nbgrader"] = _about(f"write-{cell['id']}", solution=True)
 
 
@@ -79,7 +79,7 @@ def _grade_cell(exercise: Exercise, spec: CheckSpec) -> Cell:
 
 
 def _about(name: str, *, grade: bool = False, solution: bool = False, locked: bool = False) -> dict[str, Any]:
-    """The metadata by which nbgrader knows a cell (its schema 3)."""
+    """Return the metadata by which nbgrader knows a cell (schema 3)."""
     return {
         "grade": grade,
         "grade_id": name,

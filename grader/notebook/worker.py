@@ -1,9 +1,9 @@
-"""Grade for a notebook, in a process of its own: what a cell has done to its kernel cannot reach it.
+"""Grade for a notebook, in a process of its own that cells cannot change.
 
     python -m grader.notebook.worker EXERCISE FOLDER
 
-Progress goes to standard error, a line each; the verdict to standard output, as JSON: {"points": {id: number},
-"reasons": {id: text}, "text": all of it as text, "html": the same to look at, "passed": bool}.
+It prints progress on standard error, one line each, and the verdict as JSON on standard output:
+{"points": {id: number}, "reasons": {id: text}, "text": the whole verdict, "html": the same as HTML, "passed": bool}.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def opened(exercise: Exercise, folder: Path) -> Submission:
-    """What lies beside the notebook in `folder`. Raises UsageError where nothing to grade does."""
+    """Open the submission next to the notebook in `folder`. Raises UsageError if there is none."""
     if not exercise.package:
         return open_answers(folder)
     own = folder / exercise.package
@@ -42,7 +42,7 @@ def opened(exercise: Exercise, folder: Path) -> Submission:
 
 
 def reason(outcome: Outcome) -> str:
-    """A check in words: how it went and, where it did not pass, why. Plain text, several lines."""
+    """Return a check as several lines of plain text: its status and, if it did not pass, the reason."""
     sign = {Status.PASSED: "✓", Status.FAILED: "✗", Status.SKIPPED: "-", Status.ERROR: "!"}[outcome.status]
     points = f"  {outcome.points:g}/{outcome.max:g}" if outcome.max else ""
     if outcome.hidden:
@@ -57,12 +57,12 @@ def reason(outcome: Outcome) -> str:
 
 
 def to_data(graded: Graded, *, html: bool) -> dict[str, object]:
-    """The verdict as it is handed over."""
+    """Return the verdict as JSON."""
     from rich.console import Console
 
     from grader.report import terminal
 
-    # What a kernel in a cell runs is in that cell too.
+    # If the kernel is in a cell, its children are too.
     report = replace(graded.report, confined=graded.report.confined or confined())
     page = io.StringIO()
     terminal.render(report, Console(file=page, width=100, highlight=False, force_terminal=False, color_system=None))
@@ -81,7 +81,7 @@ def to_data(graded: Graded, *, html: bool) -> dict[str, object]:
 
 
 def main() -> int:
-    """Grade, and print the verdict."""
+    """Grade and print the verdict."""
     name, folder = sys.argv[1:]
     try:
         exercise = find_exercise(name)

@@ -1,4 +1,4 @@
-"""What an instructor hands out: everything that a student needs, and nothing that solves or tests it."""
+"""The repository for students: it has everything that a student needs, but no solutions and no tests."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ def test_students_get_no_solution_and_no_test(students: Path) -> None:
     assert [path for path in files(students) if path.suffix == ".py" and line in path.read_text("utf-8")] == []
 
 
-def test_a_folder_that_holds_something_is_left_alone(tmp_path: Path) -> None:
+def test_a_folder_that_is_not_empty_stays_unchanged(tmp_path: Path) -> None:
     (tmp_path / "mine").write_text("")
     with pytest.raises(UsageError, match="is not an empty folder"):
         hand_out(tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["mine"]
 
 
-def test_a_copy_without_solutions_cannot_be_handed_on(
+def test_a_copy_without_solutions_cannot_make_the_repository(
     students: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("grader.authoring.handout.course_folder", lambda: students / "course")

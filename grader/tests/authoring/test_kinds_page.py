@@ -1,4 +1,4 @@
-"""docs/kinds.md shows every kind of check as the code has it, with examples that an author can copy."""
+"""docs/kinds.md shows every kind of check as the code defines it, with examples that an author can copy."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ else:
     import tomli as tomllib
 
 WITHOUT_UNIT = {"turns", "first"}
-"""Parameters that are plain numbers."""
+"""Parameters that are numbers without a unit."""
 
 
 def sections() -> dict[str, str]:
-    """Kind -> its part of the page."""
+    """Return kind -> its section of the page."""
     parts = page().split("\n### ")[1:]
     return {part.partition("\n")[0]: part.partition("\n## ")[0] for part in parts}
 
@@ -38,11 +38,11 @@ def numbers_of(kind: Kind[Any]) -> list[str]:
     return [each.name for each in fields(kind.params) if each.type == "float"]
 
 
-def test_the_page_is_not_stale() -> None:
+def test_the_page_is_up_to_date() -> None:
     assert main(["--check"]) == 0
 
 
-def test_a_page_that_is_stale_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_page_that_is_out_of_date_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "docs").mkdir()
     monkeypatch.setattr("grader.authoring.kinds_page.course_folder", lambda: tmp_path / "course")
     assert main(["--check"]) == 1
@@ -88,7 +88,7 @@ def test_units_are_read_from_names() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS.keys())
-def test_the_example_is_the_courses_check(kind: Kind[Any]) -> None:
+def test_the_example_is_a_check_of_the_course(kind: Kind[Any]) -> None:
     example = next(block for block in blocks(sections()[kind.name]) if block.language == "toml")
     check = tomllib.loads(example.text)["check"][0]
     assert check.pop("kind") == kind.name

@@ -24,7 +24,7 @@ def root(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_exercises_is_what_release_makes_of_solutions() -> None:
+def test_exercises_are_up_to_date_with_solutions() -> None:
     assert stale(ROOT / "solutions", ROOT / "exercises") == ()
 
 
@@ -36,7 +36,7 @@ def test_files_are_stripped_or_copied_as_they_are(root: Path) -> None:
     assert modes == {"node.py": 0o644, "data.bin": 0o644, "run.sh": 0o755}
 
 
-def test_what_was_released_before_and_is_no_more_goes(root: Path) -> None:
+def test_files_that_are_no_longer_released_are_removed(root: Path) -> None:
     step = root / "solutions" / "01-x"
     release(step, root / "out")
     (step / "pkg" / "data.bin").unlink()
@@ -46,7 +46,7 @@ def test_what_was_released_before_and_is_no_more_goes(root: Path) -> None:
     assert (root / "out/pkg/node.py").read_text() == "a = 1\n# TODO\n"
 
 
-def test_a_file_of_which_nothing_is_left_is_for_the_student_to_make(root: Path) -> None:
+def test_a_file_that_becomes_empty_is_not_released(root: Path) -> None:
     step = root / "solutions" / "01-x"
     (step / "pkg" / "node.py").write_text("# BEGIN SOLUTION\na = 1\n# END SOLUTION\n")
     (step / "pkg" / "__init__.py").write_text("")
@@ -61,25 +61,25 @@ def test_a_file_of_which_nothing_is_left_is_for_the_student_to_make(root: Path) 
         ("a.toml", "a = [\n# BEGIN SOLUTION\n]\n# END SOLUTION\n"),
     ],
 )
-def test_what_is_released_must_parse(root: Path, path: str, text: str) -> None:
+def test_released_files_must_parse(root: Path, path: str, text: str) -> None:
     (root / "solutions" / "01-x" / path).write_text(text)
-    with pytest.raises(UsageError, match=rf"01-x/{path}: what is released does not parse"):
+    with pytest.raises(UsageError, match=rf"01-x/{path}: the released file does not parse"):
         released(root / "solutions" / "01-x")
 
 
-def test_a_marker_where_we_know_no_comments_is_an_error(root: Path) -> None:
+def test_a_marker_in_an_unknown_type_of_file_is_an_error(root: Path) -> None:
     (root / "solutions" / "01-x" / "a.cpp").write_text("// BEGIN SOLUTION\n")
-    with pytest.raises(UsageError, match=r"a\.cpp: a marker in a file of an unknown kind"):
+    with pytest.raises(UsageError, match=r"a\.cpp: a marker in an unknown type of file"):
         released(root / "solutions" / "01-x")
 
 
-def test_a_text_that_is_not_utf8_is_an_error(root: Path) -> None:
+def test_a_text_file_that_is_not_utf8_is_an_error(root: Path) -> None:
     (root / "solutions" / "01-x" / "a.py").write_bytes(b"# \xff\n")
     with pytest.raises(UsageError, match=r"a\.py: is not UTF-8"):
         released(root / "solutions" / "01-x")
 
 
-def test_a_link_out_is_an_error(root: Path) -> None:
+def test_a_link_that_leads_out_is_an_error(root: Path) -> None:
     (root / "solutions" / "01-x" / "link").symlink_to("/etc/hostname")
     with pytest.raises(UsageError, match="link is a link to /etc/hostname"):
         released(root / "solutions" / "01-x")
@@ -103,7 +103,7 @@ def test_notebooks_lose_solutions_and_output(root: Path) -> None:
     assert text.endswith("}\n")
 
 
-def test_markers_amiss_in_a_notebook_name_the_cell(root: Path) -> None:
+def test_wrong_markers_in_a_notebook_name_the_cell(root: Path) -> None:
     cells = [{"cell_type": "raw", "source": "a"}, {"cell_type": "code", "source": "# END SOLUTION"}]
     (root / "solutions" / "01-x" / "a.ipynb").write_text(json.dumps({"cells": cells}))
     with pytest.raises(UsageError, match=r"a\.ipynb, cell 2:1: END SOLUTION without"):
@@ -113,7 +113,7 @@ def test_markers_amiss_in_a_notebook_name_the_cell(root: Path) -> None:
 @pytest.mark.parametrize("text", ["no json", "[]", '{"cells": [{}]}'])
 def test_a_broken_notebook_is_an_error(root: Path, text: str) -> None:
     (root / "solutions" / "01-x" / "a.ipynb").write_text(text)
-    with pytest.raises(UsageError, match=r"a\.ipynb: is no notebook"):
+    with pytest.raises(UsageError, match=r"a\.ipynb: is not a notebook"):
         released(root / "solutions" / "01-x")
 
 
@@ -129,20 +129,20 @@ def test_the_command_makes_and_checks(root: Path, capsys: pytest.CaptureFixture[
 @pytest.mark.parametrize(
     ("change", "what"),
     [
-        ("printf x >> 01-x/pkg/node.py", "01-x/pkg/node.py is not what its solution makes."),
-        ("chmod -x 01-x/pkg/run.sh", "01-x/pkg/run.sh has another executable bit than its solution."),
-        ("touch 01-x/more.txt", "01-x/more.txt comes from no solution: delete it."),
-        ("mkdir 02-y; touch 02-y/a", "02-y/a comes from no solution: delete it."),
+        ("printf x >> 01-x/pkg/node.py", "01-x/pkg/node.py does not match its solution."),
+        ("chmod -x 01-x/pkg/run.sh", "01-x/pkg/run.sh has a different executable bit than its solution."),
+        ("touch 01-x/more.txt", "01-x/more.txt does not come from a solution. Delete it."),
+        ("mkdir 02-y; touch 02-y/a", "02-y/a does not come from a solution. Delete it."),
         ("rm 01-x/pkg/data.bin", "01-x/pkg/data.bin is missing."),
     ],
 )
-def test_whatever_was_changed_by_hand_is_stale(root: Path, change: str, what: str) -> None:
+def test_every_change_by_hand_is_found(root: Path, change: str, what: str) -> None:
     main(["--root", str(root)])
     subprocess.run(change, shell=True, check=True, cwd=root / "exercises")
     assert stale(root / "solutions", root / "exercises") == (f"{root}/exercises/{what}",)
 
 
-def test_the_command_tells_authors_errors_without_a_traceback(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_prints_errors_without_a_traceback(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (root / "solutions" / "01-x" / "pkg" / "node.py").write_text("# END SOLUTION\n")
     assert main(["--root", str(root)]) == 2
     assert "node.py:1: END SOLUTION without" in capsys.readouterr().err

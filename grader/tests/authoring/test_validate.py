@@ -1,4 +1,4 @@
-"""The course is valid, and so is the exercise that docs/authors.md shows; what is amiss in one is told."""
+"""The course and the exercise in docs/authors.md are valid, and problems of an exercise are reported."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ TASK = """\
 
 @pytest.fixture
 def root(tmp_path: Path) -> Path:
-    """A course of the one exercise that docs/authors.md shows."""
+    """A course with only the exercise that docs/authors.md shows."""
     text = (ROOT / "docs/authors.md").read_text("utf-8")
     exercise = next(block.text for block in blocks(text) if block.language == "toml")
     (tmp_path / "course" / NEW).mkdir(parents=True)
@@ -65,7 +65,7 @@ def test_the_course_is_valid() -> None:
     assert validate([]) == []
 
 
-def test_a_new_exercise_is_one_folder_a_side_and_no_python(root: Path) -> None:
+def test_a_new_exercise_is_one_folder_per_side_without_python(root: Path) -> None:
     assert problems(root) == []
     assert "TODO: make it drive." in (root / "exercises" / NEW / "my_robot_controller" / NODE).read_text()
 
@@ -92,16 +92,16 @@ def test_a_check_that_the_starting_point_fails_wants_a_hint(root: Path) -> None:
     ("spoil", "told"),
     [
         (wrong_solution, f"solutions/{NEW} does not pass: The turtle drives straight on at 0.5 m/s: failed."),
-        (solved_starting_point, f"exercises/{NEW} was to fail the check 'values', and does not."),
+        (solved_starting_point, f"exercises/{NEW} should fail the check 'values' but does not."),
         (other_fault_at_the_start, f"exercises/{NEW} fails for a reason that was not intended: "),
     ],
 )
-def test_gradings_that_come_out_otherwise_are_told(root: Path, spoil: Callable[[Path], None], told: str) -> None:
+def test_unexpected_results_of_gradings_are_reported(root: Path, spoil: Callable[[Path], None], told: str) -> None:
     spoil(root)
     assert any(problem.startswith(told) for problem in problems(root))
 
 
-def test_what_is_missing_is_told_all_at_once(root: Path) -> None:
+def test_all_missing_things_are_reported_together(root: Path) -> None:
     course = root / "course" / NEW
     (course / "lesson.md").write_text("Too short, with a [link](nowhere.md).\n")
     change(course / "exercise.toml", "[[hint]]", "[[trial]]")
@@ -109,10 +109,10 @@ def test_what_is_missing_is_told_all_at_once(root: Path) -> None:
     change(course / "exercise.toml", '[[trial]]\ntext = "Two', '# "Two')
     shutil.rmtree(root / "solutions" / NEW)
     told = "\n".join(validate([], course=root / "course"))
-    for problem in ("there is no [[hint]]", "words (code left out)", "links to nowhere.md", f"solutions/{NEW}"):
+    for problem in ("there is no [[hint]]", "words (without code)", "links to nowhere.md", f"solutions/{NEW}"):
         assert problem in told
 
 
-def test_an_exercise_that_is_not_there_is_told_with_those_that_are(root: Path) -> None:
+def test_an_unknown_exercise_is_an_error_that_lists_all(root: Path) -> None:
     with pytest.raises(UsageError, match=f"There is no exercise 09-x. The exercises are {NEW}."):
         validate(["09-x"], course=root / "course")

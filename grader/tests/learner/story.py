@@ -1,4 +1,4 @@
-"""A learner at a terminal, and their way through the course."""
+"""A learner at a terminal, from the first step of the course to the last."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ LAST = list(catalogue())[-1]
 FIRST_TO_COPY = "03-circle-publisher"
 BY_HEART = "04-package-files"
 PATIENCE_S = 300
-"""For one verdict on a busy machine; a screen that does not come at all is a hang."""
+"""The time for one verdict on a busy machine (s). A screen that takes longer hangs."""
 
 
 class Learner:
-    """Somebody at a terminal, with a home of their own."""
+    """A learner at a terminal, with a home folder of their own."""
 
     def __init__(self, home: Path, grader: str = GRADER) -> None:
         self.home = home
@@ -56,13 +56,13 @@ class Learner:
         return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", child.before or "")
 
     def solves(self, step: str) -> None:
-        """Write the whole solution into the workspace, as after long work."""
+        """Write the whole solution into the workspace, as if the learner had done the work."""
         exercise = find_exercise(step)
         solution = ROOT / "solutions" / step
         mine = work_folder(exercise, self.home / "ros2_ws")
         for file in sorted((solution / exercise.package).rglob("*") if exercise.package else solution.rglob("*")):
             place = mine / file.relative_to(solution / exercise.package)
-            # One's own numbers are one's own.
+            # The learner keeps their own numbers.
             if file.is_file() and place.name != "my_numbers.toml":
                 place.parent.mkdir(parents=True, exist_ok=True)
                 text = file.read_text(encoding="utf-8")
@@ -74,7 +74,7 @@ class Learner:
 
 
 def with_numbers(text: str, own: OwnNumbers) -> str:
-    """Our own circle with a learner's numbers, at 1 rad/s."""
+    """Return our circle with the learner's numbers, at 1 rad/s."""
     turn = 1.0 if own.direction == "counter-clockwise" else -1.0
     for old, new in (("1.0 / 4.0", f"1.0 / {own.rate_hz}"), ("0.8", str(own.radius_m)), ("-1.0", str(turn))):
         assert old in text
@@ -119,11 +119,11 @@ def walk(learner: Learner, steps: list[str]) -> None:
         await_verdict(screen, r"Passed: 100 of 100 points")
         if following:
             screen.send("n")
-            # What was copied into the package files for step 03 is what step 04 is about: once more, by heart.
+            # Step 04 asks for the lines that were copied into the package files for step 03.
             screen.expect("Passed" if following == BY_HEART else "Not passed")
             screen.expect(f"{following}: ")
             if following == FIRST_TO_COPY:
-                screen.expect("This step begins with more in package.xml; write into yours")
+                screen.expect("This step needs more lines in package.xml. Add to yours")
             screen.expect("Watching")
         if following == BY_HEART:
             leave(screen)
@@ -132,7 +132,7 @@ def walk(learner: Learner, steps: list[str]) -> None:
             await_verdict(screen, "Not passed")
     if steps[-1] == LAST:
         screen.send("n")
-        screen.expect("you are through")
+        screen.expect("You have finished the course")
     leave(screen)
     status = learner.reads("status")
     assert f"{len(steps)} of {len(catalogue())} steps passed" in status

@@ -20,7 +20,7 @@ LAST = "07-challenges"
 
 @pytest.fixture(autouse=True)
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A learner of this test's own."""
+    """A learner with an own progress file."""
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.delenv("XDG_STATE_HOME", raising=False)
     monkeypatch.delenv("ROS2_WORKSPACE", raising=False)
@@ -28,7 +28,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def verdict(step: str, *, failed: tuple[str, ...] = (), done: tuple[str, ...] = (), passed: bool = False) -> None:
-    """What a learner's progress holds after a verdict."""
+    """Store a verdict in the learner's progress."""
 
     def change(before: progress.Progress) -> progress.Progress:
         known = replace(before.step(step), failed=failed, done=done, passed=passed)
@@ -38,7 +38,7 @@ def verdict(step: str, *, failed: tuple[str, ...] = (), done: tuple[str, ...] = 
 
 
 def texts(step: str, check: str) -> list[str]:
-    """The hints that help with a check."""
+    """Return the hints that help with a check."""
     return [" ".join(hint.text.split()) for hint in find_exercise(step).hints if check in hint.checks]
 
 
@@ -46,7 +46,7 @@ def all_texts(step: str) -> list[str]:
     return [" ".join(hint.text.split()) for hint in find_exercise(step).hints]
 
 
-def test_before_the_first_verdict_hints_come_in_their_order_and_the_last_one_again() -> None:
+def test_before_the_first_verdict_hints_come_in_order_and_the_last_one_repeats() -> None:
     begun = steps.start("01", None)
     given = begun.exercise.hints
     for index, told in enumerate(hints.hint(None, None) for _ in range(len(given) + 2)):
@@ -55,7 +55,7 @@ def test_before_the_first_verdict_hints_come_in_their_order_and_the_last_one_aga
 
 
 @pytest.mark.parametrize("check", ["topic", "values", "rate", "wall", "timer"])
-def test_after_a_verdict_a_hint_for_the_check_that_failed_comes_first(check: str) -> None:
+def test_after_a_verdict_a_hint_for_a_failed_check_comes_first(check: str) -> None:
     verdict("03-circle-publisher", failed=(check,))
     helps = texts("03-circle-publisher", check)
     for text in helps:
@@ -73,19 +73,19 @@ def test_the_first_failed_check_comes_first() -> None:
     ]
 
 
-def test_when_all_were_read_it_is_one_for_what_fails() -> None:
+def test_after_all_hints_one_for_a_failed_check_is_repeated() -> None:
     verdict(LAST, failed=("square",))
     for _ in find_exercise(LAST).hints:
         hints.hint(None, None)
     assert hints.hint(None, None).endswith(texts(LAST, "square")[-1])
 
 
-def test_what_is_done_gets_no_hint() -> None:
+def test_passed_checks_get_no_hint() -> None:
     verdict("04-package-files", done=("depends-rclpy", "depends-geometry-msgs"), failed=("entry-point",))
     told = {hints.hint(None, None).split(": ", 1)[1] for _ in range(9)}
     assert told == set(all_texts("04")[1:])
     verdict("04-package-files", passed=True)
-    assert hints.hint(None, None) == "04-package-files has passed: there is nothing left to hint at."
+    assert hints.hint(None, None) == "04-package-files has passed. You need no more hints."
 
 
 @pytest.mark.parametrize("words", [("07", "d"), ("7", "D"), ("07", "d)"), ("d",)])
@@ -95,13 +95,13 @@ def test_a_part_has_hints_of_its_own(words: tuple[str, ...]) -> None:
     assert told.startswith("Hint 1 of 1: d) ")
 
 
-def test_a_part_that_is_done_says_so() -> None:
+def test_a_part_that_has_passed_needs_no_hint() -> None:
     verdict(LAST, done=("goal", "goal-subscription"), failed=("square",))
-    assert hints.hint("07", None, "d") == "Part d) of 07-challenges has passed: there is nothing left to hint at."
+    assert hints.hint("07", None, "d") == "Part d) of 07-challenges has passed. You need no more hints."
 
 
-def test_a_part_that_there_is_not_is_told_with_those_that_there_are() -> None:
-    with pytest.raises(UsageError, match=r"07-challenges has the parts a, b, c and d: 'e' is none of them\."):
+def test_an_unknown_part_is_an_error_that_lists_the_parts() -> None:
+    with pytest.raises(UsageError, match=r"07-challenges has the parts a, b, c and d: 'e' is not one of them\."):
         hints.hint("07", None, "e")
     with pytest.raises(UsageError, match="03-circle-publisher has no parts: 'a'"):
         hints.hint("03", None, "a")

@@ -27,7 +27,7 @@ FIRST, SECOND = "01-first-node", "02-discover-topics"
 
 @pytest.fixture(autouse=True)
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A learner of this test's own."""
+    """A learner with an own progress file."""
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.delenv("XDG_STATE_HOME", raising=False)
     monkeypatch.delenv("ROS2_WORKSPACE", raising=False)
@@ -39,7 +39,7 @@ def passed(name: str) -> None:
     progress.update(root, lambda before: before.graded(name, report("passed")))
 
 
-def test_progress_survives_and_is_kept_apart_by_workspace(home: Path) -> None:
+def test_each_workspace_has_its_own_progress(home: Path) -> None:
     progress.update(home / "one", lambda before: before.at(FIRST))
     progress.update(home / "two", lambda before: before.at(SECOND))
     assert progress.load(home / "one").current == FIRST
@@ -70,7 +70,7 @@ def test_hints_that_an_older_version_counted_were_read(home: Path) -> None:
     assert progress.load(home).step(FIRST) == StepProgress(1.0, 2.0, read=(0, 1))
 
 
-def test_forty_writers_at_once_lose_nothing(home: Path) -> None:
+def test_forty_writers_at_once_lose_no_change(home: Path) -> None:
     def one_hint(before: Progress) -> Progress:
         known = before.step(FIRST)
         return before.with_step(FIRST, replace(known, read=(*known.read, len(known.read))))
@@ -81,7 +81,7 @@ def test_forty_writers_at_once_lose_nothing(home: Path) -> None:
 
 
 @pytest.mark.parametrize("content", ["{", "[]", '{"schema": 99}', ""])
-def test_a_damaged_file_is_told_and_not_touched(home: Path, content: str) -> None:
+def test_a_damaged_file_is_an_error_and_stays_unchanged(home: Path, content: str) -> None:
     file = progress.state_file()
     file.parent.mkdir(parents=True)
     file.write_text(content)
@@ -90,7 +90,7 @@ def test_a_damaged_file_is_told_and_not_touched(home: Path, content: str) -> Non
     assert file.read_text() == content
 
 
-def test_start_adds_what_lacks_and_overwrites_nothing(home: Path) -> None:
+def test_start_adds_missing_files_and_overwrites_nothing(home: Path) -> None:
     begun = steps.start("01", None)
     package = home / "ros2_ws/src/my_robot_controller"
     assert begun.started.folder == package
@@ -103,7 +103,7 @@ def test_start_adds_what_lacks_and_overwrites_nothing(home: Path) -> None:
     assert (package / "setup.py").read_text() == "mine"
 
 
-def test_start_tells_which_lines_of_package_files_a_later_step_begins_with(home: Path) -> None:
+def test_start_lists_lines_that_a_later_step_needs_in_package_files(home: Path) -> None:
     steps.start("01", None)
     package = home / "ros2_ws/src/my_robot_controller"
     setup = (package / "setup.py").read_text()
@@ -114,11 +114,11 @@ def test_start_tells_which_lines_of_package_files_a_later_step_begins_with(home:
         "package.xml": ("<depend>geometry_msgs</depend>", "<depend>turtlesim</depend>"),
         "setup.py": ('"draw_circle = my_robot_controller.draw_circle:main",',),
     }
-    assert 'This step begins with more in setup.py; write into yours:\n    "draw_circle' in steps.told(begun)
+    assert 'This step needs more lines in setup.py. Add to yours:\n    "draw_circle' in steps.told(begun)
     assert steps.start("03", None, fresh=True).started.lacking == {}
 
 
-def test_fresh_keeps_the_old_work_aside_where_colcon_does_not_look(home: Path) -> None:
+def test_fresh_moves_the_old_work_to_a_folder_that_colcon_ignores(home: Path) -> None:
     steps.start("01", None)
     package = home / "ros2_ws/src/my_robot_controller"
     (package / "setup.py").write_text("mine")
@@ -138,14 +138,14 @@ def test_next_waits_until_the_step_has_passed(home: Path) -> None:
     assert json.loads(progress.state_file().read_text())["workspaces"][str(home / "ros2_ws")]["current"] == SECOND
 
 
-def test_after_the_last_step_there_is_no_next() -> None:
+def test_there_is_no_next_step_after_the_last_one() -> None:
     steps.start("07", None)
     passed("07-challenges")
-    with pytest.raises(UsageError, match="you are through"):
+    with pytest.raises(UsageError, match="You have finished the course"):
         steps.start("next", None)
 
 
-def test_a_verdict_on_the_folder_that_a_lesson_names_says_where_ones_own_work_is(home: Path) -> None:
+def test_a_failure_in_the_folder_that_a_lesson_names_points_to_the_workspace(home: Path) -> None:
     failed, named = report("failed"), course_folder().parent / "exercises" / FIRST
     exercise = find_exercise(FIRST)
     assert steps.note(exercise, named, failed) == ""
@@ -158,27 +158,27 @@ def test_a_verdict_on_the_folder_that_a_lesson_names_says_where_ones_own_work_is
     assert steps.note(exercise, home, failed) == ""
 
 
-def test_a_workspace_that_is_a_file_is_told(home: Path) -> None:
+def test_a_workspace_that_is_a_file_is_a_usage_error(home: Path) -> None:
     (home / "ros2_ws").write_text("")
     with pytest.raises(UsageError, match="is a file"):
         steps.start("01", None)
 
 
-def test_work_on_answers_lies_in_a_folder_of_its_own(home: Path) -> None:
+def test_answers_are_in_a_folder_of_their_own(home: Path) -> None:
     begun = steps.start("02", None)
     assert begun.started.folder == home / "ros2_ws/answers/02-discover-topics"
     assert "answers.toml" in begun.started.added
     assert workspace.work_folder(begun.exercise, home / "ros2_ws") == begun.started.folder
 
 
-def test_the_last_step_begins_with_numbers_of_the_students_own(home: Path) -> None:
+def test_the_last_step_begins_with_the_students_own_numbers(home: Path) -> None:
     steps.start("07", None, student="4711")
     file = home / "ros2_ws/src/my_robot_controller/my_numbers.toml"
     assert from_toml(file.read_bytes()) == draw_numbers("4711")
     assert steps.start("07", None).started.added == ()
 
 
-def test_who_is_through_is_not_sent_on() -> None:
+def test_the_status_after_the_last_step_names_no_next_step() -> None:
     steps.start("07", None)
     for name in catalogue():
         passed(name)
@@ -186,14 +186,14 @@ def test_who_is_through_is_not_sent_on() -> None:
     steps.print_status(None, said)
     text = said.export_text()
     assert "7 of 7 steps passed" in text
-    assert "You are through." in text
+    assert "You have finished the course." in text
     assert "start next" not in text
 
 
-def test_the_solution_beside_ones_own_shows_what_was_to_be_written(home: Path) -> None:
+def test_the_solution_shows_only_files_that_the_learner_had_to_write(home: Path) -> None:
     steps.start("01", None)
     said = Console(width=100, record=True, file=io.StringIO())
-    with pytest.raises(UsageError, match="once yours has passed"):
+    with pytest.raises(UsageError, match="after yours has passed"):
         print_solution("01", None, said)
     passed(FIRST)
     (home / "ros2_ws/src/my_robot_controller/package.xml").write_text("grown in later steps")

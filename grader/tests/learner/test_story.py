@@ -1,4 +1,4 @@
-"""A learner's way through the course, typed on a real terminal."""
+"""A learner goes through the course on a real terminal."""
 
 from __future__ import annotations
 
@@ -23,5 +23,5 @@ def test_the_first_steps(learner: Learner) -> None:
 
 
 @pytest.mark.exhaustive
-def test_the_whole_way(learner: Learner) -> None:
+def test_the_whole_course(learner: Learner) -> None:
     walk(learner, list(catalogue()))

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[3]
 STEP = "03-circle-publisher"
 PATIENCE_S = 60.0
-"""Longer than anything takes here that does not hang."""
+"""Longer than anything in this module takes, unless it hangs (s)."""
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ def failed(watched: Watched) -> list[str]:
     return [o.id for o in watched.grade().report.outcomes if o.status.value == "failed" and not o.advice]
 
 
-def test_changed_modules_are_graded_as_they_are_now_without_colcon(package: Path, watched: Watched) -> None:
+def test_changed_modules_are_graded_without_colcon(package: Path, watched: Watched) -> None:
     assert failed(watched) == []
     change(node_of(package), "2.0", "1.0")
     assert watched.changed()
@@ -81,7 +81,7 @@ def test_changed_modules_are_graded_as_they_are_now_without_colcon(package: Path
     assert not watched.changed()
 
 
-def test_what_symlink_install_would_not_see_is_built_anew(package: Path) -> None:
+def test_changes_that_symlink_install_would_miss_start_a_new_build(package: Path) -> None:
     ros = with_turtlesim(find_ros())
     rebuild = Rebuild()
     told: list[str] = []
@@ -101,11 +101,11 @@ def test_what_symlink_install_would_not_see_is_built_anew(package: Path) -> None
     (package / "my_robot_controller" / "more.py").write_text("x = 1\n")
     build()
     assert rebuild.runs == 3
-    assert told[3:] == ["Taking the last build, with the modules as they are now"]
+    assert told[3:] == ["Using the last build with the changed modules"]
 
 
 @pytest.mark.parametrize("how", ["write", "rename", "delete", "create"])
-def test_a_save_is_heard_however_the_editor_saves(package: Path, how: str) -> None:
+def test_a_save_is_noticed_with_every_kind_of_editor(package: Path, how: str) -> None:
     node = node_of(package)
     saves: dict[str, Callable[[], object]] = {
         "write": lambda: node.write_text("x = 1\n"),
@@ -117,13 +117,13 @@ def test_a_save_is_heard_however_the_editor_saves(package: Path, how: str) -> No
     events = Events(None)
     events.watch(package)
     heard = iter(events)
-    assert next(heard).kind == "saved"  # from here on none is missed
+    assert next(heard).kind == "saved"  # from now on no save is missed
     saves[how]()
     assert next(heard).kind == "saved"
     events.close()
 
 
-def test_it_follows_the_path_when_the_folder_is_renamed_and_another_takes_its_place(package: Path) -> None:
+def test_watching_follows_the_path_when_another_folder_takes_it(package: Path) -> None:
     events = Events(None)
     events.watch(package)
     happened = iter(events)
@@ -138,14 +138,12 @@ def test_it_follows_the_path_when_the_folder_is_renamed_and_another_takes_its_pl
     events.close()
 
 
-def test_keys_come_in_order_and_the_end_of_the_terminal_ends_the_loop() -> None:
+def test_keys_come_in_order_and_the_end_of_input_ends_the_loop() -> None:
     keys = iter(["h", "r", ""])
     assert [happened.key for happened in Events(lambda: next(keys))] == ["h", "r"]
 
 
-def test_saves_that_wait_are_one_and_a_key_behind_them_takes_none_away(
-    package: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_waiting_saves_become_one_and_a_key_after_them_is_kept(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     saved, told = threading.Event(), threading.Event()
 
     def watch(*_: object, **__: object) -> Iterator[set[str]]:
@@ -165,7 +163,7 @@ def test_saves_that_wait_are_one_and_a_key_behind_them_takes_none_away(
     assert [happened.kind for happened in events] == ["saved", "key"]
 
 
-def test_after_two_saves_within_a_grading_the_last_text_alone_is_graded(
+def test_after_two_saves_during_a_grading_only_the_last_text_is_graded(
     package: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     gradings: SimpleQueue[str] = SimpleQueue()
@@ -195,7 +193,7 @@ def test_after_two_saves_within_a_grading_the_last_text_alone_is_graded(
     assert gradings.empty()
 
 
-def test_a_package_that_was_away_for_a_while_is_graded_again(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_package_that_was_missing_for_a_while_is_graded_again(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("grader.learner.watch.grade", lambda *_, **__: None)
     watched = Watched(find_exercise(STEP), package, Options(in_cell=False))
     watched.grade()
@@ -210,8 +208,8 @@ def test_a_package_that_was_away_for_a_while_is_graded_again(package: Path, monk
     assert watched.changed()
 
 
-def test_of_several_trials_the_first_is_kept_warm(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With it the next grading begins."""
+def test_the_first_of_several_trials_is_prepared_early(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The next grading begins with it."""
     first, second = (Plan("simulated", Pose(1.0, 1.0, 0.0), None, duration_s) for duration_s in (12.0, 9.0))
     begun: list[Plan] = []
 

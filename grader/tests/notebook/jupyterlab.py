@@ -1,4 +1,4 @@
-"""JupyterLab as a student starts it, and the few things that a student does in it, for the browser tests."""
+"""JupyterLab as a student starts it, and what a student does in it, for the browser tests."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ START_S = 120.0
 
 @contextmanager
 def serving(folder: Path, home: Path) -> Iterator[str]:
-    """JupyterLab for the notebooks in `folder`, with its settings below `home`; the address to open."""
+    """Start JupyterLab for the notebooks in `folder`, with its settings below `home`. Return the address to open."""
     token = secrets.token_hex(16)
     env = {
         **os.environ,
@@ -36,7 +36,7 @@ def serving(folder: Path, home: Path) -> Iterator[str]:
     }
     argv = [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1", "--port=0"]
     argv += [f"--IdentityProvider.token={token}", f"--ServerApp.root_dir={folder}"]
-    # It would ask the network for news.
+    # JupyterLab would look for news on the network.
     argv += ["--LabApp.news_url=", "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
     server = subprocess.Popen(argv, env=env, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     address: list[str] = []
@@ -68,13 +68,13 @@ def serving(folder: Path, home: Path) -> Iterator[str]:
 
 
 def type_cell(page: Page, begins: str, text: str) -> None:
-    """Replace the text of the cell that begins so, by typing."""
+    """Replace the text of the cell that begins with `begins`, by typing."""
     cell = page.locator(".jp-CodeCell", has_text=begins).first
     cell.scroll_into_view_if_needed()
     cell.locator(".cm-content").click()
     page.keyboard.press("Control+a")
     page.keyboard.press("Delete")
-    # Not key by key: the editor would indent and close brackets on top of what is there.
+    # The text is pasted, because the editor would indent typed lines and close brackets.
     page.keyboard.insert_text(text)
 
 

@@ -1,4 +1,4 @@
-"""A kernel of the course, as Jupyter starts one, for tests that run cells in it."""
+"""Start the course's kernel as Jupyter does, for tests that run cells in it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class CourseKernel(AsyncKernelManager):
-    """Starts the course's kernel, whether or not it is installed for whoever runs the tests."""
+    """Start the course's kernel, whether or not it is installed for the current user."""
 
     @property
     def kernel_spec(self) -> KernelSpec:
@@ -35,7 +35,7 @@ class Notebook:
     outputs: list[Any] = field(default_factory=list)
 
     def run(self, source: str) -> str:
-        """Run a cell; returns all the text below it, errors included."""
+        """Run a cell. Return all text below it, errors included."""
         cell = nbformat.v4.new_code_cell(source)  # type: ignore[no-untyped-call]
         self.client.nb.cells.append(cell)
         self.client.execute_cell(cell, len(self.client.nb.cells) - 1)
@@ -48,14 +48,14 @@ class Notebook:
 
     @property
     def pid(self) -> int:
-        """The kernel's process."""
+        """Return the kernel's process."""
         pid: int = self.client.km.provisioner.process.pid  # type: ignore[union-attr]
         return pid
 
 
 @contextmanager
 def open_notebook(folder: Path) -> Iterator[Notebook]:
-    """A notebook in `folder`, with the course's kernel."""
+    """Yield a notebook in `folder` with the course's kernel."""
     client = NotebookClient(
         nbformat.v4.new_notebook(),  # type: ignore[no-untyped-call]
         timeout=180,

@@ -1,4 +1,4 @@
-"""Cells run in the course's kernel, as Jupyter starts it: with nothing sourced."""
+"""Cells run in the course's kernel as Jupyter starts it, without sourcing anything."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def notebook(folder: Path) -> Iterator[Notebook]:
 
 
 def marked_processes(mark: str) -> set[int]:
-    """Who carries the mark of a notebook."""
+    """Return the processes with the mark of a notebook."""
     found = set()
     for entry in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
@@ -61,7 +61,7 @@ def test_from_the_first_cell_to_full_marks(notebook: Notebook, folder: Path) -> 
     assert "Draw a circle" in notebook.run(BEGIN)
     assert (folder / NODE).read_text() == START
 
-    # ROS 2 is there, in the kernel and in its children, without sourcing anything.
+    # ROS 2 is available in the kernel and its children without sourcing anything.
     assert notebook.run("import rclpy; rclpy.ok()") == "False"
     assert "float64 x" in notebook.run("ros2 interface show geometry_msgs/msg/Vector3")
 
@@ -73,13 +73,15 @@ def test_from_the_first_cell_to_full_marks(notebook: Notebook, folder: Path) -> 
     result = next(output for output in notebook.outputs if output.output_type == "execute_result")
     assert result.data["text/html"].count("<svg") >= 3
     assert "<script" not in result.data["text/html"]
-    # The next cell asks again, and nothing is graded twice.
+    # The next cell calls check again, and nothing is graded twice.
     assert notebook.run("check() is verdict") == "True"
     assert notebook.run('check().points("circle")') == "✓ The turtle drives a circle  25/25\n25.0"
     assert "has no check 'round'" in notebook.run('check().points("round")')
 
 
-def test_a_simulator_moves_below_the_cell_and_goes_with_the_kernel(notebook: Notebook, folder: Path) -> None:
+def test_the_canvas_moves_below_the_cell_and_the_simulator_ends_with_the_kernel(
+    notebook: Notebook, folder: Path
+) -> None:
     notebook.run(BEGIN)
     (folder / NODE).write_text(SOLUTION)
     said = notebook.run(
@@ -95,7 +97,7 @@ def test_a_simulator_moves_below_the_cell_and_goes_with_the_kernel(notebook: Not
     assert notebook.run("sim.picture() == before") == "False"
 
     mark = notebook.run(f"import os; print(os.environ[{guardian.VARIABLE!r}])").strip()
-    assert marked_processes(mark) == set()  # with the `with` it has ended
+    assert marked_processes(mark) == set()  # it ended with the `with` statement
     notebook.run("sim = simulator(); sim.__enter__(); sim.start('draw_circle')")
     notebook.run("import subprocess; subprocess.Popen(['setsid', 'sleep', '1000'])")
     assert len(marked_processes(mark)) >= 3
@@ -106,27 +108,27 @@ def test_a_simulator_moves_below_the_cell_and_goes_with_the_kernel(notebook: Not
     assert marked_processes(mark) == set()
 
 
-def test_nothing_of_a_students_is_lost(notebook: Notebook, folder: Path, home: Path) -> None:
+def test_no_work_of_a_student_is_lost(notebook: Notebook, folder: Path, home: Path) -> None:
     own = home / "ros2_ws" / "src" / "my_robot_controller" / "my_robot_controller"
     own.mkdir(parents=True)
     (own / "draw_circle.py").write_text("# my own, from the workspace\n")
     notebook.run(BEGIN)
     assert (folder / NODE).read_text() == "# my own, from the workspace\n"
-    assert (folder / "my_robot_controller" / "package.xml").is_file()  # what it lacked, from the starting point
+    assert (folder / "my_robot_controller" / "package.xml").is_file()  # the rest comes from the starting point
 
-    # The cell as it was released does not undo it, and a cell that was worked on keeps what it replaces.
-    assert "left as it is" in notebook.run("%%node draw_circle.py\n" + START)
+    # The released cell does not undo the work. A cell that was changed replaces the file and keeps a copy.
+    assert "stays unchanged" in notebook.run("%%node draw_circle.py\n" + START)
     assert (folder / NODE).read_text() == "# my own, from the workspace\n"
     assert "kept in .kept/draw_circle-1.py" in notebook.run("%%node draw_circle.py\n# from the cell")
     assert (folder / ".kept" / "draw_circle-1.py").read_text() == "# my own, from the workspace\n"
     assert notebook.run("%%node draw_circle.py\n# from the cell, again") == f"Written: {NODE}\n"
 
 
-def test_mistakes_are_told_in_a_sentence(notebook: Notebook) -> None:
+def test_a_mistake_is_reported_in_one_sentence(notebook: Notebook) -> None:
     assert "Run its first cell" in notebook.run("%load_ext grader.notebook\ncheck()")
     assert "there is no exercise '33'" in notebook.run("%step 33")
     notebook.run(f"%step {STEP}")
-    assert "wants the name of a Python file" in notebook.run("%%node ../../x.py\npass")
+    assert "needs the name of a Python file" in notebook.run("%%node ../../x.py\npass")
     assert "There is no nothing.py" in notebook.run("with simulator() as sim:\n    sim.run('nothing')")
     assert notebook.outputs[-1].traceback == [notebook.outputs[-1].evalue]
 

@@ -1,4 +1,4 @@
-"""A student's hour with step 03, in JupyterLab, in a browser."""
+"""A student works on step 03 in JupyterLab, in a browser."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ DEADLINE_MS = 240_000.0
 
 
 @pytest.mark.exhaustive
-def test_the_released_notebook_is_solved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_student_solves_the_released_notebook(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     executable = browser_or_reason()
     monkeypatch.setenv("XDG_CACHE_HOME", os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache"))
     monkeypatch.setenv("HOME", str(tmp_path))
@@ -34,7 +34,7 @@ def test_the_released_notebook_is_solved(tmp_path: Path, monkeypatch: pytest.Mon
         page.set_default_timeout(DEADLINE_MS)
         page.goto(address.replace("PATH", f"{STEP}/{STEP}.ipynb"))
         page.get_by_role("heading", name="Step 03: draw a circle").first.wait_for()
-        # The kernel that the notebook names is there: nobody has to choose one.
+        # The kernel that the notebook names is installed, so JupyterLab does not ask for one.
         page.get_by_text(DISPLAY_NAME).first.wait_for()
         page.screenshot(path=pictures / "lab-1-opened.png")
 
@@ -42,14 +42,14 @@ def test_the_released_notebook_is_solved(tmp_path: Path, monkeypatch: pytest.Mon
         type_cell(page, "%%node draw_circle.py", f"%%node draw_circle.py\n{solution}")
         run_all(page)
 
-        # The canvas moves while the node runs: it shows one picture after the other.
+        # The canvas moves while the node runs, so one picture follows another.
         canvas = page.locator(".jp-OutputArea img").last
         canvas.wait_for()
         before = canvas.get_attribute("src")
         page.wait_for_function(
             "before => [...document.querySelectorAll('.jp-OutputArea img')].at(-1).src !== before", arg=before
         )
-        # What comes below, since the image itself is another one five times a second.
+        # The cell below is used, because the image is replaced five times per second.
         page.get_by_role("heading", name="Check it").scroll_into_view_if_needed()
         page.screenshot(path=pictures / "lab-2-simulator.png")
 
@@ -64,7 +64,7 @@ def test_the_released_notebook_is_solved(tmp_path: Path, monkeypatch: pytest.Mon
         last.locator(".jp-OutputArea-executeResult").wait_for()
         points = page.locator(".jp-CodeCell", has_text='points("circle")').last
         points.scroll_into_view_if_needed()
-        # JupyterLab draws a cell when it comes into view.
+        # JupyterLab draws a cell only when it is visible.
         points.get_by_text("25.0", exact=True).wait_for()
         page.screenshot(path=pictures / "lab-4-points.png")
     assert (tmp_path / "work" / STEP / NODE).read_text("utf-8") == solution

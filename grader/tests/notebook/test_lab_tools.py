@@ -1,4 +1,4 @@
-"""nbgrader's tools for instructors: hidden in a learner's JupyterLab, shown in one that starts in the course folder."""
+"""nbgrader's tools for instructors are hidden in a learner's JupyterLab and shown in the course folder of a class."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def opened(address: str) -> str:
-    """The page at an address; JupyterLab prints it a moment before it listens there."""
+    """Return the page at an address. JupyterLab prints the address a moment before it listens there."""
     pages: list[str] = []
 
     def answers() -> bool:
@@ -35,7 +35,7 @@ def opened(address: str) -> str:
 
 
 @pytest.mark.parametrize("instructor", [False, True], ids=["learner", "instructor"])
-def test_tools_for_instructors_are_theirs_alone(tmp_path: Path, *, instructor: bool) -> None:
+def test_only_instructors_see_their_tools(tmp_path: Path, *, instructor: bool) -> None:
     folder = tmp_path / "course"
     folder.mkdir()
     if instructor:

@@ -1,4 +1,4 @@
-"""`%lesson` shows a step's lesson in a notebook, wherever that lies."""
+"""`%lesson` shows a step's lesson in a notebook in any folder."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LESSON = course_folder() / STEP / "lesson.md"
 
 
 @pytest.mark.parametrize("step", catalogue())
-def test_a_lesson_is_shown_whole_and_leads_nowhere_in_vain(step: str) -> None:
+def test_a_lesson_is_complete_and_has_no_broken_links(step: str) -> None:
     found = pieces(course_folder() / step / "lesson.md")
     assert all(piece.is_file() for piece in found if isinstance(piece, Path))
     text = "".join(piece for piece in found if isinstance(piece, str))

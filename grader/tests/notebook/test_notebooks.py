@@ -1,4 +1,4 @@
-"""The notebooks of the course: honest about what is asked, and without a trace of what is not the student's to see."""
+"""The notebooks of the course match their exercises, and released ones have nothing that students must not see."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def about(cell: dict[str, Any]) -> dict[str, Any]:
 
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("root", ["solutions", "exercises"])
-def test_each_check_is_a_grade_cell_of_the_same_id_and_points(step: str, root: str) -> None:
+def test_each_check_has_a_grade_cell_with_its_id_and_points(step: str, root: str) -> None:
     graded = [
         (about(cell)["grade_id"], about(cell)["points"]) for cell in cells_of(step, root) if about(cell).get("grade")
     ]
@@ -38,14 +38,14 @@ def test_each_check_is_a_grade_cell_of_the_same_id_and_points(step: str, root: s
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_no_two_cells_have_one_name(step: str) -> None:
+def test_all_cells_have_different_names(step: str) -> None:
     for names in ([about(cell).get("grade_id") for cell in cells_of(step)], [cell["id"] for cell in cells_of(step)]):
         known = [name for name in names if name is not None]
         assert len(known) == len(set(known))
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_every_file_with_something_to_solve_has_a_cell(step: str) -> None:
+def test_every_file_with_a_solution_has_a_cell(step: str) -> None:
     written = "".join(about(cell).get("grade_id", "") for cell in cells_of(step) if about(cell).get("solution"))
     to_solve = [
         path.name
@@ -58,11 +58,11 @@ def test_every_file_with_something_to_solve_has_a_cell(step: str) -> None:
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_a_notebook_is_read_quickly_and_says_where_the_lesson_is(step: str) -> None:
+def test_a_notebook_is_short_and_names_the_lesson(step: str) -> None:
     prose = " ".join("".join(cell["source"]) for cell in cells_of(step) if cell["cell_type"] == "markdown")
     assert 60 <= len(prose.split()) <= 450
     assert f"`%lesson` in a cell of its own shows it here; in the course it is `course/{step}/lesson.md`" in prose
-    # A notebook is opened from anywhere: a link to a file would lead nowhere.
+    # A notebook may be opened from any folder, so a link to a file could lead nowhere.
     assert re.findall(r"\]\((?!https://)", prose) == []
 
 
@@ -88,10 +88,10 @@ def test_hidden_tests_are_not_released() -> None:
         (code("x = 1", solution=True), "a solution cell without a BEGIN SOLUTION"),
         (code("### BEGIN HIDDEN TESTS\nx\n### END HIDDEN TESTS"), "hidden tests in a cell that is not graded"),
         (code("### BEGIN HIDDEN TESTS\nx", grade=True, points=1), "has no END HIDDEN TESTS"),
-        (code("### END HIDDEN TESTS\nx", grade=True, points=1), "where hidden tests are not open"),
+        (code("### END HIDDEN TESTS\nx", grade=True, points=1), "where hidden tests have not begun"),
     ],
 )
-def test_what_would_hand_out_too_much_is_an_error(cell: dict[str, Any], why: str) -> None:
+def test_a_notebook_that_would_release_too_much_is_an_error(cell: dict[str, Any], why: str) -> None:
     with pytest.raises(UsageError, match=why):
         released_notebook(notebook(cell), "n")
 

@@ -22,7 +22,7 @@ def test_a_cell_writes_into_the_package(magic: str, name: str, path: str) -> Non
     assert part_path(magic, name, CIRCLE) == path
 
 
-def test_without_a_package_answers_lie_beside_the_notebook() -> None:
+def test_without_a_package_answers_are_next_to_the_notebook() -> None:
     assert part_path("answers", "", ANSWERS) == "answers.toml"
     with pytest.raises(UsageError, match="has no package"):
         part_path("node", "a.py", ANSWERS)
@@ -39,12 +39,12 @@ def test_without_a_package_answers_lie_beside_the_notebook() -> None:
         ("package", "a/../../x"),
     ],
 )
-def test_nothing_is_written_outside(magic: str, name: str) -> None:
+def test_nothing_is_written_outside_of_the_folder(magic: str, name: str) -> None:
     with pytest.raises(UsageError, match=f"%%{magic} wants"):
         part_path(magic, name, CIRCLE)
 
 
-def test_what_a_notebook_writes_is_read_from_its_cells() -> None:
+def test_the_files_of_a_notebook_are_read_from_its_cells() -> None:
     node = "my_robot_controller/my_robot_controller/a.py"
     cells = [
         "%%node a.py\nold",
@@ -67,5 +67,5 @@ def test_what_a_notebook_writes_is_read_from_its_cells() -> None:
         ("mine", None, "file"),
     ],
 )
-def test_a_file_counts_as_the_student_left_it(file: str | None, start: str | None, what: str) -> None:
+def test_a_file_counts_if_the_student_changed_it(file: str | None, start: str | None, what: str) -> None:
     assert counts(file, start) == what

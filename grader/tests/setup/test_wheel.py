@@ -51,7 +51,7 @@ def test_the_learners_way_and_the_instructors_without_a_checkout(installed: Path
     walk(learner, [FIRST, SECOND])
 
     env = {**learner.env, "PATH": f"{installed.parent}:{os.environ['PATH']}"}
-    assert "Everything is as it should be." in run(installed, "validate", FIRST, cwd=home, env=env)
+    assert "No problems found." in run(installed, "validate", FIRST, cwd=home, env=env)
     assert "up to date" in run(installed, "release", "--check", cwd=home, env=env)
     run(installed, "release", "--to", home / "students", cwd=home, env=env)
     assert (home / "students/course" / FIRST / "lesson.md").is_file()
