@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
+from zlib import crc32
 
 from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 STEP = "03-circle-publisher"
+WRITTEN = 8
+"""One in so many reports is written in every form: that takes longer than to read a submission."""
 
 
 class Trials:
@@ -68,13 +71,15 @@ def graded(
     clock: ClockChoice = "wall",
     unjudged: Collection[str] = (),
 ) -> Report:
-    """The report, written in every form that there is; no check of it but those `unjudged` is an `error`."""
+    """The report, some written in every form that there is; no check of it but those `unjudged` is an `error`."""
     options = Options(in_cell=False, clock=clock, trials_at_once=1)
     trials = Trials(recording or good())
     done = grade(find_exercise(step), given, options, build=lambda *_, **__: Built(build, b""), trial=trials)
     report = done.report
     errors = [outcome for outcome in report.with_status(Status.ERROR) if outcome.id not in unjudged]
     assert not errors, errors
+    if crc32(b"".join(given.files.values())) % WRITTEN != 0:
+        return report
     html_page(done.evidence, report)
     html_fragment(done.evidence, report)
     assert from_json(to_json(report)).points == report.points
