@@ -1,0 +1,81 @@
+"""Notebooks that cannot be put together with their packages stop nobody else's."""
+
+from __future__ import annotations
+
+import errno
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NoReturn
+
+import pytest
+
+from grader.errors import MachineError
+from grader.gradebook import scores
+from grader.gradebook.scores import _put_together
+from grader.tests.gradebook.test_put_together import CIRCLE, NODE, handed_in
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+ODD = {
+    "a lone surrogate": "%%node draw_circle.py\nprint('\ud800')",
+    "a NUL": "%%node a\0b.py\nx",
+    "300 letters": f"%%node {'n' * 300}.py\nx",
+    "a dot": "%%node .\nx",
+    "two dots": "%%package ..\nx",
+    "a file below a file": "%%package package.xml/below\nx",
+    "a file in a folder's place": "%%package my_robot_controller\nx",
+}
+
+
+@dataclass(frozen=True)
+class Folders:
+    """As gradebook.folders.ClassFolders has them."""
+
+    root: Path
+
+    def submitted(self, student: str, _: str) -> Path:
+        return self.root / "submitted" / student
+
+    def handed_in(self, student: str, step: str) -> Path:
+        return self.root / "together" / student / step
+
+
+def with_cell(folder: Path, source: str) -> None:
+    file = folder / f"{CIRCLE.id}.ipynb"
+    notebook = json.loads(file.read_text("utf-8"))
+    notebook["cells"].append({"cell_type": "code", "source": source})
+    file.write_text(json.dumps(notebook), "utf-8")
+
+
+def make(root: Path) -> Folders:
+    """The odd notebooks, and an honest one."""
+    folders = Folders(root)
+    (root / "submitted").mkdir()
+    for student in (*ODD, "zoe"):
+        folder = handed_in(folders.submitted(student, ""), "mine", {"my_robot_controller/package.xml": "<package/>"})
+        if student in ODD:
+            with_cell(folder, ODD[student])
+    return folders
+
+
+def test_each_is_graded_or_told_and_the_others_go_on(tmp_path: Path) -> None:
+    folders = make(tmp_path)
+    found, why = _put_together(folders, [(student, CIRCLE.id) for student in (*ODD, "zoe")])  # type: ignore[arg-type]
+    assert [each.student for each in found] == [*ODD, "zoe"]
+    assert {each.student for each in found if each.refused} == {student for student, _ in why}
+    assert (found[-1].path / NODE).read_text() == "mine\n"
+    assert "a file below a file" in {student for student, _ in why}
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS])
+def test_a_disk_of_our_own_that_is_full_stops_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int) -> None:
+    folders = make(tmp_path)
+
+    def full(*_: object) -> NoReturn:
+        message = "full"
+        raise MachineError(message) from OSError(number, "full")
+
+    monkeypatch.setattr(scores, "graded_folder", full)
+    with pytest.raises(MachineError):
+        _put_together(folders, [("zoe", CIRCLE.id)])  # type: ignore[arg-type]
