@@ -1,10 +1,10 @@
-"""How every Python of ours is started: no module is ever imported from the current folder, which may be a student's.
+"""Command lines for Python: they never import a module from the current folder, which may be a student's.
 
 `python -m` and `python -c` put the current folder first on sys.path, and an empty or relative entry of PYTHONPATH names
-the current folder too. A `numpy.py` or a package `grader` in the folder where a command was typed would then run
-with the rights of whoever typed it. So all command lines of our interpreters are made here; a test finds any other.
+the current folder too. A `numpy.py` or a package `grader` in the folder where somebody typed a command would then run
+with that user's rights. So every command line of an interpreter is made here, and a test finds any other one.
 
-Like machine.py, this runs under any Python 3 before anything is installed: syntax of Python 3.6.
+Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import os
@@ -18,7 +18,7 @@ SEARCHED = (
 )
 """Variables that hold a path or a list of paths from which programs, libraries or modules are loaded."""
 _CODE = "import sys; sys.path[:] = filter(None, sys.path)\n"
-"""Python 3.11 has the option -P for that; but IPython then keeps a notebook's folder from its own cells."""
+"""Python 3.11 has the option -P for that, but with it IPython hides a notebook's folder from the notebook's cells."""
 _RUN = "import runpy; runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)\n"
 _MODULE = _CODE + "del sys.argv[0]; " + _RUN
 _MODULE_BELOW = "import sys; sys.path.insert(0, sys.argv[1]); del sys.argv[:2]; " + _RUN
@@ -38,25 +38,25 @@ def interpreter(
     searches: bool = False,
     root: Optional[Path] = None,
 ) -> Start:
-    """How to start an interpreter: `arguments` are `-m MODULE ...`, `-c CODE ...` or the absolute path of a script.
+    """Return the command that starts Python with `-m MODULE ...`, `-c CODE ...` or the absolute path of a script.
 
-    `python` is its path, `env` the caller's when left out. `searches`: PYTHONPATH counts, as it must for what imports
-    rclpy; without it the interpreter is isolated (-I). `root`: the folder that holds the module's package, where that
-    is not installed yet.
+    `python` is the path of the interpreter; `env` is by default the caller's environment. With `searches`, Python uses
+    PYTHONPATH, as programs that import rclpy need; without it, the interpreter is isolated (-I). `root` is the folder
+    that holds the module's package, if the package is not installed yet.
 
     Raises:
         ValueError: the script's path is relative.
     """
     kind = arguments[0]
     if not kind.startswith("-") and not Path(kind).is_absolute():
-        message = f"A script of ours is named by its absolute path, not {kind!r}"
+        message = f"a script needs an absolute path, not {kind!r}"
         raise ValueError(message)
     if root is not None:
         argv = [python, "-I", "-c", _MODULE_BELOW, str(root), *arguments[1:]]
     elif not searches:
         argv = [python, "-I", *arguments]
     elif not kind.startswith("-"):
-        argv = [python, *arguments]  # its folder comes first on the path, and is ours
+        argv = [python, *arguments]  # its folder comes first on the path, and belongs to the grader
     elif kind == "-m":
         argv = [python, "-c", _MODULE, *arguments[1:]]
     else:
@@ -65,7 +65,7 @@ def interpreter(
 
 
 def clean(env: Mapping[str, str]) -> Dict[str, str]:
-    """The environment without what leads to the current folder: empty and relative entries of search paths."""
+    """Return the environment without entries of search paths that mean the current folder: empty and relative ones."""
     cleaned = dict(env)
     for name in SEARCHED:
         if name in cleaned:
@@ -76,7 +76,7 @@ def clean(env: Mapping[str, str]) -> Dict[str, str]:
 
 
 def clean_own() -> None:
-    """Clean this process's own environment, for all that it looks for and starts from now on."""
+    """Clean the environment of this process, and so of the processes that it starts."""
     cleaned = clean(os.environ)
     for name in [name for name in os.environ if name not in cleaned]:
         del os.environ[name]

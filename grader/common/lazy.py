@@ -1,4 +1,4 @@
-"""numpy, imported when it is first used: it takes 0.1 s, and most commands need none.
+"""numpy, imported when it is first used: the import takes 0.1 s, and most commands do not need it.
 
 `from grader.common.lazy import np` is for modules that many commands import and few use.
 """
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 
 class _Lazy:
-    """Stands for a module. Any thread may be the first to use it: imports wait for each other."""
+    """A stand-in for a module that imports it on first use. It may be used from any thread."""
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -1,6 +1,6 @@
-"""The system's package manager: the names that it has for what the course needs, and the command that installs it.
+"""The system's package managers: how they name the packages that the course needs, and how they install them.
 
-Runs under any Python 3 before anything is installed, as machine.py does: syntax of Python 3.6.
+Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import os
@@ -16,33 +16,33 @@ PACMAN_LISTS = Path("/var/lib/pacman/sync")
 
 
 class Need(NamedTuple):
-    """Something that the system lacks, and the Debian or Ubuntu package that brings it."""
+    """Something that the system lacks, and the Debian or Ubuntu package that provides it."""
 
     what: str
     package: str
     lost: str = ""
-    """What does not work without it; empty where nothing does."""
+    """What does not work without it; empty if nothing works without it."""
 
 
 class Manager(NamedTuple):
-    """A package manager. Its commands are lines of a shell; `quiet` adds the options for where nobody answers."""
+    """A package manager. Its commands are shell lines; `quiet` has the options for when nobody can answer questions."""
 
     program: str
     systems: Tuple[str, ...]
-    """What its systems call themselves in /etc/os-release: ID and ID_LIKE."""
+    """The values of ID and ID_LIKE in /etc/os-release on systems that use it."""
     update: str
     install: str
     quiet: str
     names: Mapping[str, str]
-    """Its names by Debian's, where they differ."""
+    """Debian's name of a package -> the name here, where the two differ."""
     python: str = ""
-    """Its name of a Python, in terms of its version as 3.12 (`dotted`) or 312 (`joined`); that has the module venv."""
+    """The package of a Python with the module venv: a pattern with the version as 3.12 (`dotted`) or 312 (`joined`)."""
     headers: str = ""
     newer: str = ""
-    """A Python that it has beside a default that is too old, by Debian's name."""
+    """Debian's name of a Python -> a newer Python to install if the default Python is too old."""
 
     def packages(self, needs: Iterable[Need]) -> List[str]:
-        """Return its names for what is needed."""
+        """Return the names of the needed packages here."""
         names = (self._name(need.package) for need in needs)
         return list(dict.fromkeys(name for name in names if name))
 
@@ -64,7 +64,7 @@ MANAGERS = (
         systems=("debian", "ubuntu"),
         update="apt-get update",
         install="apt-get install -y",
-        # A mirror that does not answer, or another installation under way, is waited for, but not for ever.
+        # Wait for a mirror that does not answer, or for another installation, but not for ever.
         quiet="-q --no-install-recommends -o DPkg::Lock::Timeout=60 -o Acquire::http::Timeout=20",
         names={},
     ),
@@ -109,7 +109,7 @@ MANAGERS = (
 
 
 def find_manager(path: str) -> Optional[Manager]:
-    """Return the package manager of this system; where several are installed, the one its kind of system lives by."""
+    """Return the package manager of this system; if several are installed, the usual one for this distribution."""
     here = [manager for manager in MANAGERS if find_program(manager.program, path)]
     if len(here) > 1:
         own = _systems()
@@ -118,12 +118,12 @@ def find_manager(path: str) -> Optional[Manager]:
 
 
 def find_program(name: str, path: str) -> Optional[str]:
-    """Return where a program of the system is; an administrator's folders are searched too."""
+    """Return the path of a system program; /sbin and the like are searched too."""
     return shutil.which(name, path=os.pathsep.join([path, *SYSTEM_PATH]))
 
 
 def command(manager: Optional[Manager], needs: Sequence[Need], *, root: bool) -> str:
-    """Return the line to type that installs what is missing; Debian's names of it where no manager is known."""
+    """Return the command line that installs what is missing, with Debian's names if the manager is unknown."""
     if manager is None:
         return "your package manager (Debian's names: {})".format(", ".join(dict.fromkeys(n.package for n in needs)))
     sudo = "" if root else "sudo "
@@ -132,7 +132,7 @@ def command(manager: Optional[Manager], needs: Sequence[Need], *, root: bool) ->
 
 
 def script(manager: Manager, groups: Sequence[Sequence[Need]]) -> str:
-    """Return the lines of a shell that install each group by itself: one that cannot be had stops no other."""
+    """Return shell lines that install each group separately: a missing package must not stop the others."""
     lines = ["export LC_ALL=C DEBIAN_FRONTEND=noninteractive", *([manager.update + " -q"] if manager.update else [])]
     for group in groups:
         words = [_install(manager), manager.quiet, *manager.packages(group)]
@@ -141,7 +141,7 @@ def script(manager: Manager, groups: Sequence[Sequence[Need]]) -> str:
 
 
 def _install(manager: Manager) -> str:
-    # To refresh the lists alone, with an old system below, is what Arch warns of.
+    # Arch warns against refreshing the lists without upgrading the system.
     if manager.program == "pacman" and not any(PACMAN_LISTS.glob("*.db")):
         return manager.install.replace("-S ", "-Sy ")
     return manager.install

@@ -1,6 +1,6 @@
-"""What the system refuses, in one sentence with what to do: no room, no memory, no more files or processes.
+"""Errors of the system in one sentence with what to do: no disk space, no memory, no more files or processes.
 
-Like machine.py, this runs under any Python 3 before anything is installed: syntax of Python 3.6.
+Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import errno
@@ -10,13 +10,13 @@ from typing import Optional
 
 OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
 """What a disk answers when it is full or has failed, whatever is written; any other refusal is about one file."""
-ROOM = "make room there, or name another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
+ROOM = "free some space there, or set another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
 _NOT_ALLOWED = "see what `grader doctor` says"
 
 
 def refusal(error: BaseException) -> Optional[str]:
-    """The sentence for an error that the system has raised; None for any other error."""
+    """Return the sentence for an error that the system raised; None for any other error."""
     if isinstance(error, MemoryError):
         return sentence(errno.ENOMEM)
     if isinstance(error, RuntimeError) and "start new thread" in str(error):
@@ -28,7 +28,7 @@ def refusal(error: BaseException) -> Optional[str]:
 
 
 def of_the_machine(error: OSError) -> bool:
-    """Whether it is the machine that has no room, memory, files or processes left, whatever path was named."""
+    """Return whether the machine has no disk space, memory, files or processes left."""
     return error.errno in _SCARCE
 
 
@@ -41,12 +41,12 @@ def sentence(number: int, where: str = "", room: str = ROOM) -> str:
         return f"The disk cannot be written to{at}: {room}."
     if number == errno.EMFILE:
         most = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
-        return f"The grader may open no more than {most} files: raise that, as with `ulimit -n 4096`."
+        return f"The grader may not open more than {most} files: raise this limit, for example with `ulimit -n 4096`."
     if number == errno.ENFILE:
         return "This machine has too many files open: end other programs."
     if number == errno.ENOMEM:
         return "This machine has no memory left: end other programs, or grade fewer submissions at once (--jobs)."
     if number == errno.EAGAIN:
-        return "This machine starts no more processes for you: end other programs, or raise the limit (`ulimit -u`)."
-    what = os.strerror(number) if number else "it did not say why"
-    return f"The system refused what the grader needs{at} ({what}): {_NOT_ALLOWED}."
+        return "This machine cannot start more processes for you: end other programs, or raise the limit (`ulimit -u`)."
+    what = os.strerror(number) if number else "it gave no reason"
+    return f"The system did not allow something that the grader needs{at} ({what}): {_NOT_ALLOWED}."

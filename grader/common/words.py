@@ -1,4 +1,4 @@
-"""Words of the messages that people read: quoting what somebody else wrote, numbers, lists, the nearest name."""
+"""Helpers for messages: quote foreign text, write numbers and lists, find the most similar name."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 UNSAFE_CATEGORIES = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"})
-"""Unicode categories that could move the cursor, colour a terminal, turn the writing direction or hide text."""
+"""Unicode categories that could move the cursor, colour a terminal, reverse the writing direction or hide text."""
 
 
 def printable(text: str) -> str:
-    """The text on one line, with each character that could act on a terminal shown as a question mark."""
+    """Return the text on one line, with a question mark for each character that could control a terminal."""
     return "".join("?" if unicodedata.category(char) in UNSAFE_CATEGORIES else char for char in _one_line(text))
 
 
@@ -24,19 +24,19 @@ def _one_line(text: str) -> str:
 
 
 def shorten(text: str, limit: int = 60) -> str:
-    """The text on one line, printable, at most `limit` characters long."""
+    """Return the text on one line, printable, with at most `limit` characters."""
     line = printable(text[: 4 * limit])
     return line if len(line) <= limit and len(text) <= 4 * limit else line[: limit - 3].rstrip() + "..."
 
 
 def nearest(name: str, candidates: Iterable[str], alike: float = 0.6) -> str | None:
-    """The candidate most like `name`, or None when none is alike (difflib's ratio below `alike`)."""
+    """Return the candidate most similar to `name`; None if all of them have a difflib ratio below `alike`."""
     found = difflib.get_close_matches(name[:200], [candidate[:200] for candidate in candidates], n=1, cutoff=alike)
     return found[0] if found else None
 
 
 def a_list(items: Sequence[str], last: str = "and", *, most: int = 12) -> str:
-    """'a', 'a and b', 'a, b and c'; at most `most` are named."""
+    """Return 'a', 'a and b' or 'a, b and c', with at most `most` of the items."""
     shown = list(items[:most])
     if len(items) > len(shown):
         shown.append(f"{len(items) - len(shown)} more")
@@ -46,7 +46,7 @@ def a_list(items: Sequence[str], last: str = "and", *, most: int = 12) -> str:
 
 
 def number(value: float, unlike: float | None = None) -> str:
-    """The number in four digits, or in as many as tell it from `unlike`; NaN and infinity in words."""
+    """Return the number with four digits, or more if it would look equal to `unlike`; NaN and infinity in words."""
     if math.isnan(value):
         return "NaN (not a number)"
     if math.isinf(value):
@@ -58,5 +58,5 @@ def number(value: float, unlike: float | None = None) -> str:
 
 
 def count(amount: int, thing: str) -> str:
-    """'1 command', '20 commands'."""
+    """Return '1 command' or '20 commands'."""
     return f"{amount} {thing}" if amount == 1 else f"{amount} {thing}s"

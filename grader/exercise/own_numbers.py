@@ -59,7 +59,8 @@ def to_toml(numbers: OwnNumbers) -> str:
         char if char.isprintable() and char not in '"\\' else f"\\U{ord(char):08X}" for char in numbers.student
     )
     return (
-        "# Your own circle, drawn from your id: leave this file as it is, and write the numbers into your node.\n"
+        "# The numbers of your own circle. They come from your id: leave this file as it is, "
+        "and write them into your node.\n"
         f'student = "{escaped}"\n'
         f"radius_m = {numbers.radius_m}\n"
         f'direction = "{numbers.direction}"\n'

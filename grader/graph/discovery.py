@@ -1,4 +1,4 @@
-"""A node for one verb, and waiting until it has seen the whole graph: by what arrives, with a deadline."""
+"""A node for one verb, and waiting until it has discovered the whole graph, with a deadline."""
 
 from __future__ import annotations
 
@@ -25,39 +25,41 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 QUIET_S = 0.2
-"""The graph has settled when nothing new was heard for this long."""
+"""The graph has settled when nothing new has arrived for this long."""
 DEADLINE_S = 4.0
-"""For participants that are there (their ports are open) but say nothing, as a stopped process. A node without our
-profile whose answer was lost announces itself 3 s later (leaseAnnouncement), and then tells its endpoints."""
+"""How long to wait for participants whose ports are open but that send nothing, such as a stopped process. A node
+without our profile whose answer was lost announces itself 3 s later (leaseAnnouncement), and then sends its endpoints.
+"""
 NOTHING_THERE_S = 0.5
-"""How long to listen where it cannot be known whether anybody is there: as long as the real one does."""
+"""How long to listen if the number of participants is unknown: as long as the real `ros2` does."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
-"""How the nodes of the commands hear others of this machine."""
+"""The Fast DDS profile of the commands' nodes, for the loopback interface."""
 PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
 """The same for a node that runs for hours."""
 _RANGE, _PROFILE = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"
 _POLL_S = 0.01
 _WAKE_S = 0.1
-"""Python's own handling of Ctrl-C waits for calls into rclpy to return."""
+"""How long one call into rclpy may wait: Python handles Ctrl-C only after the call has returned."""
 HIGHEST_DOMAIN = 232
-"""Beyond it there are no ports (DDSI-RTPS, 9.6.1)."""
+"""The highest domain id that has ports (DDSI-RTPS, 9.6.1)."""
 PREFIX = "_ros2cli"
 _UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
 
 @contextmanager
 def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bool = False) -> Iterator[Node]:
-    """A hidden node that offers nothing. It leaves in order, so that others do not go on seeing it.
+    """Create a hidden node without services. It leaves the graph properly, so that others do not keep it in theirs.
 
-    A `patient` node announces itself seldom: it is to run for hours.
+    A `patient` node announces itself less often: it runs for hours.
 
     Raises:
-        Ros2Error: it could not be made: say, the domain id is wrong.
+        Ros2Error: the node could not be created, for example because the domain id is wrong.
     """
     _check_domain()
     _leave_shared_memory_out(PATIENT_PROFILE if patient else LOOPBACK_PROFILE)
     _leave_generator_out()
-    # No log file for a look at the graph. Signals stay Python's, since rclpy's shut down in the middle of a verb.
+    # A look at the graph needs no log file. Python handles the signals, since rclpy's handlers would shut down in the
+    # middle of a verb.
     arguments = ["--ros-args", "--disable-external-lib-logs"]
     try:
         rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
@@ -72,21 +74,21 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
     except Exception as error:
         rclpy.try_shutdown()
         told = str(error).strip().splitlines() or [type(error).__name__]
-        message = f"No ROS 2 node could be made: {told[0]}"
+        message = f"The ROS 2 node could not be created: {told[0]}"
         raise Ros2Error(message) from error
     try:
         yield node
     except ExternalShutdownException as error:
         raise KeyboardInterrupt from error
     finally:
-        # A second Ctrl-C must not leave half a node behind.
+        # A second Ctrl-C must not interrupt the clean-up of the node.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         node.destroy_node()
         rclpy.try_shutdown()
 
 
 def _leave_shared_memory_out(profile: Path) -> None:
-    """Under LOCALHOST, rmw_fastrtps adds shared memory whatever a profile says; loopback.xml says why not here."""
+    """Set the profile's variables. loopback.xml says why these nodes avoid the shared memory that LOCALHOST adds."""
     if os.environ.get(_RANGE) == "LOCALHOST" and os.environ.get(_PROFILE) == str(FASTDDS_PROFILE):
         os.environ.update({_RANGE: "SYSTEM_DEFAULT", _PROFILE: str(profile)})
 
@@ -97,9 +99,9 @@ def _this_machine_only() -> bool:
 
 
 def _leave_generator_out() -> None:
-    """Import rosidl_generator_py without its templates and parser, a seventh of what a verb computes before it listens.
+    """Import rosidl_generator_py without its templates and parser: they take a seventh of a verb's start.
 
-    Message modules take one small function from it, and it does without the rest where `em` is not installed.
+    Message modules need only one small function of it. The package itself omits the rest if `em` is not installed.
     """
     if "em" not in sys.modules:
         sys.modules["em"] = None  # type: ignore[assignment]
@@ -108,7 +110,7 @@ def _leave_generator_out() -> None:
 
 
 def _check_domain() -> None:
-    """Say what is wrong with a domain id; Fast DDS would end the process."""
+    """Raise Ros2Error for a wrong domain id; Fast DDS would end the process."""
     text = os.environ.get("ROS_DOMAIN_ID", "") or "0"
     if not text.isdecimal() or int(text) > HIGHEST_DOMAIN:
         message = f"ROS_DOMAIN_ID is '{text}'; a whole number from 0 to {HIGHEST_DOMAIN} was expected"
@@ -116,7 +118,7 @@ def _check_domain() -> None:
 
 
 class Settling:
-    """Whether the graph that a node sees has come to rest: by what arrives, with a deadline."""
+    """Waits until the graph that a node sees does not change any more, with a deadline."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -124,15 +126,15 @@ class Settling:
         self._seen: object = None
 
     def observe(self) -> None:
-        """Look whether anything has changed since the last look."""
+        """Look at the graph, and note whether it has changed since the last look."""
         graph = _graph(self._node)
         if graph != self._seen:
             self._seen, self._changed = graph, time.monotonic()
 
     def settle(self, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
-        """Wait until nothing new came for 0.2 s and all participants of this machine have told what they have.
+        """Wait until nothing new has arrived for 0.2 s and all participants of this machine have sent what they have.
 
-        `enough` ends the wait earlier. `deadline_s` is the longest wait, if the caller named one. Returns whether that
+        `enough` can end the wait earlier. `deadline_s` is the longest wait; None uses the default. Returns whether that
         was so in time.
         """
         begun = time.monotonic()
@@ -150,18 +152,18 @@ class Settling:
 
 
 def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
-    """Wait until the graph that a new node sees has settled, or until it is `enough`; returns whether in time."""
+    """Wait until the graph that a new node sees has settled, or until `enough`; return whether it did in time."""
     return Settling(node).settle(enough, deadline_s)
 
 
 def published(node: Node, topic: str) -> bool:
-    """Whether anybody else publishes on a topic; the node itself does so on /rosout."""
+    """Return whether another node publishes on the topic; the node itself publishes on /rosout."""
     own = node.get_name()
     return any(publisher.node_name != own for publisher in node.get_publishers_info_by_topic(topic))
 
 
 def spin_until(node: Node, done: Callable[[], bool], timeout_s: float | None = None) -> bool:
-    """Handle what comes until it is `done` or the time is up; returns whether it is done."""
+    """Spin the node until `done` returns true or the time is up; return whether it is done."""
     end = None if timeout_s is None else time.monotonic() + timeout_s
     while not done():
         left = _WAKE_S if end is None else min(_WAKE_S, end - time.monotonic())
@@ -172,22 +174,22 @@ def spin_until(node: Node, done: Callable[[], bool], timeout_s: float | None = N
 
 
 def nap(duration_s: float) -> None:
-    """Sleep; a signal ends it at once, unlike a wait inside rclpy."""
+    """Sleep; a signal ends the sleep at once, unlike a wait inside rclpy."""
     if duration_s > 0:
         time.sleep(duration_s)
 
 
 def _graph(node: Node) -> object:
-    """All that can change while the graph is being heard of."""
+    """Return everything that can change while the graph is being discovered."""
     topics = node.get_topic_names_and_types()
     counts = [(name, node.count_publishers(name), node.count_subscribers(name)) for name, _ in topics]
     return (sorted(node.get_node_names_and_namespaces()), topics, counts, node.get_service_names_and_types())
 
 
 def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool:
-    """Whether as many participants were heard of as there are on this machine, and each told the names of its nodes.
+    """Return whether all participants of this machine were discovered, with the names of their nodes.
 
-    Those of other machines cannot be counted: the wait for them is as long as the user named, `named_s`.
+    Participants of other machines cannot be counted; the wait for them is `named_s`, which the user chose.
     """
     expected = _participants(node.context.get_domain_id())
     endpoints: list[Any] = []
@@ -203,7 +205,7 @@ def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool
 
 
 def _participants(domain: int) -> int | None:
-    """How many DDS participants this machine has in a domain: each opens a port of its own; None if unknown.
+    """Count the DDS participants of this machine in a domain, by their open ports; None if they cannot be counted.
 
     Ports by the DDSI-RTPS standard, 9.6.1.1: metatraffic unicast = 7400 + 250 * domain + 10 + 2 * participant.
     """

@@ -1,4 +1,4 @@
-"""What a node has heard of the graph: every other node, and its publishers and subscriptions. Needs rclpy."""
+"""What a node has discovered of the graph: the other nodes, and their publishers and subscriptions. Needs rclpy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class End:
-    """A publisher or subscription, like `grader.trial.recording.Endpoint`, which would cost the import of numpy."""
+    """A publisher or subscription, like `grader.evidence.recording.Endpoint`, whose module would import numpy."""
 
     kind: str
     node: str
@@ -21,14 +21,14 @@ class End:
 
 @dataclass(frozen=True)
 class Heard:
-    """Everybody but the one who listens: full names of the nodes, one entry a node, and their ends; sorted."""
+    """The full names of all other nodes, one entry per node, and their publishers and subscriptions; sorted."""
 
     nodes: tuple[str, ...]
     ends: tuple[End, ...]
 
 
 def heard(node: Node) -> Heard:
-    """What `node` has heard of by now; `discovery.settle` waits until that is all."""
+    """Return what `node` has discovered so far; call `discovery.settle` first to get the whole graph."""
     own = node.get_fully_qualified_name()
     names = [_full(name, namespace) for name, namespace in node.get_node_names_and_namespaces()]
     ends = []

@@ -1,7 +1,7 @@
-"""The ROS graph as a picture: which nodes and topics it shows, and the same as DOT or as text. Pure data.
+"""The ROS graph as a picture: which nodes and topics it shows, and how to write it as DOT or as text.
 
-Nodes are ellipses, topics are boxes, and an arrow goes the way the messages go. A graph comes from the live system
-(rqt_graph.py) or from a recording (`grader.trial.recording.Graph`); here nobody asks which.
+Nodes are ellipses, topics are boxes, and arrows point in the direction of the messages. A graph comes from the live
+system (rqt_graph.py) or from a recording (`grader.evidence.recording.Graph`).
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 DEBUG_TOPICS = frozenset({"/rosout", "/rosout_agg", "/parameter_events", "/clock", "/statistics", "/diagnostics"})
-"""Topics that (nearly) every node has, or that serve tools: rqt_graph calls them debug."""
+"""Topics that nearly every node has, or that are for tools: rqt_graph calls them debug topics."""
 
 DEBUG_NODES = ("/rqt_gui", "/rqt_graph", "/rviz", "/rosbag2_")
-"""How the names of tools begin."""
+"""The beginnings of the names of tools' nodes."""
 
 
 class Endpoint(Protocol):
-    """A publisher or subscription; `grader.trial.recording.Endpoint` is one."""
+    """A publisher or subscription; `grader.evidence.recording.Endpoint` is one."""
 
     @property
     def kind(self) -> str:
@@ -38,19 +38,19 @@ class Endpoint(Protocol):
 
 @dataclass(frozen=True)
 class Show:
-    """What of a graph is shown: as the boxes to tick in the real rqt_graph."""
+    """Which parts of a graph are shown, like the check boxes of the real rqt_graph."""
 
     debug: bool = False
     """Debug topics (/rosout, /parameter_events, /clock) and the nodes of tools."""
     hidden: bool = False
-    """Names with a part that begins with "_": the inside of actions, nodes of tools."""
+    """Names with a part that begins with "_": the topics of actions, and nodes of tools."""
     dead_ends: bool = True
     """Topics to which nobody subscribes, or on which nobody publishes."""
 
 
 @dataclass(frozen=True)
 class Node:
-    """A node by its full name; `count` is above 1 where several nodes have the same name, which is a mistake."""
+    """A node by its full name; `count` is above 1 if several nodes have the same name, which is a mistake."""
 
     name: str
     count: int = 1
@@ -58,7 +58,7 @@ class Node:
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic with the full names of the nodes at its two ends, each sorted and named once."""
+    """A topic with the full names of its publishers and subscribers, sorted and without duplicates."""
 
     name: str
     publishers: tuple[str, ...]
@@ -66,30 +66,30 @@ class Topic:
 
     @property
     def dead_end(self) -> bool:
-        """Whether no message can arrive: one of its ends is nobody."""
+        """Whether no message can arrive, because the topic has no publisher or no subscriber."""
         return not (self.publishers and self.subscribers)
 
 
 @dataclass(frozen=True)
 class Picture:
-    """What is to be drawn. Nodes and topics are sorted by name, so that equal graphs give equal pictures."""
+    """The nodes and topics to draw, sorted by name, so that equal graphs give equal pictures."""
 
     nodes: tuple[Node, ...]
     topics: tuple[Topic, ...]
 
     @property
     def alone(self) -> tuple[Node, ...]:
-        """The nodes that no arrow touches."""
+        """The nodes without arrows."""
         touched = {name for topic in self.topics for name in (*topic.publishers, *topic.subscribers)}
         return tuple(node for node in self.nodes if node.name not in touched)
 
 
 def picture(nodes: Iterable[str], endpoints: Iterable[Endpoint], show: Show | None = None) -> Picture:
-    """Choose what is shown of the nodes (full names, one entry a node) and their publishers and subscriptions."""
+    """Choose what to show of the nodes (full names, one entry per node) and their publishers and subscriptions."""
     chosen = show or Show()
     ends = list(endpoints)
     counts = Counter(nodes)
-    # An endpoint can be heard of before its node.
+    # An endpoint can be discovered before its node.
     counts.update({end.node: 1 for end in ends if end.node not in counts})
     shown = {name: count for name, count in counts.items() if _node_shown(name, chosen)}
     topics = []
@@ -132,14 +132,14 @@ _BOX = 'shape=box, fillcolor="#fff8e1", color="#ef6c00"'
 
 
 def to_dot(drawn: Picture) -> str:
-    """The picture in Graphviz's language; each node and topic stands in it under its own name."""
+    """Return the graph in DOT, Graphviz's language; each node and topic has its own name there."""
     names = {node.name for node in drawn.nodes}
     lines = []
     for node in drawn.nodes:
         twice = f", label={_quoted(f'{node.name}{chr(10)}({node.count} nodes of this name)')}" if node.count > 1 else ""
         lines.append(f"{_quoted(node.name)} [{_ELLIPSE}{twice}];")
     for topic in drawn.topics:
-        # A topic may be called like a node; in DOT they would be one.
+        # A topic may have the same name as a node; in DOT they would be one node.
         clash = f", label={_quoted(topic.name)}" if topic.name in names else ""
         key = _quoted(f"topic {topic.name}" if clash else topic.name)
         lines.append(f"{key} [{_BOX}{clash}];")
@@ -158,11 +158,11 @@ def _quoted(text: str) -> str:
 
 @dataclass(frozen=True)
 class _Strokes:
-    """How lines are drawn: into the topic's row from the left, out of it to the right."""
+    """The characters that draw the lines: into the topic's row from the left, out of it to the right."""
 
     one: str
     into: tuple[str, str, str]
-    """The first of several publishers, one between, the last."""
+    """For the first of several publishers, one in the middle, and the last."""
     out: tuple[str, str, str]
 
 
@@ -171,17 +171,17 @@ _ASCII = _Strokes("--->", ("-+->", "-+  ", "-+  "), ("-+->", " +->", " +->"))
 
 
 def to_text(drawn: Picture, *, ascii_only: bool = False) -> str:
-    """The picture for a terminal: a line a topic, its publishers on the left, its subscribers on the right."""
+    """Return the picture for a terminal: one line per topic, publishers on the left, subscribers on the right."""
     strokes = _ASCII if ascii_only else _UNICODE
     counts = {node.name: node.count for node in drawn.nodes}
-    # What carries messages first.
+    # Topics with messages come first.
     topics = sorted(drawn.topics, key=lambda topic: (topic.dead_end, not topic.publishers, topic.name))
     left = max((len(_node(name, counts)) for topic in topics for name in topic.publishers), default=0)
     middle = max((len(topic.name) + 2 for topic in topics), default=0)
     lines = [line for topic in topics for line in _rows(topic, counts, strokes, left, middle)]
     if drawn.alone:
         lines += [""] if lines else []
-        lines += [f"{_node(node.name, counts)}  no topic of those shown" for node in drawn.alone]
+        lines += [f"{_node(node.name, counts)}  none of the topics shown" for node in drawn.alone]
     legend = f"(node) {strokes.one} [topic] {strokes.one} (node): an arrow goes the way the messages go."
     return "\n".join([*lines, "", legend]) + "\n"
 

@@ -1,7 +1,7 @@
-"""DOT to a picture: Graphviz places and draws, always with the same font.
+"""Draw DOT as a picture with Graphviz, always with the same font.
 
-Graphviz runs in a process of its own: fontconfig reads its settings from the environment and warns on standard error
-about newer files of the system, and neither is the caller's business.
+Graphviz runs in a process of its own, because fontconfig reads its settings from the environment and writes warnings to
+standard error. The caller must not be affected by either.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ _HANG_S = 60.0
 
 
 def render(dot: str, kind: Format) -> bytes:
-    """Lay out a graph in DOT and draw it: SVG is UTF-8 text, PNG has 144 pixels an inch, json0 says where all lies.
+    """Lay out a graph in DOT and draw it: SVG is UTF-8 text, PNG has 144 pixels per inch, json0 has all positions.
 
     Raises:
-        MachineError: Graphviz is not here or cannot draw.
+        MachineError: Graphviz is not installed or cannot draw.
     """
     with tempfile.TemporaryDirectory() as folder:
         start = interpreter("-m", "grader.graph.layout", kind, env={**os.environ, **_our_font(Path(folder))})
@@ -36,23 +36,23 @@ def render(dot: str, kind: Format) -> bytes:
                 start.argv, input=dot.encode(), capture_output=True, env=start.env, timeout=_HANG_S, check=False
             )
         except subprocess.TimeoutExpired as error:
-            message = f"Graphviz did not draw the graph within {_HANG_S:.0f} s; --output graph.dot writes it undrawn."
+            message = f"Graphviz did not draw the graph within {_HANG_S:.0f} s; --output graph.dot needs no drawing."
             raise MachineError(message) from error
     if done.returncode != 0:
         last = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
         message = (
-            f"The graph could not be drawn ({last}). pygraphviz draws it: run `make demo` in the course's folder to "
+            f"The graph could not be drawn ({last}). pygraphviz is needed: run `make demo` in the course's folder to "
             "install it. Without it, --text and --output graph.dot work."
         )
         raise MachineError(message)
     if kind == "svg":
-        # A viewer without this font takes the next: Verdana is as wide, most sans-serif fonts are narrower.
+        # A viewer without this font takes the next one: Verdana is as wide, most sans-serif fonts are narrower.
         return done.stdout.replace(b'font-family="DejaVu Sans"', b'font-family="DejaVu Sans,Verdana,sans-serif"')
     return done.stdout
 
 
 def _our_font(folder: Path) -> dict[str, str]:
-    """Let fontconfig see matplotlib's DejaVu Sans only: the same widths everywhere, also where there is no font."""
+    """Let fontconfig see only matplotlib's DejaVu Sans, so that the widths are the same on every machine."""
     spec = find_spec("matplotlib")
     if spec is None or spec.origin is None:
         return {}

@@ -1,4 +1,4 @@
-"""A look at the graph: nodes, topics, services and actions as plain data, without rclpy."""
+"""A snapshot of the graph: nodes, topics, services and actions as plain data, without rclpy."""
 
 from __future__ import annotations
 
@@ -67,22 +67,22 @@ class Look:
         return [end for end in self.endpoints if end.topic == topic and end.publishes == publishes]
 
     def to_dict(self) -> dict[str, Any]:
-        """As JSON can hold it."""
+        """Return the look as data for JSON."""
         return asdict(self)
 
 
 def shown(found: tuple[Named, ...], *, all_of_them: bool) -> list[Named]:
-    """Names and types, without the hidden ones unless `all_of_them` are asked for."""
+    """Return names and types; the hidden ones only with `all_of_them`."""
     return [(name, types) for name, types in found if all_of_them or not hidden(name)]
 
 
 def types_of(found: tuple[Named, ...], name: str) -> tuple[str, ...]:
-    """The types of a name; empty when it is not there."""
+    """Return the types of a name; empty if there is no such name."""
     return next((types for known, types in found if known == name), ())
 
 
 def from_dict(data: dict[str, Any]) -> Look:
-    """What `to_dict` made, from JSON."""
+    """Return the look that `to_dict` wrote."""
     return Look(
         nodes=tuple(
             NodeLook(node.pop("name"), **{key: _named(value) for key, value in node.items()}) for node in data["nodes"]

@@ -1,4 +1,4 @@
-"""Names of the graph: which are hidden, what types they have, which one was meant."""
+"""Names in the graph: which are hidden, which types they have, how to complete them."""
 
 from __future__ import annotations
 
@@ -17,29 +17,29 @@ def hidden(name: str) -> bool:
 
 
 def absolute(name: str) -> str:
-    """The name as the graph has it, with its slash."""
+    """Return the full name, which begins with a slash."""
     return name if name.startswith("/") else f"/{name}"
 
 
 def shown(found: Iterable[tuple[str, list[str]]], *, all_of_them: bool) -> list[tuple[str, list[str]]]:
-    """Names and types sorted, without the hidden ones unless `all_of_them` are asked for."""
+    """Return names and types, sorted; the hidden ones only with `all_of_them`."""
     return sorted((name, types) for name, types in found if all_of_them or not hidden(name))
 
 
 def nodes(node: Node, *, all_of_them: bool = False) -> list[str]:
-    """The full names of all nodes, sorted; one that several have is there several times."""
+    """Return the full names of all nodes, sorted; a name that several nodes have is there several times."""
     found = [f"{namespace.rstrip('/')}/{name}" for name, namespace in node.get_node_names_and_namespaces()]
     return sorted(name for name in found if all_of_them or not hidden(name))
 
 
 def add_wait(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the real `ros2` about finding the graph; there is no daemon here that could be left out."""
+    """Add the options of the real `ros2` for discovery; --no-daemon has no effect, since these verbs use no daemon."""
     parser.add_argument("--no-daemon", action="store_true", help="as always here: there is no daemon")
     parser.add_argument("--spin-time", type=float, metavar="S", help="wait at most this long for the graph")
 
 
 def completed(kind: str) -> Any:  # noqa: ANN401
-    """A completer of the names of one kind: "topic", "service", "node" or "action"."""
+    """Return a completer for the names of one kind: "topic", "service", "node" or "action"."""
 
     def names(**_: Any) -> list[str]:  # noqa: ANN401
         from grader.graph.discovery import cli_node, settle

@@ -1,4 +1,4 @@
-"""What a node sees of the graph, as a look."""
+"""Take a look of the graph that a node sees."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def snapshot(node: Node) -> Look:
-    """The graph as `node` sees it now; `discovery.settle` waits until that is all."""
+    """Return the graph as `node` sees it now; call `discovery.settle` first to get the whole graph."""
     topics = _named(node.get_topic_names_and_types())
     services = _named(node.get_service_names_and_types())
     return Look(

@@ -12,13 +12,13 @@ if TYPE_CHECKING:
 
 
 class Ros2Error(GraderError):
-    """What was asked for cannot be done; the message is all that is printed. Without one the exit code says it."""
+    """The verb cannot do what the user asked for. The message is all that is printed; if it is empty, nothing is."""
 
     exit_code = 1
 
 
 def did_you_mean(name: str, candidates: Iterable[str], text: str = "") -> str:
-    """`text`, and below it the candidate most like `name`, if any is."""
+    """Return `text`, and on the next line the candidate most similar to `name`, if there is one."""
     others = [candidate for candidate in candidates if candidate != name]
     found = others[0] if len(others) == 1 and others[0].endswith(f"/{name}") else nearest(name, others)
     if not found and len(name) > 2:

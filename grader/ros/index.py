@@ -1,6 +1,6 @@
-"""What is installed, read from the ament index of every prefix on AMENT_PREFIX_PATH: packages, executables, types.
+"""Packages, executables and types that are installed, read from the ament index of each prefix on AMENT_PREFIX_PATH.
 
-Only files are read, so that verbs about them need no rclpy.
+It only reads files, so the verbs that use it do not need rclpy.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ KINDS = ("msg", "srv", "action")
 
 
 def prefixes() -> list[Path]:
-    """The folders on AMENT_PREFIX_PATH that are there: overlays first."""
+    """Return the existing folders on AMENT_PREFIX_PATH; overlays come first."""
     return [path for path in map(Path, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)) if path.is_dir()]
 
 
 def _resources(kind: str) -> dict[str, Path]:
-    """Name of each package with a resource of this kind, with its prefix; sorted, the first prefix counts."""
+    """Return the packages that have a resource of this kind, each with its first prefix; sorted by name."""
     found: dict[str, Path] = {}
     for prefix in prefixes():
         for file in _entries(prefix / _INDEX / kind):
@@ -33,15 +33,16 @@ def _resources(kind: str) -> dict[str, Path]:
 
 
 def packages() -> dict[str, Path]:
-    """Name and prefix of each package, sorted by name."""
+    """Return the name and the prefix of each package, sorted by name."""
     return _resources("packages")
 
 
 def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
-    """The prefix of a package.
+    """Return the prefix of a package.
 
     Raises:
-        Ros2Error: with the text `unknown`, and the nearest name of those that are `likely`, else of all.
+        Ros2Error: there is no such package. The message is `unknown` with the most similar name among `likely`, or
+    among all names.
     """
     found = packages()
     if package not in found:
@@ -50,22 +51,22 @@ def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
 
 
 def executables(package: str, unknown: str) -> list[Path]:
-    """The executables of a package, in the order of their paths: what `ros2 run` can start.
+    """Return the executables of a package that `ros2 run` can start, sorted by path.
 
     Raises:
-        Ros2Error: there is no such package, in the words of `unknown`.
+        Ros2Error: there is no such package. The message is `unknown`.
     """
     folder = prefix_of(package, unknown) / "lib" / package
     return sorted(path for path in _walk(folder) if path.is_file() and os.access(path, os.X_OK))
 
 
 def interface_packages() -> dict[str, Path]:
-    """Name and prefix of each package that has messages, services or actions."""
+    """Return the name and the prefix of each package that has messages, services or actions."""
     return _resources("rosidl_interfaces")
 
 
 def interfaces(package: str) -> list[str]:
-    """The interfaces of one package, sorted: "geometry_msgs/msg/Twist"; none for a package without interfaces.
+    """Return the interfaces of a package, sorted, for example "geometry_msgs/msg/Twist"; empty if it has none.
 
     Raises:
         Ros2Error: there is no such package.
@@ -80,16 +81,16 @@ def interfaces(package: str) -> list[str]:
 
 
 def all_interfaces(kind: str | None = None) -> list[str]:
-    """The interfaces of all packages, of one kind ("msg", "srv" or "action") if it is given."""
+    """Return the interfaces of all packages, or only those of one kind ("msg", "srv" or "action")."""
     found = (name for package in interface_packages() for name in interfaces(package))
     return [name for name in found if kind in (None, name.split("/")[1])]
 
 
 def interface_file(name: str) -> Path:
-    """The file that defines an interface: "geometry_msgs/msg/Twist" -> .../geometry_msgs/msg/Twist.msg.
+    """Return the file that defines an interface: "geometry_msgs/msg/Twist" -> .../geometry_msgs/msg/Twist.msg.
 
     Raises:
-        Ros2Error: there is none of this name.
+        Ros2Error: there is no interface with this name.
     """
     parts = name.split("/")
     if not all(parts):
@@ -101,7 +102,7 @@ def interface_file(name: str) -> Path:
     prefix = prefix_of(parts[0], f"Unknown package '{parts[0]}'", interface_packages())
     found = prefix / "share" / parts[0] / parts[1] / f"{parts[2]}.{parts[1]}"
     if not found.is_file():
-        # The name alone is compared: what is equal in all of them must not make them alike.
+        # Compare only the last part of the name, since the other parts are equal in all of them.
         known = interfaces(parts[0]) if parts[0] in interface_packages() else []
         ends = {candidate.rsplit("/", 1)[1]: candidate for candidate in known}
         hint = did_you_mean(parts[2], ends).replace("Did you mean '", f"Did you mean '{parts[0]}/{parts[1]}/")
@@ -111,7 +112,7 @@ def interface_file(name: str) -> Path:
 
 
 def _meant(name: str) -> list[str]:
-    """What a name that is too short may mean: "Twist", "geometry_msgs/Twist" -> "geometry_msgs/msg/Twist"."""
+    """Return the full names of a short name: "Twist" or "geometry_msgs/Twist" -> "geometry_msgs/msg/Twist"."""
     package, _, last = name.rpartition("/")
     found = [full for full in all_interfaces() if full.endswith(f"/{last}") and full.startswith(package)]
     return found or all_interfaces()

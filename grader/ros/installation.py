@@ -1,7 +1,7 @@
-"""Which ROS 2 is here, and the environment that child processes need for it.
+"""Which ROS 2 is installed, and the environment that child processes need for it.
 
-A sourced ROS 2 Jazzy is used where there is one, else the wheels of this Python's own environment. The grader's
-own process never imports rclpy: all of ROS 2 lives in child processes with the environment made here.
+If a ROS 2 Jazzy is sourced, it is used; otherwise the wheels in this Python's environment are. The grader's own process
+never imports rclpy: everything of ROS 2 runs in child processes, with the environment made here.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 DISTRO = "jazzy"
 SEARCHED = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH")
-"""The search paths by which ROS 2 and overlays are found."""
+"""The search paths that lead to ROS 2 and to overlays."""
 FASTDDS_PROFILE = Path(__file__).with_name("fastdds.xml")
 _UNWATCHED = (
     "ROS_LOG_DIR",
@@ -33,7 +33,7 @@ _UNWATCHED = (
     "PYTHONUNBUFFERED",
     "OPENBLAS_NUM_THREADS",
 )
-"""What an environment holds for a run that nobody watches; a user's own nodes have what the user wants."""
+"""Variables for a run in a trial. Nodes that users start themselves get the users' own settings."""
 _THEIRS = frozenset(
     {
         *("HOME", "LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"),
@@ -46,13 +46,13 @@ _PYTHON_LIB = Path(f"lib/python{sys.version_info.major}.{sys.version_info.minor}
 
 @dataclass(frozen=True)
 class Ros:
-    """A ROS 2 installation; every list is in the order of search."""
+    """A ROS 2 installation; the lists are in search order."""
 
     kind: Literal["sourced", "wheels"]
     version: str
     """The version of rclpy."""
     prefix: Path
-    """The ament prefix that holds rclpy: like /opt/ros/jazzy."""
+    """The ament prefix that holds rclpy, for example /opt/ros/jazzy."""
     prefixes: tuple[Path, ...]
     python: Path
     python_path: tuple[Path, ...]
@@ -72,10 +72,10 @@ class Ros:
 
 
 def find_ros(env: Mapping[str, str] = os.environ) -> Ros:
-    """The ROS 2 Jazzy to use: the sourced one, else the wheels beside this Python.
+    """Return the ROS 2 Jazzy to use: the sourced one, or else the wheels beside this Python.
 
     Raises:
-        MachineError: neither is here.
+        MachineError: there is neither.
     """
     ros = _sourced(env) or _wheels(Path(sys.prefix))
     if ros is None:
@@ -84,7 +84,7 @@ def find_ros(env: Mapping[str, str] = os.environ) -> Ros:
 
 
 def _why_none(env: Mapping[str, str]) -> str:
-    """Why there is no ROS 2 Jazzy, and what to type."""
+    """Return why there is no ROS 2 Jazzy, and what to type."""
     made_for = _made_for(Path(sys.prefix))
     if made_for is not None:
         return (
@@ -100,7 +100,7 @@ def _why_none(env: Mapping[str, str]) -> str:
 
 
 def _made_for(prefix: Path) -> str | None:
-    """The sourced ROS 2 that this environment was set up for (grader.setup.bootstrap); None for the wheels."""
+    """Return the sourced ROS 2 that this environment was set up for (grader.setup.bootstrap); None for the wheels."""
     try:
         ros = json.loads((prefix / "course-setup.json").read_text(encoding="utf-8"))["ros"]
     except (OSError, ValueError, KeyError, TypeError):
@@ -109,7 +109,7 @@ def _made_for(prefix: Path) -> str | None:
 
 
 def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: int | None = 0) -> dict[str, str]:
-    """The whole environment of a child process: nothing of the caller's leaks in.
+    """Return the whole environment of a child process; nothing from the caller's environment gets in.
 
     `overlays` are install folders of packages (install/<package>), searched first. `home` must be writable: HOME,
     ROS_LOG_DIR and TMPDIR lie there. `domain` is None in a room (grader.sandbox), which has a network of its own.
@@ -120,27 +120,28 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
         "HOME": str(home),
         "LANG": "C.UTF-8",
         "PYTHONNOUSERSITE": "1",
-        # Same order of sets and dictionaries in every run: the same submission, the same report.
+        # Sets and dictionaries have the same order in every run, so that equal submissions get equal reports.
         "PYTHONHASHSEED": "0",
-        # A line printed is a line seen, as on a terminal.
+        # Every printed line arrives at once, as on a terminal.
         "PYTHONUNBUFFERED": "1",
-        # numpy, which geometry_msgs imports, starts a thread for each processor; they turn in circles for 0.1 s.
+        # numpy, which geometry_msgs imports, starts one thread per processor; they busy-wait for 0.1 s.
         "OPENBLAS_NUM_THREADS": "1",
         "ROS_DISTRO": DISTRO,
         "ROS_VERSION": "2",
         "ROS_PYTHON_VERSION": "3",
         "ROS_LOG_DIR": str(home / "log"),
         "ROS_DOMAIN_ID": str(domain or 0),
-        # LOCALHOST brings shared memory back, whatever the transports below say; room and cell do not share any.
+        # LOCALHOST turns shared memory on again despite the transports below; a room and a cell do not share memory.
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET" if domain is None else "LOCALHOST",
         "RCUTILS_COLORIZED_OUTPUT": "0",
         "AMENT_PREFIX_PATH": os.pathsep.join(map(str, [*local, *ros.prefixes])),
         "CMAKE_PREFIX_PATH": os.pathsep.join(map(str, [*local, *ros.prefixes])),
         "LD_LIBRARY_PATH": os.pathsep.join(map(str, [*(p / "lib" for p in local), *ros.library_path])),
         "PYTHONPATH": os.pathsep.join(map(str, [*(p / _PYTHON_LIB for p in local), *ros.python_path])),
-        # The wheels' .pth would start every interpreter a second time, and mix their libraries with a sourced ROS.
+        # The .pth file of the wheels would start every interpreter a second time, and mix their libraries with a
+        # sourced ROS.
         "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1",
-        # `msg.linear.x = 2` is one clear error instead of garbage on the wire.
+        # `msg.linear.x = 2` gives one clear error instead of garbage on the wire.
         "ROS_PYTHON_CHECK_FIELDS": "1",
         # Shared memory would need a common /dev/shm, which a sandboxed node does not have.
         "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
@@ -151,16 +152,15 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
 
 
 def domain_of(uid: int) -> int:
-    """The ROS domain id of a user, 1 to 101: users of one machine whose ids lie close together never share one.
+    """Return a user's ROS domain id, 1 to 101. Users whose user ids are close together never share a domain.
 
-    101 is the highest whose ports lie below those that Linux gives out by itself; 0 is what everybody has who chose
-    none.
+    101 is the highest domain whose ports are below Linux's range of ephemeral ports. 0 is the default domain of ROS 2.
     """
     return 1 + uid % 101
 
 
 def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int | None = None) -> dict[str, str]:
-    """The environment of a node that a user starts for themselves: their own, and what ROS 2 needs on top.
+    """Return the environment of a node that a user starts: the user's own environment, with what ROS 2 needs added.
 
     What the user has set stays theirs, workspaces that they sourced are searched first. `domain` is the one to use,
     else what they have set. Else it is one of the user's own, since classmates on one machine must not drive each
@@ -175,7 +175,7 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
     for name in _UNWATCHED:
         needed.pop(name, None)
     if " " in str(ros.python):
-        # What a workspace's setup.bash starts without quotes; it needs nothing but the standard library.
+        # A workspace's setup.bash starts this Python without quotes; it needs only the standard library.
         needed["COLCON_PYTHON_EXECUTABLE"] = str(ros.python.resolve())
     if "ROS_LOG_DIR" not in env and "ROS_HOME" not in env and not os.access(home, os.W_OK):
         needed["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir(), f"ros-log-{os.getuid()}"))
@@ -198,7 +198,7 @@ def who_hears(env: Mapping[str, str]) -> str:
 
 
 def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str:
-    """One search path: the user's own entries first, without what belongs to another ROS 2 or to an older underlay."""
+    """Return a search path: the user's own entries first, without those of another ROS 2 or of an older underlay."""
     ours = [entry for entry in needed.get(name, "").split(os.pathsep) if entry]
     prefixes = [Path(entry) for entry in env.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
     current = needed["AMENT_PREFIX_PATH"].split(os.pathsep)
@@ -209,7 +209,7 @@ def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str
 
 
 def _users_path(ros: Ros, env: Mapping[str, str]) -> str:
-    """PATH with our commands on it: behind those of a sourced ROS 2, else first, so that `python3` has rclpy too."""
+    """Return PATH with our commands: after those of a sourced ROS 2, or else first, so that `python3` has rclpy."""
     path = env.get("PATH", "/usr/local/bin:/usr/bin:/bin")
     ours = str(Path(sys.prefix, "bin"))
     if ours in path.split(os.pathsep):
@@ -225,7 +225,7 @@ def _sourced(env: Mapping[str, str]) -> Ros | None:
     if prefix is None:
         return None
 
-    # Only the installation's own entries: a student's sourced workspace must not shadow anything.
+    # Take only the installation's own entries: a workspace that a student sourced must not hide anything.
     def own(variable: str) -> tuple[Path, ...]:
         entries = [Path(p) for p in env.get(variable, "").split(os.pathsep) if p]
         return tuple(p for p in entries if p.is_relative_to(prefix))
@@ -260,7 +260,7 @@ def _has(prefix: Path, package: str) -> bool:
 
 
 def has_turtlesim(ros: Ros) -> bool:
-    """Whether this ROS 2 brings a turtlesim of its own, so that ours need not be built."""
+    """Return whether this ROS 2 has its own turtlesim, so that ours need not be built."""
     return any(_has(prefix, "turtlesim") for prefix in ros.prefixes)
 
 

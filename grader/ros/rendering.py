@@ -1,4 +1,4 @@
-"""Messages as text: YAML, CSV, in the form of `ros2 topic echo`."""
+"""Messages as YAML or CSV, in the format of `ros2 topic echo`."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ from typing import Any
 import yaml
 
 TRUNCATED_AT = 128
-"""Elements of an array, or characters of a string, that are printed unless the user asks for more."""
+"""How many elements of an array, or characters of a string, are printed by default."""
 ARRAY = re.compile(r"sequence<(?P<sequence>.+?)(?:, (?P<most>\d+))?>|(?P<array>.+)\[(?P<size>\d+)\]")
 """The types of fields that hold several values: "sequence<double>", "sequence<double, 5>", "double[36]"."""
 
 
 @dataclass(frozen=True)
 class Form:
-    """How much of a message is shown: `limit` elements or characters (None: all), arrays and strings or their kind."""
+    """How much of a message is shown: `limit` elements or characters (None: all), with or without arrays, strings."""
 
     limit: int | None = TRUNCATED_AT
     arrays: bool = True
     strings: bool = True
     flow: bool = False
-    """YAML in one line: "{x: 1.0}"."""
+    """Whether the YAML is on one line: "{x: 1.0}"."""
 
 
 def is_message(value: Any) -> bool:  # noqa: ANN401
-    """Whether it is a message, not a value of a field that holds none."""
+    """Return whether the value is a message."""
     return hasattr(value, "get_fields_and_field_types")
 
 
 def plain(value: Any, form: Form | None = None, declared: str = "") -> Any:  # noqa: ANN401
-    """A message as dictionaries, lists, numbers and strings; `declared` is the type of a field."""
+    """Return a message as dictionaries, lists, numbers and strings; `declared` is the type of the field."""
     form = form or Form()
     if is_message(value):
         types = value.get_fields_and_field_types()
@@ -41,7 +41,7 @@ def plain(value: Any, form: Form | None = None, declared: str = "") -> Any:  # n
     if isinstance(value, str):
         return _cut(value, form.limit) if form.strings else _length(value)
     if isinstance(value, bool) or not hasattr(value, "__len__"):
-        # A number of numpy is one of Python's first.
+        # Make a Python number of a numpy number first.
         return value.item() if hasattr(value, "item") else value
     if not form.arrays and declared:
         return _kind(declared, len(value))
@@ -51,7 +51,7 @@ def plain(value: Any, form: Form | None = None, declared: str = "") -> Any:  # n
 
 
 def to_yaml(value: Any, form: Form | None = None) -> str:  # noqa: ANN401
-    """A message as YAML, with the line break at its end."""
+    """Return a message as YAML, with a line break at the end."""
     form = form or Form()
     text: str = yaml.safe_dump(
         plain(value, form), sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=form.flow
@@ -60,7 +60,7 @@ def to_yaml(value: Any, form: Form | None = None) -> str:  # noqa: ANN401
 
 
 def to_csv(value: Any, form: Form | None = None, declared: str = "") -> str:  # noqa: ANN401
-    """The values of a message in the order of its fields, with commas between."""
+    """Return the values of a message in the order of its fields, with commas in between."""
     form = form or Form()
     if is_message(value):
         types = value.get_fields_and_field_types()
@@ -87,7 +87,7 @@ def _length(text: str) -> str:
 
 
 def _kind(declared: str, length: int) -> str:
-    """What is said of an array instead of its values."""
+    """Return the description of an array that is printed instead of its values."""
     match = ARRAY.fullmatch(declared)
     if match is None:
         return declared

@@ -1,4 +1,4 @@
-# ROS 2, its commands and `grader` in this terminal. Type this in each new one, from any folder, with the real path:
+# Puts ROS 2, its commands and `grader` into this terminal. Type this in each new terminal, with the real path:
 #     source ~/ros2-course/.venv/setup.zsh
-# Installed into the root of the environment, as /opt/ros/jazzy has one. Where a ROS 2 Jazzy is sourced, it is used.
+# It is in the root of the environment, like that of /opt/ros/jazzy. If a ROS 2 Jazzy is sourced, that one is used.
 eval "$("${${(%):-%x}:A:h}/bin/grader" env)"

@@ -1,4 +1,4 @@
-"""A shell in which ROS 2 is there: what `grader env` prints, and the shell that `grader shell` opens."""
+"""A shell with ROS 2: what `grader env` prints, and the shell that `grader shell` opens."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 HIGHEST_DOMAIN = 101
 COMMANDS = ("ros2", "rqt_graph")
-"""The commands whose words the shell completes."""
+"""The commands that have completion in the shell."""
 
 
 def users_environment(
     domain: int | None, tell: Callable[[str], None], env: Mapping[str, str] = os.environ
 ) -> dict[str, str]:
-    """The user's environment with ROS 2 in it; turtlesim's interfaces are built first where they are not yet.
+    """Return the user's environment with ROS 2 in it. It builds turtlesim's interfaces first if necessary.
 
     Raises:
         UsageError: there is no such domain.
@@ -62,10 +62,10 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
 
 
 def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> None:
-    """Become the user's own shell, with ROS 2 as in `wanted` once their own start-up files are done. Never returns."""
+    """Replace this process by the user's shell, which sets up ROS 2 as in `wanted` after its start-up files."""
     shell = env.get("SHELL") or "/bin/bash"
     argv, extra = [shell, "-i"], {}
-    # Only then: a start-up file may set PATH anew, or source a ROS 2.
+    # After the start-up files, because they may set PATH or source a ROS 2.
     ours = f'eval "$({shlex.quote(str(Path(sys.prefix, "bin/grader")))} env --domain {wanted["ROS_DOMAIN_ID"]})"\n'
     if Path(shell).name == "bash":
         argv = [shell, "--rcfile", _start_up(f"[ -f ~/.bashrc ] && . ~/.bashrc\n{ours}", "bashrc"), "-i"]
@@ -81,7 +81,7 @@ def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -
 
 
 def _start_up(text: str, name: str) -> str:
-    """Write a start-up file that takes itself and its folder away when it is read; returns its path."""
+    """Write a start-up file that removes itself and its folder when a shell reads it; return its path."""
     file = Path(tempfile.mkdtemp(prefix="grader-shell-"), name)
     file.write_text(f"rm -rf {shlex.quote(str(file.parent))}\n{text}", encoding="utf-8")
     return str(file)

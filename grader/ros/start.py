@@ -1,4 +1,4 @@
-"""How our commands start: behind the real ones where those are installed, and with ROS 2 in their environment."""
+"""The start of our commands: the real ones have precedence, and ROS 2 is in the environment."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _STARTED_AGAIN = "_GRADER_ROS2_STARTED_AGAIN"
 
 
 def hand_over(command: str, package: str) -> None:
-    """Become the real command where a ROS 2 with this package is sourced, wherever PATH puts it; else return."""
+    """Replace this process by the real command if a sourced ROS 2 has this package, whatever PATH says; else return."""
     ours = Path(sys.argv[0])
     for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
         theirs = Path(prefix, "bin", command)
@@ -27,7 +27,7 @@ def hand_over(command: str, package: str) -> None:
 
 
 def see_to_environment(needed: Collection[str]) -> None:
-    """Start again with ROS 2 in the environment, as `grader env` gives it, unless these packages are found already.
+    """Start this command again with ROS 2 in the environment, unless the packages are there already.
 
     Raises:
         MachineError: there is no ROS 2.

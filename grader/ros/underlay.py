@@ -1,4 +1,4 @@
-"""The underlay: our turtlesim package, built once and kept, for machines whose ROS 2 has no turtlesim."""
+"""The underlay: our turtlesim package, built once and kept, for a ROS 2 that has no turtlesim."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _say_nothing(_: str) -> None:
 
 
 def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _say_nothing) -> installation.Ros:
-    """Return this ROS 2 with the turtlesim interfaces in it. They are built first if need be (see `ensure`).
+    """Return this ROS 2 with the turtlesim interfaces in it, and build them first if necessary (see `ensure`).
 
     Raises:
         MachineError: they could not be built.
@@ -44,10 +44,10 @@ def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _say_not
 
 
 def ensure(ros: installation.Ros, tell: Callable[[str], None] = _say_nothing) -> Path | None:
-    """Return the prefix of our turtlesim, building it first where that was not done yet; None if `ros` has its own.
+    """Return the prefix of our turtlesim, and build it first if necessary; None if this ROS 2 has its own.
 
-    A build takes about ten seconds, and `tell` gets a line now and then. Where it is built already, this takes
-    about a millisecond.
+    A build takes about ten seconds; it passes its progress to `tell` line by line. If the build exists already, this
+    takes about a millisecond.
 
     Raises:
         MachineError: something to build with is missing, the build failed, or the cache cannot be written.
@@ -69,14 +69,14 @@ def ensure(ros: installation.Ros, tell: Callable[[str], None] = _say_nothing) ->
     except OSError as error:
         message = (
             f"The turtlesim interfaces could not be built in {xdg.cache()}: {error.strerror or error}. The folder must "
-            "be writable and have 20 MB free; XDG_CACHE_HOME says where it lies."
+            "be writable and have 20 MB free; set XDG_CACHE_HOME to use another folder."
         )
         raise MachineError(message) from error
     return prefix
 
 
 def _name(ros: installation.Ros, compiler: Path | None) -> str:
-    """Name the build by all that it was made of; no process is started for that."""
+    """Name the build after everything that it depends on, without starting a process."""
     return f"turtlesim-{_key_of_sources(ros)}-{_key_of_compiler(compiler)}"
 
 
@@ -92,8 +92,7 @@ def _key_of_sources(ros: installation.Ros) -> str:
 
 
 def _key_of_compiler(compiler: Path | None) -> str:
-    # Running it to learn its version would cost more than all the rest: a compiler that was exchanged has another
-    # time or size.
+    # Asking the compiler for its version would take longer than all the rest. A new compiler has another time or size.
     if compiler is None:
         return "none"
     binary = compiler.resolve()
@@ -107,7 +106,7 @@ def _compiler(search: str) -> Path | None:
 
 
 def _built_by_another_compiler(ros: installation.Ros) -> Path | None:
-    """Find a finished build whose compiler has been removed since: what it made still works."""
+    """Find a finished build whose compiler has been removed since then; the build still works."""
     builds = xdg.cache().glob(f"turtlesim-{_key_of_sources(ros)}-*")
     return max(builds, key=lambda build: build.stat().st_mtime, default=None)
 
@@ -139,7 +138,7 @@ def _listed(needs: list[packages.Need]) -> str:
 
 @contextmanager
 def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
-    """Wait for any other process that is building; the lock goes with the process that holds it."""
+    """Wait until no other process is building; the system frees the lock when its process ends."""
     xdg.cache().mkdir(parents=True, exist_ok=True)
     with (xdg.cache() / "turtlesim.lock").open("w") as lock:
         try:
@@ -151,7 +150,7 @@ def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
 
 
 def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> None:
-    # Left by builds that were killed: whoever holds the lock is the only one who builds.
+    # These are left from builds that were killed: only the holder of the lock builds.
     for leftover in prefix.parent.glob(f"{_TEMPORARY}*"):
         shutil.rmtree(leftover, ignore_errors=True)
     tell("Building the turtlesim interfaces, once; this takes about ten seconds.")
@@ -163,19 +162,19 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
         configure = [
             *("cmake", "-S", str(SOURCES), "-B", str(folder / "build")),
             *("-G", "Ninja" if shutil.which("ninja", path=env["PATH"]) else "Unix Makefiles"),
-            # Not optimized: half the time to build, and a few microseconds a message.
+            # Without optimization, the build takes half the time; a message takes a few microseconds more.
             *("-DCMAKE_BUILD_TYPE=None", "-DBUILD_TESTING=OFF"),
             f"-DPython3_EXECUTABLE={ros.python}",
             f"-DCMAKE_INSTALL_PREFIX={prefix}",
-            # No trace of the temporary folder in what is kept. A shell reads the flags, and a home may have spaces in
-            # its path; CMake would strip quotes around the whole.
+            # Keep the path of the temporary folder out of the result. A shell reads the flags, and the path may have
+            # spaces; CMake would strip quotes around the whole.
             *(f"-DCMAKE_{language}_FLAGS=-ffile-prefix-map={no_trace}" for language in ("C", "CXX")),
         ]
         _run(configure, env, tell)
         _run(["cmake", "--build", str(folder / "build"), "--parallel", str(os.cpu_count() or 1)], env, tell)
-        # Staged, so that all paths inside name the final place.
+        # Install with DESTDIR, so that all paths inside are the final ones.
         _run(["cmake", "--install", str(folder / "build")], {**env, "DESTDIR": f"{folder}/staged"}, tell)
-        # Compiled here, since those who use it may not be allowed to write into it.
+        # Compile the Python files here, since other users may not be allowed to write into the folder.
         compiling = interpreter(
             *("-m", "compileall", "-q", "-s", f"{folder}/staged", str(staged / "lib")), python=str(ros.python), env=env
         )
@@ -189,7 +188,7 @@ def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -
     told = 0
     with subprocess.Popen(
         command,
-        # Their Pythons are not started by us: this is the folder where they may look for modules.
+        # CMake and make start Python themselves, so they run in a folder without modules of others.
         cwd=env["HOME"],
         env=env,
         stdin=subprocess.DEVNULL,
@@ -225,7 +224,7 @@ def _percent(line: str) -> int | None:
 
 
 def _make_readable(folder: Path) -> None:
-    """Let every user read it (a+rX), whatever the umask: a trial may run as another user."""
+    """Let every user read the files (a+rX), whatever the umask is: a trial may run as another user."""
     for path in [folder, *folder.rglob("*")]:
         if not path.is_symlink():
             mode = path.stat().st_mode

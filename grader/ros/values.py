@@ -1,4 +1,4 @@
-"""Values of messages: from what a user typed as YAML into a message, and parts of a message by name."""
+"""Values of messages: fill a message with what a user typed as YAML, and get parts of a message by name."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ Stamper = Callable[[Any], None]
 
 
 def load_type(name: str, kind: str, what: str = "message type", text: str = "") -> Any:  # noqa: ANN401
-    """The Python class of an interface: "geometry_msgs/msg/Twist"; the middle may be left out.
+    """Return the Python class of an interface, such as "geometry_msgs/msg/Twist"; the middle part is optional.
 
     Raises:
-        Ros2Error: it is not installed; `what` is what it was asked for as ("message type"), `text` another message.
+        Ros2Error: it is not installed. The message uses `what` ("message type"), or is `text`.
     """
     parts = name.split("/")
     package, last = parts[0], parts[-1]
@@ -37,10 +37,10 @@ def load_type(name: str, kind: str, what: str = "message type", text: str = "") 
 
 
 def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
-    """What a user typed: "{linear: {x: 2.0}}"; nothing at all is an empty dictionary.
+    """Return the values that a user typed, such as "{linear: {x: 2.0}}"; an empty string gives an empty dictionary.
 
     Raises:
-        Ros2Error: it is not YAML, or not a dictionary although that is asked for.
+        Ros2Error: the string is not YAML, or it is not a dictionary although the caller needs one.
     """
     try:
         values = yaml.safe_load(text)
@@ -58,13 +58,13 @@ def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
     if dictionary and not isinstance(values, dict):
         message = "The passed value needs to be a dictionary in YAML format"
         if isinstance(values, str) and ":" in values:
-            message += '\nA space is needed after each colon: "{x: 2.0}".'
+            message += '\nEach colon needs a space after it: "{x: 2.0}".'
         raise Ros2Error(message)
     return values
 
 
 class MisfitError(Ros2Error):
-    """Values that do not fit a message: the error that Python would raise, and what helps."""
+    """The values do not fit the message: the error that Python would raise, with a hint."""
 
     def __init__(self, cause: Exception, hint: str = "") -> None:
         self.cause = cause
@@ -73,12 +73,12 @@ class MisfitError(Ros2Error):
 
 
 def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:  # noqa: ANN401
-    """Set the fields of a message that are named; the others keep their defaults. Returns the message.
+    """Set the fields of a message that `values` contains, and return the message; the other fields keep their values.
 
-    With `stamps`, a header may be "auto" and a time "now": what sets them is added to the list.
+    With `stamps`, a header may be "auto" and a time may be "now": the functions that set them are added to this list.
 
     Raises:
-        MisfitError: there is no such field, or a value does not fit it.
+        MisfitError: there is no such field, or the value does not fit the field.
     """
     types = message.get_fields_and_field_types()
     if not isinstance(values, dict):
@@ -107,7 +107,7 @@ def _converted(value: Any, declared: str, current: Any, stamps: list[Stamper] | 
     if array := ARRAY.fullmatch(declared):
         element = array["sequence"] or array["array"]
         if not isinstance(value, (list, tuple)):
-            wrong = f"a list was expected, as in [1, 2], and {value!r} is none"
+            wrong = f"expected a list such as [1, 2], not {value!r}"
             raise TypeError(wrong)
         if "/" in element:
             made = load_type(element, "msg", "message type")
@@ -119,9 +119,9 @@ def _converted(value: Any, declared: str, current: Any, stamps: list[Stamper] | 
 
 
 def _scalar(value: Any, declared: str) -> Any:  # noqa: ANN401
-    """A value of a primitive type; YAML reads 1e-3 as a string and 2 as an integer, and both are numbers."""
+    """Return a value of a primitive type; YAML reads 1e-3 as a string and 2 as an integer, but both are numbers."""
     if isinstance(value, (dict, list)) or value is None:
-        wrong = f"one value was expected, and {value!r} is none"
+        wrong = f"expected a single value, not {value!r}"
         raise TypeError(wrong)
     if declared in ("float", "double"):
         return float(value)
@@ -131,19 +131,19 @@ def _scalar(value: Any, declared: str) -> Any:  # noqa: ANN401
         return str(value)
     if declared == "boolean":
         if not isinstance(value, bool):
-            wrong = f"true or false was expected, and {value!r} is neither"
+            wrong = f"expected true or false, not {value!r}"
             raise TypeError(wrong)
         return value
     if isinstance(value, bool) or not isinstance(value, int):
-        wrong = f"a whole number was expected, and {value!r} is none"
+        wrong = f"expected a whole number, not {value!r}"
         raise TypeError(wrong)
     return value
 
 
 def field(value: Any, path: str, *, complete: bool = True) -> Any:  # noqa: ANN401
-    """A part of a message: "linear.x", "poses[0].position".
+    """Return a part of a message, such as "linear.x" or "poses[0].position".
 
-    Of a message that is not `complete`, elements of arrays may be missing; the part is None then.
+    If the message is not `complete`, elements of arrays may be missing; then the result is None.
 
     Raises:
         Ros2Error: there is no such field.

@@ -1,4 +1,4 @@
-"""A program that `ros2 run` has started: it has the terminal, and does not outlive the command."""
+"""A program that `ros2 run` has started: it uses the terminal, and ends with the command."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _PASSED_ON = (signal.SIGTERM, signal.SIGHUP)
 
 
 def run_child(command: Sequence[str]) -> int:
-    """Run a program until it ends; returns its exit code, less than 0 for the signal that ended it.
+    """Run a program until it ends; return its exit code, which is less than 0 if a signal ended it.
 
-    Ctrl-C reaches the program from the terminal itself; other requests to end are passed on to it.
+    The terminal sends Ctrl-C to the program itself; other signals that end a program are passed on to it.
 
     Raises:
         Ros2Error: it cannot be started.
@@ -39,14 +39,14 @@ def run_child(command: Sequence[str]) -> int:
             os._exit(1)
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # Until there is somebody to pass them on to, requests to end wait.
+    # Block the signals until there is a program to pass them on to.
     before = signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
     try:
         process = subprocess.Popen(command, preexec_fn=prepare)
     except (OSError, subprocess.SubprocessError) as error:
         message = (
-            f"{command[0]} could not be started: {getattr(error, 'strerror', error)}. Does its first line name an "
-            "interpreter that is there?"
+            f"{command[0]} could not be started: {getattr(error, 'strerror', error)}. Is the interpreter "
+            "in its first line installed?"
         )
         raise Ros2Error(message) from error
 

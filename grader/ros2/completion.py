@@ -1,4 +1,4 @@
-"""What the Tab key offers for a word: names of the running graph, and of what is installed."""
+"""Completers for the Tab key: names from the running graph, and of installed packages and types."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def completes(argument: argparse.Action, names: Callable[..., Iterable[str]]) -> None:
-    """Let Tab complete an argument; `names` takes `parsed_args`, the words typed so far, as a keyword."""
+    """Let Tab complete an argument; `names` is called with the keyword `parsed_args`, the words typed so far."""
     argument.completer = lambda **words: list(names(**words))  # type: ignore[attr-defined]
 
 
@@ -25,69 +25,69 @@ def _look() -> Look:
 
 
 def topics(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """The topics that are there."""
+    """Return the names of the topics in the graph."""
     return _look().topic_names(all_of_them=getattr(parsed_args, "include_hidden_topics", False))
 
 
 def services(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """The services that are there."""
+    """Return the names of the services in the graph."""
     return _look().service_names(all_of_them=getattr(parsed_args, "include_hidden_services", False))
 
 
 def nodes(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """The nodes that are there."""
+    """Return the names of the nodes in the graph."""
     return _look().node_names(all_of_them=getattr(parsed_args, "include_hidden_nodes", False))
 
 
 def actions(**_: Any) -> list[str]:  # noqa: ANN401
-    """The actions that are there."""
+    """Return the names of the actions in the graph."""
     return [name for name, _ in _look().actions]
 
 
 def topic_types(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """The type of the topic that was typed, if it is there; else all message types."""
+    """Return the type of the topic that the user typed if it is in the graph; else all message types."""
     return _types(_look().topics, parsed_args.topic_name) or index.all_interfaces("msg")
 
 
 def service_types(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """The type of the service that was typed, if it is there; else all service types."""
+    """Return the type of the service that the user typed if it is in the graph; else all service types."""
     return _types(_look().services, parsed_args.service_name) or index.all_interfaces("srv")
 
 
 def action_types(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """The type of the action that was typed, if it is there; else all action types."""
+    """Return the type of the action that the user typed if it is in the graph; else all action types."""
     return _types(_look().actions, parsed_args.action_name) or index.all_interfaces("action")
 
 
 def message_types(**_: Any) -> list[str]:  # noqa: ANN401
-    """All message types that are installed."""
+    """Return all installed message types."""
     return index.all_interfaces("msg")
 
 
 def all_service_types(**_: Any) -> list[str]:  # noqa: ANN401
-    """All service types that are installed."""
+    """Return all installed service types."""
     return index.all_interfaces("srv")
 
 
 def all_action_types(**_: Any) -> list[str]:  # noqa: ANN401
-    """All action types that are installed."""
+    """Return all installed action types."""
     return index.all_interfaces("action")
 
 
 def interfaces(**_: Any) -> list[str]:  # noqa: ANN401
-    """All messages, services and actions that are installed."""
+    """Return all installed messages, services and actions."""
     return index.all_interfaces()
 
 
 def packages(**_: Any) -> list[str]:  # noqa: ANN401
-    """All packages that are installed."""
+    """Return all installed packages."""
     return list(index.packages())
 
 
 def prototype(type_argument: str, kind: str, part: str = "") -> Callable[..., list[str]]:
-    """A completer that offers all fields with their default values: "{linear: {x: 0.0, ...}, ...}".
+    """Return a completer that offers all fields with their default values: "{linear: {x: 0.0, ...}, ...}".
 
-    `type_argument` is the argument that holds the type, `part` what of it is meant: "Request", "Goal".
+    `type_argument` is the argument that holds the type, `part` is the part of the type to fill in: "Request" or "Goal".
     """
 
     def offered(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401

@@ -1,4 +1,4 @@
-"""The options that decide in which form messages are printed."""
+"""The options for the format in which messages are printed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def add_form(parser: argparse.ArgumentParser) -> None:
-    """Add the options that decide about the form, but `--csv`."""
+    """Add the options for the format, except `--csv`."""
     parser.add_argument("--full-length", "-f", action="store_true", help="print long arrays, bytes and strings whole")
     parser.add_argument(
         "--truncate-length",
@@ -22,13 +22,13 @@ def add_form(parser: argparse.ArgumentParser) -> None:
         help=f"cut arrays, bytes and strings after this many elements (default: {TRUNCATED_AT})",
     )
     parser.add_argument("--no-arr", action="store_true", help="print the type of arrays, not their values")
-    parser.add_argument("--no-str", action="store_true", help="print the length of strings, not their text")
+    parser.add_argument("--no-str", action="store_true", help="print the length of strings, not their value")
     parser.add_argument(
         "--flow-style", action="store_true", help="print YAML on one line, as {x: 1.0} (not with --csv)"
     )
 
 
 def form_of(args: argparse.Namespace) -> Form:
-    """The form that the options ask for."""
+    """Return the format that the options describe."""
     limit = None if args.full_length else args.truncate_length
     return Form(limit, arrays=not args.no_arr, strings=not args.no_str, flow=args.flow_style)

@@ -1,4 +1,4 @@
-"""The groups and verbs of `ros2`, with the line that tells what each is for; the verbs themselves are not imported."""
+"""The groups and verbs of `ros2`, each with its line of help; the verbs' modules are not imported."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 class Group:
     """A word after `ros2`.
 
-    `verbs` maps the words that may follow it to what they are for. A group without verbs is a command by itself.
-    `flags` maps options that may stand before the verb to their explanation.
+    `verbs` maps the words that may follow it to their help. A group without verbs is a command by itself. `flags` maps
+    options that may stand before the verb to their explanation.
     """
 
     about: str

@@ -1,4 +1,4 @@
-"""Looking at the graph: by the daemon, or by a node that this process makes for the purpose."""
+"""How verbs look at the graph: with the daemon, or with a node of their own."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ if TYPE_CHECKING:
 
 
 def look(args: argparse.Namespace) -> Look:
-    """The graph now: from the daemon unless `args.no_daemon` is set, else by a node of our own.
+    """Return the graph as it is now: from the daemon, or with `args.no_daemon` from a node of this process.
 
-    A daemon that is missing is started for the next time.
+    If no daemon is running, this starts one for the next command.
 
     Raises:
-        Ros2Error: no node could be made.
+        Ros2Error: the node could not be created.
     """
     if not getattr(args, "no_daemon", False):
         answer = client.ask("look")
         if answer is not None:
             return from_dict(answer)
         client.start_for_later()
-    # Only here, since rclpy takes long to import.
+    # Import it only here, since rclpy takes long to import.
     from grader.graph.discovery import cli_node, settle
     from grader.graph.snapshot import snapshot
 

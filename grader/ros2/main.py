@@ -1,6 +1,6 @@
-"""The command `ros2`: hands over to a sourced ROS 2's own, sees to the environment, and runs the verb.
+"""The command `ros2`: it runs the `ros2` of a sourced ROS 2 if there is one, or else sets up and runs a verb.
 
-Everything here is light: what a verb needs of rclpy is imported when it runs.
+This module imports little: a verb imports what it needs of rclpy when it runs.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class _EndedError(KeyboardInterrupt):
-    """A signal asked for the end."""
+    """A signal asked the command to end."""
 
     def __init__(self, number: int) -> None:
         super().__init__()
@@ -34,20 +34,20 @@ def main() -> NoReturn:
     code = run()
     with suppress(OSError):
         sys.stderr.flush()
-    # The verb has cleaned up after itself: its node has left. Taking Python and rclpy apart would take as long as
+    # The verb has cleaned up: its node has left the graph. A normal exit of Python and rclpy would take as long as
     # importing them.
     os._exit(code & 0xFF)
 
 
 def run(arguments: Sequence[str] | None = None) -> int:
-    """Run `ros2`; returns the exit code, with nothing left in the buffer of standard output."""
+    """Run `ros2`, flush standard output, and return the exit code."""
     for number in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, _end)
     try:
         hand_over("ros2", "ros2cli")
         see_to_environment({"rclpy", "turtlesim"})
-        # What is wrong with a value is then said by its name, before it is sent.
+        # A wrong value then gives an error with the field's name before the message is sent.
         os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
         code = _run_verb(sys.argv[1:] if arguments is None else list(arguments))
         sys.stdout.flush()
@@ -58,17 +58,20 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return error.exit_code
     except KeyboardInterrupt as error:
         _forget_the_terminal()
-        # As the real one: 2 after Ctrl-C, 15 after SIGTERM.
+        # As in the real ros2: 2 after Ctrl-C, 15 after SIGTERM.
         return error.number if isinstance(error, _EndedError) else signal.SIGINT
     except BrokenPipeError:
-        # Whoever read us has gone, as in `ros2 topic echo | head`.
+        # The reader of our output has ended, as in `ros2 topic echo | head`.
         _forget_the_terminal()
         return 0
     except Exception as error:
         if os.environ.get("GRADER_DEBUG"):
             raise
-        fault = f"ros2: a fault of the course's ros2, not of yours: {type(error).__name__}: {error}"
-        print(f"{fault}\nGRADER_DEBUG=1 before the command shows where; please report that.", file=sys.stderr)
+        fault = f"ros2: an error in the course's ros2, not in your code: {type(error).__name__}: {error}"
+        print(
+            f"{fault}\nType GRADER_DEBUG=1 before the command to see where it is, and please report it.",
+            file=sys.stderr,
+        )
         return 3
     return code
 
@@ -78,14 +81,14 @@ def _run_verb(words: list[str]) -> int:
         _complete()
     args = make_parser(words).parse_args(words)
     if not args.use_python_default_buffering and isinstance(sys.stdout, io.TextIOWrapper):
-        # As the real one: what is piped into another program arrives line by line.
+        # As in the real ros2: output that is piped into another program arrives line by line.
         sys.stdout.reconfigure(line_buffering=True)
     code: int = args.run(args)
     return code
 
 
 def _complete() -> NoReturn:
-    """Print what the word may become on which the Tab key was pressed, and end."""
+    """Print the completions of the word before the cursor, and end."""
     import argcomplete
     from argcomplete.lexers import split_line
 
@@ -95,13 +98,13 @@ def _complete() -> NoReturn:
 
 
 def _end(number: int, _: FrameType | None) -> None:
-    """End as after Ctrl-C, so that others see the node leave; a second signal ends it at once."""
+    """End as after Ctrl-C, so that the node leaves the graph; a second signal ends the process at once."""
     signal.signal(number, signal.SIG_DFL)
     raise _EndedError(number)
 
 
 def _forget_the_terminal() -> None:
-    """Let what is still in the buffer go nowhere: nobody reads it any more."""
+    """Discard what is still in the buffer, since nobody reads it any more."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         sys.stdout.flush()

@@ -1,4 +1,4 @@
-"""Options that many verbs have, and the checks of their values."""
+"""Options that many verbs share, and the checks of their values."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 
 
 def add_spin(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a verb that makes a node of its own."""
+    """Add the options of a verb that creates its own node."""
     parser.add_argument(
         "--spin-time", type=float, help="wait at most this many seconds until the graph is known (without a daemon)"
     )
@@ -16,11 +16,11 @@ def add_spin(parser: argparse.ArgumentParser) -> None:
 def add_look(parser: argparse.ArgumentParser) -> None:
     """Add the options of a verb that looks at the graph."""
     add_spin(parser)
-    parser.add_argument("--no-daemon", action="store_true", help="neither use the daemon nor start one")
+    parser.add_argument("--no-daemon", action="store_true", help="do not use or start the daemon")
 
 
 def positive_int(text: str) -> int:
-    """A whole number from 1 on, for argparse."""
+    """Return a whole number of at least 1, for argparse."""
     value = _whole(text)
     if value is None or value < 1:
         message = "value must be a positive integer"
@@ -29,7 +29,7 @@ def positive_int(text: str) -> int:
 
 
 def unsigned_int(text: str) -> int:
-    """A whole number from 0 on, for argparse."""
+    """Return a whole number of at least 0, for argparse."""
     value = _whole(text)
     if value is None or value < 0:
         message = "value must be non-negative integer"
@@ -38,7 +38,7 @@ def unsigned_int(text: str) -> int:
 
 
 def positive_float(text: str) -> float:
-    """A number above 0, for argparse."""
+    """Return a number above 0, for argparse."""
     try:
         value = float(text)
     except ValueError as error:

@@ -1,6 +1,6 @@
-"""The parsers of `ros2`: usage, help and errors in the form of the real one.
+"""The parsers of `ros2`: usage, help and errors in the format of the real one.
 
-Only the module of the verb that is typed is imported, and it imports rclpy only when it runs.
+Only the module of the verb on the command line is imported, and it imports rclpy only when it runs.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 MODULES = {"pkg.xml": "pkg.manifest"}
-"""Verbs whose module is not called as they are: xml is a module of Python."""
+"""Verbs whose module has another name: xml is a module of Python."""
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
 
 class Parser(argparse.ArgumentParser):
-    """argparse's parser; its error names the nearest word where a choice is wrong."""
+    """argparse's parser; if a choice is wrong, its error contains the most similar word."""
 
     def error(self, message: str) -> NoReturn:
         """Print what is wrong and end with exit code 2."""
@@ -32,10 +32,10 @@ class Parser(argparse.ArgumentParser):
 
 
 def make_parser(words: Sequence[str]) -> Parser:
-    """The parser for a command line; `words` are what stands after `ros2`.
+    """Return the parser for a command line; `words` are the words after `ros2`.
 
-    It has all groups, the verbs of the group that the words name, and the arguments of the verb that they name. What
-    it parses has an attribute `run`: a function of the parsed arguments that returns the exit code.
+    It has all groups, the verbs of the group in `words`, and the arguments of the verb in `words`. The parsed arguments
+    have an attribute `run`: a function that takes them and returns the exit code.
     """
     chosen = [word for word in words if not word.startswith("-")]
     group, verb = [*chosen[:2], None, None][:2]
@@ -47,7 +47,7 @@ def make_parser(words: Sequence[str]) -> Parser:
     root.add_argument(
         "--use-python-default-buffering",
         action="store_true",
-        help="write standard output as Python does: by blocks where it is not a terminal, instead of line by line",
+        help="write standard output as Python does: in blocks if it is not a terminal, instead of line by line",
     )
     root.set_defaults(run=_help_of(root))
     _add_words(root, "command", {name: group.about for name, group in GROUPS.items()}, group, _add_group(verb))
@@ -61,13 +61,13 @@ def _add_words(
     chosen: str | None,
     add: Callable[[argparse.ArgumentParser, str], None],
 ) -> None:
-    """Add the words that may follow, and `add` the arguments of the one that is chosen."""
+    """Add the words that may follow, and call `add` for the arguments of the chosen one."""
     width = max(map(len, about))
     words = parser.add_subparsers(
         title="Commands",
         description="".join(f"{name.ljust(width)}  {text}\n" for name, text in sorted(about.items())),
         metavar=f"Call `{parser.prog} <command> -h` for more detailed usage.",
-        # As the real one: no option could be called so.
+        # As in the real ros2; no option could have this name.
         dest=f" {kind}",
         parser_class=Parser,
     )

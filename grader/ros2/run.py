@@ -1,4 +1,4 @@
-"""The verb `run`: start an executable of a package, and end as it ends."""
+"""The verb `run`: start an executable of a package, and return its exit code."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _executables(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noq
 
 
 def run(args: argparse.Namespace) -> int:
-    """Start it and wait for its end; returns its exit code, less than 0 for the signal that ended it.
+    """Start the executable and wait for its end; return its exit code, less than 0 if a signal ended it.
 
     Raises:
         Ros2Error: there is no such package or executable, or it cannot be started.
@@ -65,14 +65,14 @@ def _path(args: argparse.Namespace) -> Path:
     if not found:
         names = [path.name for path in all_of_them]
         hint = did_you_mean(args.executable_name, names, "No executable found")
-        have = ", ".join(names) if names else "none: its setup.py names them under entry_points"
+        have = ", ".join(names) if names else "none; they are the entry_points in its setup.py"
         message = f"{hint}\nExecutables of {args.package_name}: {have}"
         raise Ros2Error(message)
     return found[0]
 
 
 def _program(path: Path) -> list[str]:
-    """How to start it. setuptools quotes an interpreter with a space in its path, which Linux does not understand."""
+    """Return the command; setuptools quotes an interpreter with a space in its path, but Linux does not support it."""
     try:
         with path.open("rb") as file:
             quoted = _QUOTED.match(file.readline(4096).decode("utf-8", "replace"))

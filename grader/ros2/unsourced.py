@@ -1,4 +1,4 @@
-"""A package that `ros2` does not find, although it is on this machine: built but not sourced, or not built."""
+"""Help if `ros2` does not find a package that is on this machine: it is built but not sourced, or not built."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _DEEPEST = 4
-"""Levels below src/ in which packages are looked for."""
+"""How many levels below src/ are searched for packages."""
 _MOST = 2000
-"""Folders that are looked into, at most."""
+"""How many folders are searched at most."""
 
 
 def where_it_is(package: str) -> str:
-    """A sentence that says where the package is and what to type; empty when it is nowhere near."""
+    """Return a sentence that says where the package is and what to type; empty if no workspace has it."""
     for workspace in _workspaces():
         for built in (workspace / "install" / package, workspace / "install"):
             if (built / "share" / package / "package.xml").is_file():
                 setup = _shown(workspace / "install/setup.bash")
-                return f"It is built, and not sourced in this terminal. Type: source {setup}"
+                return f"It is built, but not sourced in this terminal. Type: source {setup}"
     for workspace in _workspaces():
         for manifest in _manifests(workspace / "src"):
             if _name(manifest) == package:
                 typed = f"cd {_shown(workspace)} && colcon build && source install/setup.bash"
-                return f"It lies in {_shown(manifest.parent)}, and is not built. Type: {typed}"
+                return f"It is in {_shown(manifest.parent)}, but not built. Type: {typed}"
     return ""
 
 
 def _workspaces() -> Iterator[Path]:
-    """The folders that look like workspaces: this one and those above it, and the one of the tutorials."""
+    """Return folders that look like workspaces: this one, those above it, and that of the tutorials."""
     here = Path.cwd()
     for folder in dict.fromkeys([here, *here.parents, Path.home() / "ros2_ws"]):
         if folder != folder.parent and any((folder / name).is_dir() for name in ("install", "src")):
@@ -58,6 +58,6 @@ def _name(manifest: Path) -> str:
 
 
 def _shown(path: Path) -> str:
-    """A path as a user would type it."""
+    """Return a path as a user would type it."""
     home = Path.home()
     return f"~/{path.relative_to(home)}" if path.is_relative_to(home) else str(path)

@@ -170,7 +170,10 @@ def look_at_disk(folder: Path) -> Line:
     if free >= LITTLE_DISK:
         return Line("disk", seen)
     return Line(
-        "disk", seen, "broken" if free < LEAST_DISK else "advice", "make room; XDG_CACHE_HOME chooses another folder"
+        "disk",
+        seen,
+        "broken" if free < LEAST_DISK else "advice",
+        "free some space; XDG_CACHE_HOME chooses another folder",
     )
 
 

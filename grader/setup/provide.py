@@ -82,4 +82,4 @@ def _run(command: Sequence[str], program: str, env: Mapping[str, str]) -> str:
     lines = [line.strip() for line in done.stdout.decode("utf-8", "replace").splitlines()]
     told = [line for line in lines if _ERROR.match(line)] or list(filter(None, lines))[-1:]
     words = "; ".join(line.rstrip(".?") for line in list(dict.fromkeys(told))[:TOLD_LINES])
-    return f"{program} failed: {words or 'it did not say why'}"
+    return f"{program} failed: {words or 'it gave no reason'}"

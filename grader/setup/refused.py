@@ -93,7 +93,7 @@ def cache() -> Path:
 
 def _of_number(number: int, where: Optional[Path]) -> str:
     if number in (errno.ENOSPC, errno.EDQUOT):
-        room = f"make room there ({NEEDED_MB} MB for a learner); {AGAIN}"
+        room = f"free some space there ({NEEDED_MB} MB for a learner); {AGAIN}"
         return sentence(number, str(where or ""), room)
     if number in _WRITE:
         told = f"{where} cannot be written to ({os.strerror(number)})"

@@ -18,7 +18,7 @@ setup(
     license="MIT",
     entry_points={
         "console_scripts": [
-            # TODO 5: the entry point test_node, which leads to the function main in my_first_node.py.
+            # TODO 5: add the entry point test_node. It calls the function main in my_first_node.py.
         ],
     },
 )

@@ -19,7 +19,7 @@ setup(
     entry_points={
         "console_scripts": [
             "test_node = my_robot_controller.my_first_node:main",
-            # TODO 2: the entry point draw_circle, beside the one above.
+            # TODO 2: add the entry point draw_circle after the one above.
         ],
     },
 )

@@ -20,7 +20,7 @@ setup(
         "console_scripts": [
             "test_node = my_robot_controller.my_first_node:main",
             "draw_circle = my_robot_controller.draw_circle:main",
-            # TODO 5: the entry point pose_subscriber.
+            # TODO 5: add the entry point pose_subscriber.
         ],
     },
 )

@@ -22,7 +22,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it; an action that nobody offers or uses has 0 of each."""
+    """Print the nodes; an action that nobody offers or uses has 0 of each."""
     from grader.graph.names import absolute
 
     graph = look(args)

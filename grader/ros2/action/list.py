@@ -17,7 +17,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print them, sorted."""
+    """Print the names of the actions, sorted."""
     found = look(args).actions
     if args.count_actions:
         print(len(found))

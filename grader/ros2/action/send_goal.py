@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _CANCEL_S = 2.0
 _POLL_S = 0.02
 _STATUS = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
-"""By their numbers in action_msgs/msg/GoalStatus."""
+"""The names of the statuses, by their numbers in action_msgs/msg/GoalStatus."""
 _WHOLE = Form(limit=None)
 
 
@@ -37,7 +37,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Send it; 0 whatever came of it.
+    """Send the goal; return 0 whatever its result is.
 
     Raises:
         Ros2Error: the type is not installed, or the goal does not fit it.

@@ -1,4 +1,4 @@
-"""Asking the daemon, starting it, stopping it. Every command works without one."""
+"""How commands start, ask and stop the daemon. Every command works without it."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from grader.common.interpreter import interpreter
 from grader.ros2.daemon import place
 
 ANSWER_S = 8.0
-"""More than the daemon itself waits for nodes that are there and say nothing."""
+"""Longer than the daemon waits for nodes that exist but send nothing."""
 _POLL_S = 0.02
 
 
 def ask(call: str) -> dict[str, Any] | None:
-    """What the daemon answers to "look", "ping" or "stop"; None where there is no daemon."""
+    """Return the daemon's answer to "look", "ping" or "stop"; None if there is no daemon."""
     folder = place.folder()
     if folder is None:
         return None
@@ -40,12 +40,12 @@ def ask(call: str) -> dict[str, Any] | None:
 
 
 def is_running() -> bool:
-    """Whether a daemon answers."""
+    """Return whether a daemon answers."""
     return ask("ping") is not None
 
 
 def start(*, debug: bool = False) -> None:
-    """Start a daemon; it ends at once if there is one. With `debug` it tells on this terminal what it does."""
+    """Start a daemon; it ends at once if there is one already. With `debug` it logs to this terminal."""
     target = None if debug else subprocess.DEVNULL
     server = interpreter("-m", "grader.ros2.daemon.server", *(["--debug"] if debug else []), searches=True)
     subprocess.Popen(
@@ -55,19 +55,19 @@ def start(*, debug: bool = False) -> None:
         stderr=target,
         env=server.env,
         cwd="/",
-        # Ctrl-C in this terminal is not for it.
+        # Ctrl-C in this terminal must not end the daemon.
         start_new_session=True,
     )
 
 
 def start_for_later() -> None:
-    """Start a daemon for the next command, unless GRADER_ROS2_DAEMON=0 asks for none."""
+    """Start a daemon for the next command, unless GRADER_ROS2_DAEMON=0 forbids it."""
     if os.environ.get("GRADER_ROS2_DAEMON") != "0" and place.folder() is not None:
         start()
 
 
 def wait_until_ended(timeout_s: float) -> bool:
-    """Wait until the daemon's process has ended; returns whether it has."""
+    """Wait until the daemon's process has ended; return False if it has not."""
     folder = place.folder()
     if folder is None:
         return True

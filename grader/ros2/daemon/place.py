@@ -1,7 +1,7 @@
-"""Where the daemon of this user, this domain and this network is reached.
+"""The address of the daemon for this user, this domain and this network.
 
-The socket lies in a folder that nobody else may enter, under a name made of everything that decides which graph a
-node sees.
+The socket is in a folder that nobody else may enter. Its name depends on everything that decides which graph a node
+sees.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 PROTOCOL = 1
-"""A daemon that was started by another version of this code is another daemon."""
+"""A version in the name, so that another version of this code starts its own daemon."""
 _DECIDE = (
     "FASTDDS_BUILTIN_TRANSPORTS",
     "FASTDDS_DEFAULT_PROFILES_FILE",
@@ -33,16 +33,16 @@ _DECIDE = (
     "ROS_SECURITY_KEYSTORE",
     "ROS_STATIC_PEERS",
 )
-"""Variables by which a node sees one graph or another."""
+"""The environment variables that decide which graph a node sees."""
 
 
 def domain() -> str:
-    """The domain id, as it is written."""
+    """Return the domain id as the user wrote it."""
     return os.environ.get("ROS_DOMAIN_ID") or "0"
 
 
 def name() -> str:
-    """The name of the socket: the same for all commands that would see the same graph."""
+    """Return the name of the socket, which is the same for all commands that see the same graph."""
     network = Path("/proc/self/ns/net").stat().st_ino
     decisive = [str(PROTOCOL), str(os.getuid()), str(network), domain()]
     decisive += [f"{variable}={os.environ.get(variable, '')}" for variable in _DECIDE]
@@ -50,7 +50,7 @@ def name() -> str:
 
 
 def folder() -> Path | None:
-    """The folder of the socket, made if need be; None where there can be none that is ours alone."""
+    """Return the folder of the socket, and create it if necessary; None if there cannot be a private one."""
     runtime = os.environ.get("XDG_RUNTIME_DIR", "")
     for place in ([Path(runtime, "grader")] if runtime.startswith("/") else []) + [xdg.cache() / "daemon"]:
         try:
@@ -65,7 +65,7 @@ def folder() -> Path | None:
 
 @contextmanager
 def address(where: Path, which: str) -> Iterator[str]:
-    """The address of a socket, by a short way: an address has 108 bytes at most, and homes may be deep."""
+    """Return a short path of the socket: an address has at most 108 bytes, and a home folder may have a long path."""
     descriptor = os.open(where, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
         yield f"/proc/self/fd/{descriptor}/{which}"
@@ -74,7 +74,7 @@ def address(where: Path, which: str) -> Iterator[str]:
 
 
 def lock(file: IO[str]) -> bool:
-    """Take the lock that a daemon holds as long as it lives; returns whether it was free."""
+    """Take the lock that a daemon holds as long as it runs; return whether it was free."""
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -83,6 +83,6 @@ def lock(file: IO[str]) -> bool:
 
 
 def is_ours(connection: socket.socket) -> bool:
-    """Whether the process at the other end belongs to this user."""
+    """Return whether the process at the other end belongs to this user."""
     credentials = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12)
     return int.from_bytes(credentials[4:8], "little") == os.getuid()

@@ -1,6 +1,6 @@
-"""The daemon's process: a node that listens to the graph, and a socket at which commands of the same user ask for it.
+"""The daemon's process: a node that watches the graph, and a socket where commands of the same user ask for it.
 
-It ends when it was idle for long, when it is told to, and when its socket is gone.
+It ends after a long idle time, on request, and when its socket has been removed.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 IDLE_S = float(os.environ.get("GRADER_ROS2_DAEMON_IDLE_S", "1800"))
 TICK_S = 1.0
 _REQUEST_S = 2.0
-"""Who connects and says nothing is not waited for."""
+"""How long to wait for the request of a connected client."""
 
 
 def main() -> int:
-    """Serve until the end; 0 also where another daemon serves already."""
+    """Serve until the end; return 0, also if another daemon is running already."""
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
         signal.signal(number, _end)
     folder = place.folder()
@@ -57,12 +57,12 @@ def _end(*_: int | FrameType | None) -> None:
 
 
 def _serve(folder: Path, name: str, debug: IO[str] | None) -> None:
-    # Only now: a second daemon should not have to import rclpy to learn that it is not needed.
+    # Import rclpy only now: a second daemon should notice early that it is not needed.
     from grader.graph.discovery import Settling, cli_node
 
     file = folder / f"{name}.socket"
     with cli_node(f"_ros2cli_daemon_{place.domain()}_{uuid.uuid4().hex}", patient=True) as node:
-        # The lock is ours, so whoever left the file has ended.
+        # We hold the lock, so the process that left the file has ended.
         file.unlink(missing_ok=True)
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as listening:
             before = os.umask(0o077)
@@ -93,7 +93,7 @@ def _answer_all(listening: socket.socket, node: Node, settling: Settling, wanted
     with selectors.DefaultSelector() as selector:
         selector.register(listening, selectors.EVENT_READ)
         while wanted() and time.monotonic() - used < IDLE_S:
-            # Looking now and then, it knows how long nothing has changed, and can answer at once.
+            # By looking now and then, the daemon knows how long nothing has changed, and can answer at once.
             settling.observe()
             if not selector.select(TICK_S):
                 continue
@@ -106,7 +106,7 @@ def _answer_all(listening: socket.socket, node: Node, settling: Settling, wanted
 
 
 def _answer(connection: socket.socket, node: Node, settling: Settling, debug: IO[str] | None) -> bool:
-    """Answer one request; returns False when that was to stop."""
+    """Answer one request; return False if it was the request to stop."""
     from grader.graph.snapshot import snapshot
 
     connection.settimeout(_REQUEST_S)

@@ -16,14 +16,14 @@ _POLL_S = 0.02
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    parser.add_argument("--debug", "-d", action="store_true", help="tell on this terminal what it is asked for")
+    parser.add_argument("--debug", "-d", action="store_true", help="log the requests to this terminal")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Start it and wait until it answers.
+    """Start the daemon and wait until it answers.
 
     Raises:
-        Ros2Error: it does not answer.
+        Ros2Error: the daemon does not answer.
     """
     from grader.ros2.daemon import client
 

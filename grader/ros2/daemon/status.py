@@ -9,11 +9,11 @@ if TYPE_CHECKING:
 
 
 def add(_: argparse.ArgumentParser) -> None:
-    """It has no arguments."""
+    """Add no arguments: the verb has none."""
 
 
 def run(_: argparse.Namespace) -> int:
-    """Print it; 0 either way."""
+    """Print whether the daemon is running; return 0 in both cases."""
     from grader.ros2.daemon import client
 
     print("The daemon is running" if client.is_running() else "The daemon is not running")

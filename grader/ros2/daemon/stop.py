@@ -13,14 +13,14 @@ _ENDED_S = 10.0
 
 
 def add(_: argparse.ArgumentParser) -> None:
-    """It has no arguments."""
+    """Add no arguments: the verb has none."""
 
 
 def run(_: argparse.Namespace) -> int:
-    """Stop it and wait until it has ended.
+    """Stop the daemon and wait until it has ended.
 
     Raises:
-        Ros2Error: it does not end.
+        Ros2Error: the daemon does not end.
     """
     from grader.ros2.daemon import client
 

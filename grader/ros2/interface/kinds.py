@@ -1,4 +1,4 @@
-"""The options by which the verbs of `interface` take messages, services or actions only."""
+"""The options that limit the verbs of `interface` to messages, services or actions."""
 
 from __future__ import annotations
 
@@ -17,5 +17,5 @@ def add_kinds(parser: argparse.ArgumentParser) -> None:
 
 
 def chosen(args: argparse.Namespace) -> list[str]:
-    """The kinds that the user asked for: "msg", "srv", "action"; none: all."""
+    """Return the kinds that the user asked for: "msg", "srv", "action"; an empty list means all."""
     return [kind for kind, name in _NAMES.items() if getattr(args, f"only_{name}")]

@@ -19,7 +19,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print them, sorted."""
+    """Print the names of the interfaces, sorted."""
     for kind in chosen(args) or index.KINDS:
         print(_TITLES[kind])
         for name in index.all_interfaces(kind):

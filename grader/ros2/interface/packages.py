@@ -17,7 +17,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print them, sorted; of several kinds the first counts."""
+    """Print the packages, sorted; if several kinds are given, the first one counts."""
     kinds = chosen(args)[:1]
     for package in index.interface_packages():
         if not kinds or any(name.split("/")[1] in kinds for name in index.interfaces(package)):

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import argparse
 
 _PARTS = {"msg": "", "srv": "Request", "action": "Goal"}
-"""What of an interface a user fills in."""
+"""The part of each kind of interface that a user fills in."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -21,7 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it as YAML."""
+    """Print the interface as YAML."""
     from grader.ros import rendering, values
 
     index.interface_file(args.type)

@@ -1,4 +1,4 @@
-"""The verb `interface show`: what an interface consists of."""
+"""The verb `interface show`: the definition of an interface."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class _FromInput(argparse.Action):
-    """Takes the value, or for "-" the first line of standard input."""
+    """An argparse action that stores the value, or the first line of standard input for "-"."""
 
     def __call__(
         self,
@@ -44,7 +44,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it."""
+    """Print the definition."""
     for line in definition.lines(args.type, comments=not args.no_comments, nested_comments=args.all_comments):
         print(line)
     return 0

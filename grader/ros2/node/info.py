@@ -23,7 +23,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it.
+    """Print the topics, services and actions of the node.
 
     Raises:
         Ros2Error: there is no such node.
@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
         ("Action Clients", node.action_clients),
     ):
         print(f"  {title}:")
-        # An empty section is followed by an empty line.
+        # An empty line follows an empty section.
         visible = shown(found, all_of_them=args.include_hidden)
         print("\n".join(f"    {one}: {', '.join(types)}" for one, types in visible))
     return 0

@@ -25,7 +25,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print them, sorted."""
+    """Print the names of the nodes, sorted."""
     found = look(args).node_names(all_of_them=args.all)
     if args.count_nodes:
         print(len(found))

@@ -1,4 +1,4 @@
-"""The parameters of another node, by its services. Needs rclpy."""
+"""The parameters of another node, read and set with its services. Needs rclpy."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 ANSWER_S = 5.0
-"""A node that is busy does not answer; this long it may be."""
+"""How long to wait for the answer of a busy node."""
 _POLL_S = 0.02
 _TYPES = {
     ParameterType.PARAMETER_NOT_SET: ("not set", "Parameter not set."),
@@ -38,10 +38,10 @@ _TYPES = {
 
 
 class Parameters:
-    """The parameters of one node. Every method may raise Ros2Error: the node does not answer."""
+    """The parameters of one node. Every method raises Ros2Error if the node does not answer."""
 
     def __init__(self, node: Node, node_name: str) -> None:
-        """`node_name` is the full name of the node that has them."""
+        """Create the clients; `node_name` is the full name of the node that has the parameters."""
         self._node = node
         self.node_name = node_name
 
@@ -60,35 +60,35 @@ class Parameters:
             self._node.destroy_client(client)
 
     def names(self, prefixes: Sequence[str] = ()) -> list[str]:
-        """The names, sorted; with `prefixes` only those below them."""
+        """Return the names, sorted; with `prefixes`, only those below them."""
         answer = self._call(ListParameters, "list_parameters", ListParameters.Request(prefixes=list(prefixes)))
         return sorted(answer.result.names)
 
     def get(self, name: str) -> ParameterValue | None:
-        """One value; None when the node does not know the name."""
+        """Return one value; None if the node does not know the name."""
         found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=[name])).values
         return found[0] if found else None
 
     def all_values(self) -> dict[str, Any]:
-        """All values by name."""
+        """Return all values by name."""
         names = self.names()
         found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=names)).values
         return {name: parameter_value_to_python(value) for name, value in zip(names, found, strict=False)}
 
     def set(self, parameters: Sequence[Parameter]) -> list[Any]:
-        """Set them; returns a SetParametersResult for each."""
+        """Set parameters; return a SetParametersResult for each."""
         request = SetParameters.Request(parameters=list(parameters))
         return list(self._call(SetParameters, "set_parameters", request).results)
 
     def describe(self, names: Sequence[str]) -> list[Any]:
-        """The descriptor of each; the node answers with none at all when it does not know one of them."""
+        """Return the descriptor of each parameter; an empty list if the node does not know one of them."""
         request = DescribeParameters.Request(names=list(names))
         return list(self._call(DescribeParameters, "describe_parameters", request).descriptors)
 
 
 @contextmanager
 def parameters_of(args: argparse.Namespace) -> Iterator[Parameters]:
-    """The parameters of the node that `args.node_name` names, while this process has a node to ask with.
+    """Create a node, and yield the parameters of the node `args.node_name`.
 
     Raises:
         Ros2Error: there is no such node.
@@ -114,7 +114,7 @@ def _found(node: Node, args: argparse.Namespace) -> str:
 
 
 def with_parameters(node: Node, *, all_of_them: bool) -> list[str]:
-    """The names of the nodes that offer parameters, sorted."""
+    """Return the names of the nodes that offer parameters, sorted."""
     offered = {service for service, _ in node.get_service_names_and_types()}
     found = nodes(node, all_of_them=True)
     shown = [name for name in found if all_of_them or not hidden(name.rpartition("/")[2])]
@@ -122,12 +122,12 @@ def with_parameters(node: Node, *, all_of_them: bool) -> list[str]:
 
 
 def type_name(kind: int) -> str:
-    """The type of a parameter in words: "integer", "string array"."""
+    """Return the type of a parameter in words, such as "integer" or "string array"."""
     return _TYPES.get(kind, ("unknown", ""))[0]
 
 
 def told(value: ParameterValue, *, hide_type: bool) -> str:
-    """A value as `param get` prints it."""
+    """Return a value as `param get` prints it."""
     python = parameter_value_to_python(value)
     text = str(python.tolist() if hasattr(python, "tolist") else python)
     if hide_type:
@@ -136,5 +136,5 @@ def told(value: ParameterValue, *, hide_type: bool) -> str:
 
 
 def not_set(name: str) -> Parameter:
-    """What takes a parameter away when it is set to it."""
+    """Return the value that deletes a parameter when it is set."""
     return Parameter(name=name, value=ParameterValue(type=ParameterType.PARAMETER_NOT_SET))

@@ -1,4 +1,4 @@
-"""The verb `param delete`: take a parameter away from a node that allows it."""
+"""The verb `param delete`: delete a parameter of a node that allows it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Delete it; 0 also where the node refuses."""
+    """Delete the parameter; return 0 even if the node refuses."""
     from grader.ros2.param.client import not_set, parameters_of
     from grader.ros2.param.set import report
 

@@ -1,4 +1,4 @@
-"""The verb `param describe`: what parameters are for, and which values they take."""
+"""The verb `param describe`: the descriptions of parameters and their allowed values."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it; 0 also where the node does not know one of them, and says nothing about the others then."""
+    """Print the descriptions; return 0 even if the node does not know a parameter and so describes none."""
     from grader.ros2.param.client import parameters_of
 
     with parameters_of(args) as parameters:
@@ -37,7 +37,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def described(descriptor: Any) -> str:  # noqa: ANN401
-    """A descriptor as text."""
+    """Return a descriptor as text."""
     from grader.ros2.param.client import type_name
 
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {type_name(descriptor.type)}"]

@@ -17,7 +17,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it, with an empty line at its end."""
+    """Print the parameter file, with an empty line at the end."""
     from grader.ros2.param.client import parameters_of
 
     with parameters_of(args) as parameters:
@@ -26,7 +26,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def dumped(node_name: str, values: dict[str, Any]) -> str:
-    """The values as a parameter file: a dot in a name opens a level."""
+    """Return the values as a parameter file: each dot in a name begins a new level."""
     import yaml
 
     tree: dict[str, Any] = {}

@@ -19,14 +19,16 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
     completes(parser.add_argument("node_name", nargs="?", help="name of a node; without it: all nodes"), nodes)
-    parser.add_argument("--filter", nargs=1, help="only parameters whose name begins as this regular expression says")
+    parser.add_argument(
+        "--filter", nargs=1, help="only parameters whose names begin with a match of this regular expression"
+    )
     parser.add_argument("--include-hidden-nodes", action="store_true", help="include nodes whose names start with _")
     parser.add_argument("--param-prefixes", nargs="+", default=[], help="only parameters below these prefixes")
     parser.add_argument("--param-type", action="store_true", help="print the types too")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print them, sorted.
+    """Print the names of the parameters, sorted.
 
     Raises:
         Ros2Error: there is no such node.

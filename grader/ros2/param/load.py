@@ -17,13 +17,13 @@ def add(parser: argparse.ArgumentParser) -> None:
     add_node(parser)
     parser.add_argument("parameter_file", help="a file as `ros2 param dump` prints it")
     parser.add_argument(
-        "--no-use-wildcard", action="store_true", help="leave out what stands under '/**', which is for every node"
+        "--no-use-wildcard", action="store_true", help="ignore the parameters under '/**', which are for every node"
     )
     add_timeout(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Set them all; 0 also where the node refuses some.
+    """Set all parameters; return 0 even if the node refuses some.
 
     Raises:
         Ros2Error: the file cannot be read, or is not a parameter file.
@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def read(file: str, *, use_wildcard: bool) -> list[Any]:
-    """The parameters (rcl_interfaces/msg/Parameter) that a file holds.
+    """Return the parameters (rcl_interfaces/msg/Parameter) in a file.
 
     Raises:
         Ros2Error: it cannot be read, or is not a parameter file.

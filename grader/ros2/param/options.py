@@ -1,4 +1,4 @@
-"""Options that the verbs of `param` have in common."""
+"""Options that the verbs of `param` share."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ if TYPE_CHECKING:
 
 
 def add_node(parser: argparse.ArgumentParser) -> None:
-    """Add the node whose parameters are meant."""
+    """Add the argument for the node, and the option for hidden nodes."""
     add_look(parser)
     completes(parser.add_argument("node_name", help="name of the node, as in /turtlesim"), nodes)
     parser.add_argument("--include-hidden-nodes", action="store_true", help="include nodes whose names start with _")
 
 
 def add_timeout(parser: argparse.ArgumentParser) -> None:
-    """Add how long to wait for the node."""
+    """Add the option for how long to wait for the node."""
     parser.add_argument(
         "--timeout", metavar="N", type=int, default=1, help="wait N seconds for the node to appear (default: 1)"
     )
 
 
 def add_name(parser: argparse.ArgumentParser, name: str = "parameter_name", **options: Any) -> None:  # noqa: ANN401
-    """Add the parameter that is meant, by name."""
+    """Add the argument for the name of the parameter."""
     completes(parser.add_argument(name, help="name of the parameter, as in background_r", **options), _names)
 
 

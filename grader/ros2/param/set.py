@@ -21,7 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Set it; 0 also where the node refuses."""
+    """Set the parameter; return 0 even if the node refuses."""
     from rcl_interfaces.msg import Parameter
 
     from grader.ros2.param.client import parameters_of
@@ -33,7 +33,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def value_of(text: str) -> Any:  # noqa: ANN401
-    """A ParameterValue from YAML.
+    """Return a ParameterValue from YAML.
 
     Raises:
         Ros2Error: it is not YAML.
@@ -49,7 +49,7 @@ def value_of(text: str) -> Any:  # noqa: ANN401
 
 
 def report(parameters: Any, wanted: Any, done: str, failed: str) -> None:  # noqa: ANN401
-    """Set one parameter and print what the node answers: that it is `done`, or on standard error that it `failed`."""
+    """Set one parameter, and print `done`, or `failed` on standard error, with the node's reason."""
     result = parameters.set([wanted])[0]
     reason = f": {result.reason}" if result.reason else ""
     if result.successful:

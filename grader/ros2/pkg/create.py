@@ -34,28 +34,28 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--license",
         default="TODO: License declaration",
-        help="any text; a LICENSE file is made for the licenses that '?' lists",
+        help="any string; for the licenses that '?' lists, a LICENSE file is created",
     )
-    parser.add_argument("--destination-directory", default=".", help="make the package in this directory")
+    parser.add_argument("--destination-directory", default=".", help="create the package in this directory")
     parser.add_argument(
         "--build-type",
         default="ament_cmake",
         choices=["cmake", "ament_cmake", "ament_python"],
         help="ament_python for a package in Python (default: ament_cmake)",
     )
-    needed = parser.add_argument("--dependencies", nargs="+", default=[], help="packages that it uses")
+    needed = parser.add_argument("--dependencies", nargs="+", default=[], help="packages that the new package uses")
     completes(needed, packages)
-    parser.add_argument("--maintainer-email", help="default: the address that git knows")
+    parser.add_argument("--maintainer-email", help="default: the address from git's settings")
     parser.add_argument("--maintainer-name", default=getpass.getuser(), help="default: the user's name")
-    parser.add_argument("--node-name", help="also make an executable of this name")
-    parser.add_argument("--library-name", help="also make a library of this name")
+    parser.add_argument("--node-name", help="also create an executable with this name")
+    parser.add_argument("--library-name", help="also create a library with this name")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Make it.
+    """Create the package.
 
     Raises:
-        Ros2Error: the folder is there already or cannot be made, or the name is "test".
+        Ros2Error: the folder exists already or cannot be created, or the name is "test".
     """
     from grader.ros2.pkg import files, licenses
 
@@ -125,7 +125,7 @@ def _check(wanted: NewPackage) -> None:
 
 
 def _advice(wanted: NewPackage) -> list[str]:
-    """What will go wrong later with what was asked for."""
+    """Return warnings about choices that cause problems later."""
     advice = []
     names = (("package", wanted.name), ("node", wanted.node), ("library", wanted.library))
     odd = [f"{what} name '{value}'" for what, value in names if value is not None and not _PYTHON_NAME.fullmatch(value)]
@@ -136,7 +136,7 @@ def _advice(wanted: NewPackage) -> list[str]:
         )
     if wanted.build_type != "ament_python":
         advice.append(
-            f"A package of build type {wanted.build_type} is written in C++. Building it needs CMake and a C++ "
+            f"A package of build type {wanted.build_type} is written in C++. To build it, you need CMake and a C++ "
             "compiler, and a node in it needs rclcpp, which is part of a whole ROS 2. For Python use --build-type "
             "ament_python."
         )

@@ -1,4 +1,4 @@
-"""The verb `pkg executables`: what `ros2 run` can start, of all packages or of one."""
+"""The verb `pkg executables`: the executables that `ros2 run` can start, of all packages or of one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print them, sorted by package and path."""
+    """Print the executables, sorted by package and path."""
     for package in [args.package_name] if args.package_name else index.packages():
         for path in index.executables(package, f"Package '{package}' not found"):
             print(path if args.full_path else f"{package} {path.name}")

@@ -1,4 +1,4 @@
-"""The files of a new package: templates/ with names filled in, each told on standard output."""
+"""The files of a new package, made from templates/; each is reported on standard output."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _TEST_DEPENDS = {
 
 
 def write(wanted: NewPackage) -> None:
-    """Make the folder and all files.
+    """Create the folder and all files.
 
     Raises:
-        OSError: one could not be written.
+        OSError: a file could not be written.
     """
     made = _Files(wanted)
     made.folder("")
@@ -34,7 +34,7 @@ def write(wanted: NewPackage) -> None:
 
 
 class _Files:
-    """Makes folders and files below the package's folder, and says so."""
+    """Creates folders and files below the package's folder, and prints their names."""
 
     def __init__(self, wanted: NewPackage) -> None:
         self._wanted = wanted
@@ -63,7 +63,7 @@ class _Files:
 
 
 def _macro(name: str) -> str:
-    """A name for a C++ macro."""
+    """Return a name for a C++ macro."""
     return "".join(char if char.isalnum() else "_" for char in name).upper()
 
 
@@ -110,7 +110,7 @@ def _write_cmake(wanted: NewPackage, made: _Files) -> None:
 
 
 def _cmake_lists(wanted: NewPackage) -> str:
-    """CMakeLists.txt: its parts in the order in which CMake wants them."""
+    """Return CMakeLists.txt, with its parts in the order that CMake needs."""
     ament = wanted.build_type == "ament_cmake"
     tools = (["ament_cmake", "ament_cmake_ros"] if wanted.library else ["ament_cmake"]) if ament else []
     filled = {

@@ -1,4 +1,4 @@
-"""The licenses that `pkg create` knows by name, and their texts where this machine has them."""
+"""The licenses that `pkg create` knows by name, and their texts if this machine has them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SYSTEMS_NAMES = {"Apache-2.0": "Apache-2.0", "GPL-3.0-only": "GPL-3", "LGPL-3.0
 
 
 def write(name: str, file: Path, holder: str) -> bool:
-    """Write the text of a license, if there is one here; returns whether there is."""
+    """Write the text of a license; return whether this machine has it."""
     system = _SYSTEM / _SYSTEMS_NAMES.get(name, "")
     own = _TEMPLATES / f"{name}.in"
     if name in _SYSTEMS_NAMES and system.is_file():

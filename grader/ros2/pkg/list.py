@@ -11,11 +11,11 @@ if TYPE_CHECKING:
 
 
 def add(_: argparse.ArgumentParser) -> None:
-    """It has no arguments."""
+    """Add no arguments: the verb has none."""
 
 
 def run(_: argparse.Namespace) -> int:
-    """Print them, sorted."""
+    """Print the names of the packages, sorted."""
     for name in index.packages():
         print(name)
     return 0

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     completes(parser.add_argument("package_name", help="name of the package"), packages)
-    parser.add_argument("-t", "--tag", help="print the text of this tag only, as in version")
+    parser.add_argument("-t", "--tag", help="print only the text of this tag, for example version")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it.
+    """Print the manifest or the tag.
 
     Raises:
         Ros2Error: there is no such package or tag, or the manifest cannot be read.

@@ -1,4 +1,4 @@
-"""What `pkg create` was asked for."""
+"""The package that `pkg create` should create."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NewPackage:
-    """What is to be made."""
+    """The properties of the new package."""
 
     name: str
     folder: Path
     shown: str
-    """The folder as messages name it: "./my_package"."""
+    """The folder as it appears in messages: "./my_package"."""
     build_type: str
     package_format: int
     description: str

@@ -18,7 +18,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it."""
+    """Print the prefix."""
     prefix = index.prefix_of(args.package_name, "Package not found")
     print(prefix / "share" / args.package_name if args.share else prefix)
     return 0

@@ -72,9 +72,9 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _say_why(node: Node, name: str, asked: str) -> None:
-    """Say what may be wrong when nobody answers: the type, or the name."""
+    """Print what may be wrong if there is no such service: the type, or the name."""
     found: dict[str, Any] = {name: types for name, types in node.get_service_names_and_types() if not hidden(name)}
-    # Our own client is one of those who say what type it has.
+    # Our own client also announces a type.
     others = [kind for kind in found.pop(name, []) if kind != asked]
     hint = f"The service {name} has the type {', '.join(others)}." if others else did_you_mean(name, found)
     if hint:

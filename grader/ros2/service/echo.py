@@ -1,4 +1,4 @@
-"""The verb `service echo`: print the requests and responses of a service, where introspection is switched on."""
+"""The verb `service echo`: print the requests and responses of a service with introspection switched on."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print until Ctrl-C.
+    """Print the events until Ctrl-C.
 
     Raises:
         Ros2Error: the type of the service cannot be found.
@@ -69,7 +69,7 @@ def _class(node: Node, name: str, args: argparse.Namespace) -> Any:  # noqa: ANN
 
 
 def _as_yaml(event: Any, form: Form) -> str:  # noqa: ANN401
-    """An event with the name of its kind instead of the number."""
+    """Return an event with the name of its kind instead of the number."""
     import yaml
 
     shown = plain(event, form)

@@ -1,4 +1,4 @@
-"""The verb `service info`: the type of a service, and how many nodes offer it and use it."""
+"""The verb `service info`: the type of a service, and how many nodes offer and use it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it.
+    """Print the type and the counts.
 
     Raises:
         Ros2Error: there is no such service.

@@ -19,7 +19,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it: a line for each type, should nodes disagree.
+    """Print the type; several lines if the nodes disagree about it.
 
     Raises:
         Ros2Error: there is no such service.

@@ -20,7 +20,7 @@ PRINTED_EVERY_S = 1.0
 
 @dataclass(frozen=True)
 class Bandwidth:
-    """Bytes per second, over `messages` messages; their sizes in bytes."""
+    """The mean of bytes per second over `messages` messages, and the sizes of the messages in bytes."""
 
     per_second: float
     messages: int
@@ -37,7 +37,7 @@ class Bandwidth:
         )
 
     def _amount(self, value: float) -> str:
-        """All four in the unit that suits the first."""
+        """Return all four values in the unit that fits the first."""
         if self.per_second < 1000:
             return f"{value:.0f} B"
         if self.per_second < 1_000_000:
@@ -46,7 +46,7 @@ class Bandwidth:
 
 
 def bandwidth(arrivals: Sequence[tuple[int, int]], now_ns: int) -> Bandwidth:
-    """What messages take that arrived at these times (ns) with these sizes (bytes), until now."""
+    """Return the bandwidth of messages that arrived at these times (ns) with these sizes (bytes), until now."""
     sizes = [size for _, size in arrivals]
     seconds = (now_ns - arrivals[0][0]) * 1e-9
     return Bandwidth(sum(sizes) / seconds, len(sizes), sum(sizes) / len(sizes), min(sizes), max(sizes))
@@ -67,7 +67,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it every second, until Ctrl-C."""
+    """Print the bandwidth every second, until Ctrl-C."""
     import rclpy
     from rclpy.qos import qos_profile_sensor_data
 

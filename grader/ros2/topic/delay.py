@@ -19,7 +19,7 @@ PRINTED_EVERY_S = 1.0
 
 
 def told(delays_ns: Collection[int]) -> str:
-    """Delays (ns), at least one, as text."""
+    """Return the statistics of at least one delay (ns) as text."""
     mean = sum(delays_ns) / len(delays_ns)
     deviation = math.sqrt(math.fsum((delay - mean) ** 2 for delay in delays_ns) / len(delays_ns))
     return (
@@ -29,7 +29,7 @@ def told(delays_ns: Collection[int]) -> str:
 
 
 class Delays:
-    """The delays of the last messages, by a clock that may be a simulated one and may be set back."""
+    """The delays of the last messages, by a clock that may be simulated and may be set back."""
 
     def __init__(self, window: int) -> None:
         self._delays_ns: deque[int] = deque(maxlen=window)
@@ -37,7 +37,7 @@ class Delays:
         self._news = False
 
     def add(self, now_ns: int, stamp_ns: int) -> None:
-        """A message has arrived. The first one only starts the clock."""
+        """Count a message that has arrived. The first one only starts the clock."""
         if now_ns == 0:
             if self._delays_ns:
                 print("time has reset, resetting counters", flush=True)
@@ -51,7 +51,7 @@ class Delays:
         self._news = True
 
     def report(self) -> str | None:
-        """What to print after a second; None as long as nothing has come."""
+        """Return what to print after a second; None before the first message."""
         if not self._delays_ns:
             return None
         news, self._news = self._news, False
@@ -73,7 +73,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it every second, until Ctrl-C.
+    """Print the delay every second, until Ctrl-C.
 
     Raises:
         Ros2Error: the messages have no header.

@@ -34,12 +34,12 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--field", action="append", help="print only this part, as in linear.x; may be given several times"
     )
     add_form(parser)
-    parser.add_argument("--no-lost-messages", action="store_true", help="do not tell when a message is lost")
+    parser.add_argument("--no-lost-messages", action="store_true", help="do not report lost messages")
     parser.add_argument("--raw", action="store_true", help="print the bytes of the messages")
     parser.add_argument(
-        "--filter", dest="filter_expr", help="print only messages m for which this Python expression is true"
+        "--filter", dest="filter_expr", help="print only the messages m for which this Python expression is true"
     )
-    parser.add_argument("--once", action="store_true", help="print one message, then end")
+    parser.add_argument("--once", action="store_true", help="print one message and end")
     parser.add_argument("--timeout", metavar="N", type=positive_float, help="end after N seconds")
     parser.add_argument(
         "--include-message-info", "-i", action="store_true", help="print time stamps and sequence numbers too"
@@ -47,7 +47,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print until Ctrl-C, or for as long as the options say.
+    """Print messages until Ctrl-C, or for as long as the options say.
 
     Raises:
         Ros2Error: the topic's type cannot be found, or it has no such field.
@@ -87,10 +87,10 @@ def _class(node: Node, topic: str, args: argparse.Namespace) -> Any:  # noqa: AN
 
 
 def matching(expression: str) -> Callable[[Any], bool]:
-    """Whether a Python expression of the message m is true.
+    """Return a function that evaluates a Python expression of the message m.
 
     Raises:
-        Ros2Error: it is not Python; the function raises it too, should it fail for a message.
+        Ros2Error: it is not Python. The function raises Ros2Error if the expression fails for a message.
     """
     try:
         code = compile(expression, "<filter>", "eval")
@@ -109,7 +109,7 @@ def matching(expression: str) -> Callable[[Any], bool]:
 
 
 class Printer:
-    """Prints messages as the options ask for; `printed` counts them."""
+    """Prints messages as the options say; `printed` counts them."""
 
     def __init__(self, args: argparse.Namespace) -> None:
         self.printed = 0
@@ -118,7 +118,7 @@ class Printer:
         self._wanted = matching(args.filter_expr) if args.filter_expr else None
 
     def show(self, message: Any, info: dict[str, Any]) -> None:  # noqa: ANN401
-        """Print a message; `info` is what rclpy tells about its way."""
+        """Print a message; `info` is rclpy's information about its transport."""
         if self._args.once and self.printed:
             return
         parts = [values.field(message, field) for field in self._args.field or ()] or [message]
@@ -129,7 +129,7 @@ class Printer:
 
     def _text(self, parts: list[Any], info: dict[str, Any]) -> str:
         if not any(map(is_message, parts)) and not (self._args.csv and len(parts) > 1):
-            # The value itself, as Python writes it; the bytes of a message with --raw.
+            # The value as Python prints it; with --raw, the bytes of a message.
             before = f"---Got new message, message info:---\n{info}\n---Message data:---\n" if info else ""
             return before + "".join(f"{part}\n---\n" for part in parts)
         if self._args.csv:

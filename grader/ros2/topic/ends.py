@@ -1,4 +1,4 @@
-"""The publishers of a topic as a verb finds them that is going to subscribe: its type, and a QoS that suits them."""
+"""What a verb needs to subscribe to a topic: the full name, the type, and messages if there is no publisher."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _POLL_S = 0.02
 
 
 def expanded(node: Node, name: str) -> str:
-    """The full name of a topic: "turtle1/pose" -> "/turtle1/pose".
+    """Return the full name of a topic: "turtle1/pose" -> "/turtle1/pose".
 
     Raises:
         Ros2Error: no topic can have this name.
@@ -37,12 +37,12 @@ def expanded(node: Node, name: str) -> str:
 
 
 def find(node: Node, topic: str, args: argparse.Namespace) -> None:
-    """Wait until the node has found the publishers of a topic, or knows that there is none."""
+    """Wait until the node has discovered the publishers of a topic, or knows that there are none."""
     settle(node, lambda: published(node, topic), getattr(args, "spin_time", None))
 
 
 def type_of(node: Node, topic: str, asked: str) -> Any | None:  # noqa: ANN401
-    """The class of the messages on a topic; None when it is not there. `asked` is its name as the user wrote it.
+    """Return the class of a topic's messages; None if there is no such topic. `asked` is its name as the user wrote it.
 
     Raises:
         Ros2Error: nodes disagree about its type, or the type is not installed.
@@ -57,18 +57,18 @@ def type_of(node: Node, topic: str, asked: str) -> Any | None:  # noqa: ANN401
 
 
 def not_published(asked: str) -> None:
-    """Say that nobody publishes on a topic, as far as is known."""
+    """Warn that the topic seems to have no publishers."""
     print(f"WARNING: topic [{asked}] does not appear to be published yet", flush=True)
 
 
 def nearest_topic(node: Node, topic: str, text: str = "") -> str:
-    """`text`, and the name of the topic that may have been meant."""
+    """Return `text` with the name of the most similar topic."""
     known = [name for name, _ in node.get_topic_names_and_types() if name != topic]
     return did_you_mean(topic, known, text)
 
 
 def wait_for_type(node: Node, topic: str, asked: str) -> Any:  # noqa: ANN401
-    """The class of the messages on a topic, once somebody publishes or subscribes."""
+    """Wait until somebody publishes or subscribes on a topic, and return the class of its messages."""
     import sys
 
     made = type_of(node, topic, asked)

@@ -20,7 +20,7 @@ PRINTED_EVERY_NS = 1_000_000_000
 
 @dataclass(frozen=True)
 class Rate:
-    """What a row of times between messages says; times in s, the rate in Hz, `window` counts the times."""
+    """Statistics of the times between messages: the times in s, the rate in Hz, `window` is the number of times."""
 
     mean_hz: float
     min_s: float
@@ -36,7 +36,7 @@ class Rate:
 
 
 def rate(gaps_ns: Collection[int]) -> Rate:
-    """The rate of messages with these times between them (ns), at least one. All of them zero: a rate of 0."""
+    """Return the statistics of at least one time between messages (ns). If all are zero, the rate is 0."""
     mean = sum(gaps_ns) / len(gaps_ns)
     deviation = math.sqrt(math.fsum((gap - mean) ** 2 for gap in gaps_ns) / len(gaps_ns))
     hertz = 1e9 / mean if mean > 0 else 0.0
@@ -44,7 +44,7 @@ def rate(gaps_ns: Collection[int]) -> Rate:
 
 
 class Arrivals:
-    """The times between the last messages, by a clock that may be a simulated one and may be set back."""
+    """The times between the last messages, by a clock that may be simulated and may be set back."""
 
     def __init__(self, window: int) -> None:
         self._gaps_ns: deque[int] = deque(maxlen=window)
@@ -52,9 +52,9 @@ class Arrivals:
         self._told_ns = 0
 
     def add(self, now_ns: int) -> None:
-        """A message has arrived."""
+        """Count a message that has arrived."""
         if now_ns == 0:
-            # Simulated time that has not begun.
+            # Simulated time has not begun yet.
             if self._gaps_ns:
                 print("time has reset, resetting counters", flush=True)
                 self._gaps_ns.clear()
@@ -66,7 +66,7 @@ class Arrivals:
         self._last_ns = now_ns
 
     def have_news(self) -> bool:
-        """Whether a message has come at least a second after the last news."""
+        """Return whether a message has arrived at least a second after the last report."""
         if not self._gaps_ns:
             return False
         if self._told_ns == 0:
@@ -74,7 +74,7 @@ class Arrivals:
         return self._last_ns >= self._told_ns + PRINTED_EVERY_NS
 
     def news(self) -> Rate:
-        """The rate, once there are news."""
+        """Return the rate if there are new messages; otherwise None."""
         self._told_ns = self._last_ns
         return rate(self._gaps_ns)
 
@@ -94,16 +94,16 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--filter",
         dest="filter_expr",
         metavar="EXPR",
-        help="count only messages m for which this Python expression is true",
+        help="count only the messages m for which this Python expression is true",
     )
     parser.add_argument(
-        "--wall-time", action="store_true", help="measure in real time, also where a simulation gives the time"
+        "--wall-time", action="store_true", help="measure in real time, even if there is simulated time"
     )
     add_spin(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the rate every second in which something arrived, until Ctrl-C."""
+    """Print the rate for every second in which messages arrived, until Ctrl-C."""
     import rclpy
     from rclpy.clock import Clock
     from rclpy.clock_type import ClockType
@@ -125,7 +125,7 @@ def run(args: argparse.Namespace) -> int:
             if wanted is None or wanted(message):
                 arrivals.add(clock.now().nanoseconds)
 
-        # Without a filter, what is in a message does not matter, and reading it would take time.
+        # Without a filter, the content of a message does not matter, and decoding it would take time.
         node.create_subscription(made, topic, count, qos_profile_sensor_data, raw=wanted is None)
         while rclpy.ok():
             spin_until(node, arrivals.have_news)

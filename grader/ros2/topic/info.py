@@ -1,4 +1,4 @@
-"""The verb `topic info`: the type of a topic, and who publishes and subscribes."""
+"""The verb `topic info`: the type of a topic, and its publishers and subscribers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it.
+    """Print the type, and the publishers and subscribers.
 
     Raises:
         Ros2Error: there is no such topic.

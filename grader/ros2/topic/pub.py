@@ -1,4 +1,4 @@
-"""The verb `topic pub`: publish a message, once or again and again."""
+"""The verb `topic pub`: publish a message once or repeatedly."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 _TOLD_EVERY_S = 1.0
 _ACKNOWLEDGED_S = 1.0
-"""Ctrl-C is not noticed while messages are waited to be acknowledged."""
+"""How long one wait for acknowledgements takes: Ctrl-C has no effect during the wait."""
 _POLL_S = 0.01
 
 
 def nonnegative_int(text: str) -> int:
-    """A whole number from 0 on, for argparse, which names this function in its error."""
+    """Return a whole number of at least 0, for argparse, whose error message contains this function's name."""
     value = int(text)
     if value < 0:
         raise ValueError
@@ -49,16 +49,16 @@ def add(parser: argparse.ArgumentParser) -> None:
         "-p", "--print", metavar="N", type=int, default=1, help="print only every N-th message (default: 1)"
     )
     times = parser.add_mutually_exclusive_group()
-    times.add_argument("-1", "--once", action="store_true", help="publish one message, then end")
-    times.add_argument("-t", "--times", type=nonnegative_int, default=0, help="publish so many messages, then end")
+    times.add_argument("-1", "--once", action="store_true", help="publish one message and end")
+    times.add_argument("-t", "--times", type=nonnegative_int, default=0, help="publish this many messages and end")
     parser.add_argument(
         "-w",
         "--wait-matching-subscriptions",
         type=nonnegative_int,
-        help="wait for so many subscriptions first (default: 1 with --once or --times, else 0)",
+        help="wait for this many subscriptions first (default: 1 with --once or --times, else 0)",
     )
     parser.add_argument(
-        "--max-wait-time-secs", type=positive_float, help="wait for them at most so many seconds (default: for ever)"
+        "--max-wait-time-secs", type=positive_float, help="wait at most this many seconds for them (default: for ever)"
     )
     parser.add_argument(
         "--keep-alive",
@@ -73,10 +73,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Publish until Ctrl-C, or as often as asked for.
+    """Publish until Ctrl-C, or as often as the options say.
 
     Raises:
-        Ros2Error: the type is not installed, a value does not fit, or the subscriptions do not come.
+        Ros2Error: the type is not installed, a value does not fit, or the subscriptions do not appear.
     """
     from grader.graph.discovery import cli_node, settle
 
@@ -97,7 +97,7 @@ def run(args: argparse.Namespace) -> int:
         except Exception as error:
             wrong = f"The topic '{args.topic_name}' cannot be published on: {str(error).splitlines()[0]}"
             raise Ros2Error(wrong) from error
-        # Who is there already shall get the first message too.
+        # The subscriptions that exist already should get the first message, too.
         settle(node, lambda: publisher.get_subscription_count() >= max(wanted, 1), args.spin_time)
         if wanted:
             _wait_for_subscriptions(node, publisher, topic, wanted, args.max_wait_time_secs)
@@ -114,7 +114,7 @@ def _publish(
     times: int,
     args: argparse.Namespace,
 ) -> None:
-    """Publish `times` messages, 0 for ever, and leave the last one time to arrive."""
+    """Publish `times` messages (0: for ever), and wait until the last one can have arrived."""
     from rclpy.duration import Duration
 
     from grader.graph.discovery import nap, spin_until
@@ -123,7 +123,7 @@ def _publish(
     sent = 0
     while not times or sent < times:
         left = begun + sent / args.rate - time.monotonic()
-        # The node's own clock has to hear of simulated time.
+        # Spin the node, so that its clock receives simulated time.
         spin_until(node, lambda: False, left) if args.use_sim_time else nap(left)
         now = node.get_clock().now().to_msg()
         for stamp in stamps:

@@ -10,10 +10,10 @@ from grader.common.refusal import of_the_machine, refusal
 @pytest.mark.parametrize(
     ("error", "said"),
     [
-        (OSError(errno.ENOSPC, "x", "/var/cache"), "The disk is full for /var/cache: make room there"),
+        (OSError(errno.ENOSPC, "x", "/var/cache"), "The disk is full for /var/cache: free some space there"),
         (OSError(errno.EMFILE, "x", "/var/cache"), "`ulimit -n 4096`"),
-        (BlockingIOError(errno.EAGAIN, "x"), "starts no more processes for you"),
-        (RuntimeError("can't start new thread"), "starts no more processes for you"),
+        (BlockingIOError(errno.EAGAIN, "x"), "cannot start more processes for you"),
+        (RuntimeError("can't start new thread"), "cannot start more processes for you"),
         (MemoryError(), "has no memory left"),
         (OSError(errno.ENOMEM, "x"), "has no memory left"),
         (
@@ -21,7 +21,7 @@ from grader.common.refusal import of_the_machine, refusal
             "(Operation not permitted): see what",
         ),
         (OSError(errno.EROFS, "x", 7), "The disk cannot be written to: "),
-        (OSError(), "it did not say why"),
+        (OSError(), "it gave no reason"),
     ],
 )
 def test_what_the_system_refuses_is_one_sentence_with_what_to_do(error: BaseException, said: str) -> None:

@@ -61,7 +61,8 @@ def test_every_file_with_a_solution_has_a_cell(step: str) -> None:
 def test_a_notebook_is_short_and_names_the_lesson(step: str) -> None:
     prose = " ".join("".join(cell["source"]) for cell in cells_of(step) if cell["cell_type"] == "markdown")
     assert 60 <= len(prose.split()) <= 450
-    assert f"`%lesson` in a cell of its own shows it here; in the course it is `course/{step}/lesson.md`" in prose
+    assert "`%lesson` in a cell of its own shows the lesson here." in prose
+    assert f"In the course it is the file `course/{step}/lesson.md`" in prose
     # A notebook may be opened from any folder, so a link to a file could lead nowhere.
     assert re.findall(r"\]\((?!https://)", prose) == []
 

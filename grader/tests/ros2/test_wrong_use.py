@@ -105,7 +105,7 @@ FILES_ONLY = {
     "ros2 topic pub /a std_msgs/msg/UInt8 '{data: 2.5}'": (1, ["a whole number was expected"]),
     "ros2 topic pub /a std_msgs/msg/Bool '{data: 2}'": (1, ["true or false was expected"]),
     "ros2 topic pub '/a b' std_msgs/msg/Bool": (1, ["The topic '/a b' cannot be published on"]),
-    "ros2 topic pub -n 'a b' /a std_msgs/msg/Bool": (1, ["No ROS 2 node could be made"]),
+    "ros2 topic pub -n 'a b' /a std_msgs/msg/Bool": (1, ["The ROS 2 node could not be created"]),
 }
 WITH_TURTLESIM = {
     "ros2 topic info /turtle1/cmd_vl": (1, ["Unknown topic", "Did you mean '/turtle1/cmd_vel'?"]),

@@ -16,7 +16,10 @@ HERE = Path("/nowhere/course/.venv")
 @pytest.mark.parametrize(
     ("said", "told"),
     [
-        ("Error: [Errno 28] No space left on device", "The disk is full for /nowhere/course/.venv: make room there"),
+        (
+            "Error: [Errno 28] No space left on device",
+            "The disk is full for /nowhere/course/.venv: free some space there",
+        ),
         ("  cause: failed to copy: No space left on device (os error 28)", "The disk is full for "),
         ("Error: [Errno 30] Read-only file system: '/x'", "/.venv cannot be written to (Read-only file system): copy"),
         ("Error: [Errno 13] Permission denied: '/x'", "/.venv cannot be written to (Permission denied): copy"),
@@ -69,7 +72,7 @@ def test_a_full_disk_behind_standard_output_is_a_sentence() -> None:
             [sys.executable, "-c", code], cwd=root, stdout=full, stderr=subprocess.PIPE, text=True, check=False
         )
     assert (done.returncode, done.stderr.count("\n")) == (3, 1), done.stderr
-    assert done.stderr.startswith("The disk is full: make room there")
+    assert done.stderr.startswith("The disk is full: free some space there")
 
 
 def test_ctrl_c_says_how_to_go_on(capsys: pytest.CaptureFixture[str]) -> None:

@@ -22,7 +22,7 @@ setup(
             "test_node = my_robot_controller.my_first_node:main",
             # END SOLUTION
             # BEGIN STARTER
-            # # TODO 5: the entry point test_node, which leads to the function main in my_first_node.py.
+            # # TODO 5: add the entry point test_node. It calls the function main in my_first_node.py.
             # END STARTER
         ],
     },

@@ -23,7 +23,7 @@ setup(
             "draw_circle = my_robot_controller.draw_circle:main",
             # END SOLUTION
             # BEGIN STARTER
-            # # TODO 2: the entry point draw_circle, beside the one above.
+            # # TODO 2: add the entry point draw_circle after the one above.
             # END STARTER
         ],
     },

@@ -24,7 +24,7 @@ setup(
             "pose_subscriber = my_robot_controller.pose_subscriber:main",
             # END SOLUTION
             # BEGIN STARTER
-            # # TODO 5: the entry point pose_subscriber.
+            # # TODO 5: add the entry point pose_subscriber.
             # END STARTER
         ],
     },

@@ -4,7 +4,7 @@ import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
-# TODO 1: import the message type of /turtle1/cmd_vel. It is called Twist and lives in geometry_msgs.msg.
+# TODO 1: import the message type of /turtle1/cmd_vel. It is the class Twist of the module geometry_msgs.msg.
 
 
 class DrawCircleNode(Node):
@@ -12,9 +12,9 @@ class DrawCircleNode(Node):
 
     def __init__(self):
         super().__init__("draw_circle")
-        # TODO 2: create a publisher and keep it in self. It wants three things: the message type, the
+        # TODO 2: create a publisher and keep it in self. It needs three things: the message type, the
         # name of the topic, and how many messages may wait in the queue (10).
-        # TODO 3: create a timer and keep it in self. It wants the period in seconds and the method to call.
+        # TODO 3: create a timer and keep it in self. It needs the period in seconds and the method to call.
         self.get_logger().info("Draw circle node has been started")
 
     def send_velocity_command(self):

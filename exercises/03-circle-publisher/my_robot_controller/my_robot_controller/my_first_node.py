@@ -1,4 +1,4 @@
-"""The node of step 01: it counts, one log line a second."""
+"""The node of step 01: it counts, one log line per second."""
 
 import rclpy
 from rclpy.executors import ExternalShutdownException

@@ -1,4 +1,4 @@
-"""Say where the turtle is, and how far it has come."""
+"""Log where the turtle is, and how far it has driven."""
 
 import math
 
@@ -13,9 +13,9 @@ class PoseSubscriberNode(Node):
 
     def __init__(self):
         super().__init__("pose_subscriber")
-        self.pose = None  # nothing has been heard yet
+        self.pose = None  # no pose has arrived yet
         self.distance = 0.0
-        # TODO 1: create a subscription and keep it in self. It wants four things: the message type, the name of the
+        # TODO 1: create a subscription and keep it in self. It needs four things: the message type, the name of the
         # topic, the method to call with each message, and the queue size (10).
         # TODO 2: create a timer that calls self.report once a second.
 
@@ -25,8 +25,8 @@ class PoseSubscriberNode(Node):
         pass
 
     def report(self):
-        # TODO 4: log one line, two digits behind each point: x=5.54 y=5.54 distance=0.00
-        # As long as no pose has been heard there is nothing to log.
+        # TODO 4: log one line, with two digits after each decimal point: x=5.54 y=5.54 distance=0.00
+        # Before the first pose has arrived, there is nothing to log.
         pass
 
 

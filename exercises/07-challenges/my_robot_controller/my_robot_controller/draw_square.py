@@ -27,7 +27,7 @@ class DrawSquareNode(Node):
         if self.publisher.get_subscription_count() == 0:
             return  # nobody listens yet: a command sent now would be lost
         msg = Twist()
-        # TODO c: set the numbers that belong to the state, count the call, and change the state when it is over.
+        # TODO c: set the speeds that belong to the state, count the call, and change the state when it is over.
         self.publisher.publish(msg)
 
 

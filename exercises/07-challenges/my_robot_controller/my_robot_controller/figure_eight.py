@@ -13,7 +13,7 @@ PERIOD = 0.1  # s
 
 
 class FigureEightNode(Node):
-    """Changes the side of its turn when a lobe is closed, and stops after two."""
+    """Turns to the other side when a lobe is closed, and stops after two lobes."""
 
     def __init__(self):
         super().__init__("figure_eight")
@@ -25,7 +25,7 @@ class FigureEightNode(Node):
         if self.publisher.get_subscription_count() == 0:
             return  # nobody listens yet: a command sent now would be lost
         msg = Twist()
-        # TODO b: a lobe of radius RADIUS to the left takes TICKS calls, one to the right as many; then stand still.
+        # TODO b: drive a lobe of radius RADIUS to the left in TICKS calls, then one to the right; then stand still.
         self.publisher.publish(msg)
 
 

@@ -13,12 +13,12 @@ CLOSE = 0.05  # m
 
 
 class GoToGoalNode(Node):
-    """Looks where it is before each command."""
+    """Looks at the pose before each command."""
 
     def __init__(self):
         super().__init__("go_to_goal")
         self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
-        # TODO d: a subscription to the turtle's pose.
+        # TODO d: subscribe to the turtle's pose.
         self.timer = self.create_timer(0.1, self.step)
         self.pose = None
 

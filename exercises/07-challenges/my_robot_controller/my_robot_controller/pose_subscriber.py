@@ -1,4 +1,4 @@
-"""Say where the turtle is, and how far it has come."""
+"""Log where the turtle is, and how far it has driven."""
 
 import math
 
@@ -13,7 +13,7 @@ class PoseSubscriberNode(Node):
 
     def __init__(self):
         super().__init__("pose_subscriber")
-        self.pose = None  # nothing has been heard yet
+        self.pose = None  # no pose has arrived yet
         self.distance = 0.0
         self.subscription = self.create_subscription(Pose, "/turtle1/pose", self.pose_received, 10)
         self.timer = self.create_timer(1.0, self.report)

@@ -1,4 +1,4 @@
-"""The node of step 01: it counts, one log line a second."""
+"""The node of step 01: it counts, one log line per second."""
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -15,9 +15,9 @@ class FirstNode(Node):
         self.timer = self.create_timer(1.0, self.count)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 1: the node is to be called first_node.
+        # # TODO 1: change the name of the node to first_node.
         # super().__init__("node_without_a_name")
-        # # TODO 2: begin a counter at 0 and keep it in self.
+        # # TODO 2: create a counter that starts at 0, and keep it in self.
         # # TODO 3: create a timer that calls self.count once a second, and keep it in self.
         # END STARTER
 

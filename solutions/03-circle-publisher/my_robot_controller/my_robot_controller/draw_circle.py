@@ -8,7 +8,7 @@ from rclpy.node import Node
 from geometry_msgs.msg import Twist
 # END SOLUTION
 # BEGIN STARTER
-# # TODO 1: import the message type of /turtle1/cmd_vel. It is called Twist and lives in geometry_msgs.msg.
+# # TODO 1: import the message type of /turtle1/cmd_vel. It is the class Twist of the module geometry_msgs.msg.
 # END STARTER
 
 
@@ -22,9 +22,9 @@ class DrawCircleNode(Node):
         self.timer = self.create_timer(0.5, self.send_velocity_command)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 2: create a publisher and keep it in self. It wants three things: the message type, the
+        # # TODO 2: create a publisher and keep it in self. It needs three things: the message type, the
         # # name of the topic, and how many messages may wait in the queue (10).
-        # # TODO 3: create a timer and keep it in self. It wants the period in seconds and the method to call.
+        # # TODO 3: create a timer and keep it in self. It needs the period in seconds and the method to call.
         # END STARTER
         self.get_logger().info("Draw circle node has been started")
 

@@ -1,4 +1,4 @@
-"""Say where the turtle is, and how far it has come."""
+"""Log where the turtle is, and how far it has driven."""
 
 import math
 
@@ -13,14 +13,14 @@ class PoseSubscriberNode(Node):
 
     def __init__(self):
         super().__init__("pose_subscriber")
-        self.pose = None  # nothing has been heard yet
+        self.pose = None  # no pose has arrived yet
         self.distance = 0.0
         # BEGIN SOLUTION
         self.subscription = self.create_subscription(Pose, "/turtle1/pose", self.pose_received, 10)
         self.timer = self.create_timer(1.0, self.report)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 1: create a subscription and keep it in self. It wants four things: the message type, the name of the
+        # # TODO 1: create a subscription and keep it in self. It needs four things: the message type, the name of the
         # # topic, the method to call with each message, and the queue size (10).
         # # TODO 2: create a timer that calls self.report once a second.
         # END STARTER
@@ -44,8 +44,8 @@ class PoseSubscriberNode(Node):
         self.get_logger().info(f"x={self.pose.x:.2f} y={self.pose.y:.2f} distance={self.distance:.2f}")
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO 4: log one line, two digits behind each point: x=5.54 y=5.54 distance=0.00
-        # # As long as no pose has been heard there is nothing to log.
+        # # TODO 4: log one line, with two digits after each decimal point: x=5.54 y=5.54 distance=0.00
+        # # Before the first pose has arrived, there is nothing to log.
         # pass
         # END STARTER
 

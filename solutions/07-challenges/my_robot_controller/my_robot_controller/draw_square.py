@@ -37,7 +37,7 @@ class DrawSquareNode(Node):
             self.change_state()
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO c: set the numbers that belong to the state, count the call, and change the state when it is over.
+        # # TODO c: set the speeds that belong to the state, count the call, and change the state when it is over.
         # END STARTER
         self.publisher.publish(msg)
         # BEGIN SOLUTION

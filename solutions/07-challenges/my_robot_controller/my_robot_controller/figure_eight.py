@@ -13,7 +13,7 @@ PERIOD = 0.1  # s
 
 
 class FigureEightNode(Node):
-    """Changes the side of its turn when a lobe is closed, and stops after two."""
+    """Turns to the other side when a lobe is closed, and stops after two lobes."""
 
     def __init__(self):
         super().__init__("figure_eight")
@@ -34,7 +34,7 @@ class FigureEightNode(Node):
         self.ticks += 1
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO b: a lobe of radius RADIUS to the left takes TICKS calls, one to the right as many; then stand still.
+        # # TODO b: drive a lobe of radius RADIUS to the left in TICKS calls, then one to the right; then stand still.
         # END STARTER
         self.publisher.publish(msg)
 

@@ -13,7 +13,7 @@ CLOSE = 0.05  # m
 
 
 class GoToGoalNode(Node):
-    """Looks where it is before each command."""
+    """Looks at the pose before each command."""
 
     def __init__(self):
         super().__init__("go_to_goal")
@@ -22,7 +22,7 @@ class GoToGoalNode(Node):
         self.subscription = self.create_subscription(Pose, "/turtle1/pose", self.pose_received, 10)
         # END SOLUTION
         # BEGIN STARTER
-        # # TODO d: a subscription to the turtle's pose.
+        # # TODO d: subscribe to the turtle's pose.
         # END STARTER
         self.timer = self.create_timer(0.1, self.step)
         self.pose = None

@@ -7,7 +7,7 @@ from rclpy.node import Node
 
 
 class OwnCircleNode(Node):
-    """Publishes the same command again and again, at a rate and of a size of its own."""
+    """Publishes the same command again and again, with the student's own radius and rate."""
 
     def __init__(self):
         super().__init__("own_circle")
