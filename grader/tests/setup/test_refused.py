@@ -16,10 +16,7 @@ HERE = Path("/nowhere/course/.venv")
 @pytest.mark.parametrize(
     ("said", "told"),
     [
-        (
-            "Error: [Errno 28] No space left on device",
-            "The disk is full for /nowhere/course/.venv: free some space there",
-        ),
+        ("Error: [Errno 28] No space left on device", "The disk is full for /nowhere/course/.venv: free some space"),
         ("  cause: failed to copy: No space left on device (os error 28)", "The disk is full for "),
         ("Error: [Errno 30] Read-only file system: '/x'", "/.venv cannot be written to (Read-only file system): copy"),
         ("Error: [Errno 13] Permission denied: '/x'", "/.venv cannot be written to (Permission denied): copy"),
