@@ -1,8 +1,8 @@
-"""What `grader check` costs, in F: a bare colcon build of the package and a bare process with one rclpy node.
+"""What `grader check` costs in F, that is a bare colcon build of the package plus a bare process with one rclpy node.
 
     python -m grader.benchmarks.check [--times N] [--submission FOLDER]
 
-Everything is measured in one run on the same machine, alternating, so that a busy moment strikes all alike.
+Everything is measured in one run on the same machine, in turns, so that a busy moment affects all measurements.
 """
 
 from __future__ import annotations

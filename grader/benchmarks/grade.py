@@ -1,12 +1,12 @@
-"""What a class costs, a submission, in F: on this machine for several sizes, and by Dask's workers.
+"""What a class costs per submission, in F: on this machine for several sizes, and with Dask's workers.
 
     python -m grader.benchmarks.grade [--sizes 25,50,100,200] [--workers 1,2,4] [--dask-size 50] [--jobs N]
                                       [--mix right|all] [--times N]
 
-F (see grader.benchmarks.check) is measured before and after, in the same run. The class is mixed: of eight submissions
-four are right, three are wrong each in its own way, and one is hostile (`--mix right`: all are right). Every submission
-differs from every other by a comment, so none is graded for another. Memory is that of all processes of the run
-together, the cells' included, looked at several times a second: what they share is counted once.
+F (see grader.benchmarks.check) is measured before and after, in the same run. The class is mixed: of eight submissions,
+four are right, three are wrong in different ways, and one is hostile (`--mix right`: all are right). The submissions
+differ by a comment, so that the grader grades each of them. Memory is that of all processes of the run together, with
+those in the cells, sampled several times per second; shared memory is counted once.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ _STEP = "03-circle-publisher"
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _LOOK_S = 0.25
 AIM_F = 1.0
-"""Wall time a submission, with two processors."""
+"""The aim for the wall time per submission, with two processors."""
 
 
 @dataclass(frozen=True)
 class ClassCost:
-    """Seconds a submission, and the peak of the run's memory (MB)."""
+    """The seconds per submission, and the peak of the run's memory (MB)."""
 
     size: int
     wall_s: float
@@ -57,8 +57,12 @@ def main() -> None:
     parser.add_argument("--sizes", default="25,50,100,200", help="submissions in a class (25,50,100,200)")
     parser.add_argument("--workers", default="1,2,4", help="Dask workers of one thread each (1,2,4); empty for none")
     parser.add_argument("--dask-size", type=int, default=50, help="submissions in a class by Dask (50)")
-    parser.add_argument("--jobs", type=int, help="submissions at once; as `grader grade` has it when left out")
-    parser.add_argument("--mix", choices=("all", "right"), default="all", help="what the class is made of")
+    parser.add_argument(
+        "--jobs", type=int, help="how many submissions are graded at once (default: as in `grader grade`)"
+    )
+    parser.add_argument(
+        "--mix", choices=("all", "right"), default="all", help="which kinds of submissions are in the class"
+    )
     parser.add_argument("--times", type=int, default=3, help="repetitions of F before, and after (3)")
     asked = parser.parse_args()
     sizes = [int(size) for size in asked.sizes.split(",") if size]
@@ -103,7 +107,7 @@ def _dask(folder: Path, size: int, workers: int, mix: str) -> ClassCost:
 
 
 def _class(folder: Path, size: int, mix: str) -> Path:
-    """Write the class; submissions alike in kind differ by a comment."""
+    """Write the class; submissions of the same kind differ by a comment."""
     from grader.tests.attack import make_attack, read_attacks
     from grader.tests.case import copy_solution
 
@@ -131,7 +135,7 @@ def _class(folder: Path, size: int, mix: str) -> Path:
 def _graded(submitted: Path, size: int, out: Path, options: list[str], also: list[int] | None = None) -> ClassCost:
     command = [_GRADER, "grade", str(submitted), "--exercise", _STEP, "--out", str(out), *options]
     with _watched(also or []) as peak:
-        # `cost` waits for all children, and a cluster's go on.
+        # `cost` waits for all children, but those of a cluster continue.
         measured = cost(command) if also is None else _alone(command)
     found = len(list((out / "reports").glob("*.json")))
     if found != size:
@@ -141,12 +145,12 @@ def _graded(submitted: Path, size: int, out: Path, options: list[str], also: lis
 
 
 def _alone(command: list[str]) -> Cost:
-    """The cost of a command whose work is done by others, of which only those that have ended are counted."""
+    """Return the cost of a command whose work other processes do; only those that have ended are counted."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     begun = time.monotonic()
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     wall_s = time.monotonic() - begun
-    # What a sandbox leaves is reaped by us (measure.cost has made us its subreaper): only then it counts.
+    # This process reaps what a sandbox leaves (measure.cost has made it the subreaper); only reaped processes count.
     while os.waitpid(-1, os.WNOHANG)[0]:
         pass
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -155,7 +159,7 @@ def _alone(command: list[str]) -> Cost:
 
 @contextmanager
 def _cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
-    """A scheduler and workers of one thread each: the address, and the ids of their processes."""
+    """Start a scheduler and workers with one thread each; yield the address and the ids of their processes."""
     folder.mkdir()
     file = folder / "scheduler.json"
     started: list[subprocess.Popen[bytes]] = []
@@ -175,7 +179,7 @@ def _cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
         _wait_for_workers(address, workers)
         yield address.removeprefix("tcp://"), [process.pid for process in started]
     finally:
-        # One after the other: a worker that hears of its own end and of the scheduler's at once may never end.
+        # Stop one after the other: a worker that is stopped together with the scheduler may never end.
         for process in reversed(started):
             process.terminate()
             process.wait()
@@ -190,7 +194,7 @@ def _wait_for_workers(address: str, workers: int) -> None:
 
 @contextmanager
 def _watched(also: list[int]) -> Iterator[list[float]]:
-    """The memory of this process's descendants and of `also` with theirs, from time to time (MB)."""
+    """Sample the memory of this process's descendants and of `also` with their descendants (MB)."""
     seen: list[float] = []
     stopped = Event()
 
@@ -216,7 +220,7 @@ def _family(pids: list[int]) -> set[int]:
         if pid in found:
             continue
         found.add(pid)
-        # Any of them may end meanwhile.
+        # Any of them may end in the meantime.
         with suppress(OSError):
             for file in Path(f"/proc/{pid}/task").glob("*/children"):
                 with suppress(OSError):
@@ -225,7 +229,7 @@ def _family(pids: list[int]) -> set[int]:
 
 
 def _own_mb(pid: int) -> float:
-    """A process's share of memory: what several use is divided among them (PSS)."""
+    """Return a process's share of memory; memory that several processes share is divided among them (PSS)."""
     with suppress(OSError):
         for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines():
             if line.startswith("Pss:"):
@@ -234,7 +238,7 @@ def _own_mb(pid: int) -> float:
 
 
 def _cpu_s(pid: int) -> float:
-    """CPU seconds of a process, of its children that have ended, and of those that it has now."""
+    """Return the CPU seconds of a process, of its children that have ended, and of those that are running."""
     total = 0.0
     for each in _family([pid]):
         try:
@@ -246,16 +250,16 @@ def _cpu_s(pid: int) -> float:
 
 
 def _say(row: tuple[str, ClassCost]) -> None:
-    print(f"{row[0]}: {row[1].wall_s:.2f} s wall a submission", file=sys.stderr, flush=True)
+    print(f"{row[0]}: {row[1].wall_s:.2f} s wall per submission", file=sys.stderr, flush=True)
 
 
 def _print(f_s: float, times: int, rows: list[tuple[str, ClassCost]]) -> None:
     print(f"F = {f_s:.2f} s wall (median of {times})\n")
-    print(f"{'a submission':18}{'wall s':>8}{'wall F':>8}{'CPU s':>8}{'CPU F':>8}{'peak MB':>9}")
+    print(f"{'per submission':18}{'wall s':>8}{'wall F':>8}{'CPU s':>8}{'CPU F':>8}{'peak MB':>9}")
     for name, one in rows:
         figures = (one.wall_s, one.wall_s / f_s, one.cpu_s, one.cpu_s / f_s)
         print(f"{name:18}" + "".join(f"{figure:8.2f}" for figure in figures) + f"{one.peak_mb:9.0f}")
-    print(f"\naim: at most {AIM_F:.1f} F wall a submission with two processors, whatever the size of the class")
+    print(f"\naim: at most {AIM_F:.1f} F wall per submission with two processors, for any size of the class")
 
 
 if __name__ == "__main__":

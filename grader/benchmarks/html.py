@@ -1,9 +1,9 @@
-"""What the pages cost: making one, in F; a browser's time to show it; a class of 200.
+"""What the pages cost: the time to make one, in F; a browser's time to show it; a class of 200.
 
     python -m grader.benchmarks.html [--times N] [--submission FOLDER]
 
-F (see grader.benchmarks.check) and the cost of the page are measured in one run, alternating. The page's cost is what
-`grader check --html` needs beyond `grader check`, imports included.
+F (see grader.benchmarks.check) and the cost of the page are measured in one run, in turns. The page's cost is what
+`grader check --html` needs in addition to `grader check`, with the imports.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _CLASS = 200
 
-# In a process that has done all that `grader check` does but the page; prints the seconds of the page and its bytes.
+# Runs in a process that has done everything of `grader check` except the page; prints the page's seconds and bytes.
 _PAGE = """
 import sys, time
 from pathlib import Path
@@ -93,7 +93,7 @@ def _showing(folder: Path, times: int) -> None:
     print(f"making a class page {cost(making).wall_s:6.2f} s for {_CLASS}, with the start of Python")
     browser = find_browser()
     if browser is None:
-        print("no Chromium: what a browser needs to show the pages was not measured")
+        print("no Chromium: the browser's time to show the pages was not measured")
         return
     save_class_page(reports, folder / "class.html")
     with launched(browser) as chromium:
@@ -106,7 +106,7 @@ def _showing(folder: Path, times: int) -> None:
 
 
 def _opening(tab: Page, address: str) -> tuple[float, float]:
-    """Open a page: seconds in its scripts, seconds until it is loaded and laid out."""
+    """Open a page; return the seconds in its scripts, and the seconds until it is loaded and laid out."""
     session = tab.context.new_cdp_session(tab)
     session.send("Performance.enable")
     tab.goto(address)

@@ -1,11 +1,11 @@
-"""What a mistake costs: how soon the files alone tell it, and how long the slowest one in simulated time takes, in F.
+"""What a mistake costs: how soon the files alone show it, and how long the slowest one in simulated time takes, in F.
 
     python -m grader.benchmarks.mistakes [--only NNN ...]
 
-F is what the same work costs bare: a colcon build of the package and a process with one rclpy node for each node that
-the exercise runs (benchmarks/bare.py), each the median of three; 04-package-files runs two, 07-challenges four.
-Machines change their pace within the minutes that this takes, so it is measured again every few cases, and what seems
-to be over the aim is measured three times more, each time beside F: the median counts.
+F is what the same work costs bare: a colcon build of the package, and a process with one rclpy node for each node that
+the exercise runs (benchmarks/bare.py), each the median of three; 04-package-files runs two nodes, 07-challenges four.
+The speed of a machine changes within the minutes that this takes, so F is measured again every few cases. A case that
+seems to be over the aim is measured three times more, each time next to F, and the median counts.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ CASES_A_PIECE = 10
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--only", nargs="*", default=[], help="numbers of cases; all when left out")
+    parser.add_argument("--only", nargs="*", default=[], help="numbers of cases (default: all)")
     asked = parser.parse_args()
     cases = [case for case in read_cases(MISTAKES) if case.result != "usage"]
     cases = [case for case in cases if not asked.only or case.name.startswith(tuple(asked.only))]
@@ -68,7 +68,7 @@ def main() -> None:
 
 
 def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
-    """What the checks of some cases cost in F, without those of which wall time judged something."""
+    """Return what the checks of some cases cost in F, without the cases that needed wall time."""
     bare = _bare_s(folder / "bare")
     found: dict[str, float] = {}
     for case in cases:
@@ -83,14 +83,14 @@ def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
 
 
 def _beside_f(case: Case, folder: Path) -> float:
-    """The ratio of a check to an F that is measured right before it; infinite where wall time judged this time."""
+    """Return the ratio of a check to an F measured right before it; infinite if the check needed wall time."""
     bare = _bare_s(folder / "bare")
     seconds = _whole_s(case, folder / "whole")
     return math.inf if seconds is None else seconds / _f_s(case, bare)
 
 
 def _bare_s(folder: Path) -> dict[str, float]:
-    """Seconds of each part of F: of one measurement alone, a ratio would tell the machine's mood."""
+    """Return the seconds of each part of F; a single measurement would vary too much."""
     costs = [bare_costs(SOLUTION, folder / str(turn)) for turn in range(3)]
     return {part: statistics.median(each[part].wall_s for each in costs) for part in costs[0]}
 
@@ -104,7 +104,7 @@ def _exercise(case: Case) -> Exercise:
 
 
 def _static_s(case: Case, folder: Path) -> float:
-    """Seconds from a folder to what its files tell."""
+    """Return the seconds from a folder to the findings in its files."""
     given = make_submission(case, folder)
     exercise = _exercise(case)
     begun = time.monotonic()
@@ -114,7 +114,7 @@ def _static_s(case: Case, folder: Path) -> float:
 
 
 def _whole_s(case: Case, folder: Path) -> float | None:
-    """Seconds of a whole check; None where wall time judged something."""
+    """Return the seconds of a whole check; None if it needed wall time."""
     begun = time.monotonic()
     graded = grade(case, "auto", folder)
     seconds = time.monotonic() - begun

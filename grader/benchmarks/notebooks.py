@@ -1,11 +1,11 @@
-"""What autograde of a notebook costs, against its parts; and a class, against nbgrader alone.
+"""What autograde of a notebook costs, compared with its parts; and a class, compared with nbgrader alone.
 
     python -m grader.benchmarks.notebooks [--repeat N] [--class N]
 
-In one run, on the same machine: `nbgrader autograde` of step 03's solved notebook; of the same notebook with an empty
-check (nbgrader's own cost: its imports, a kernel, the database); one `grader check` of the package. The first should
-cost at most 1.5 times the other two together. Then a class, autograded by nbgrader, one after the other, and graded by
-`grader gradebook sync`, side by side.
+It measures in one run, on the same machine: `nbgrader autograde` of step 03's solved notebook; the same for a notebook
+with an empty check (nbgrader's own cost: its imports, a kernel, the database); one `grader check` of the package. The
+first should cost at most 1.5 times the other two together. Then it measures a class: nbgrader autogrades it one by one,
+and `grader gradebook sync` grades several at once.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ AT_MOST = 1.5
 
 
 def seconds(argv: list[str], cwd: Path) -> float:
-    """How long a command takes; its output is shown only where it fails."""
+    """Return the seconds of a command; show its output only if it fails."""
     env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
     begun = time.monotonic()
     done = subprocess.run(argv, cwd=cwd, env=env, capture_output=True, text=True, check=False)
@@ -43,7 +43,7 @@ def seconds(argv: list[str], cwd: Path) -> float:
 
 
 def nbgrader(root: Path, *words: str) -> float:
-    """Seconds of one command of nbgrader."""
+    """Return the seconds of an nbgrader command."""
     return seconds(interpreter("-m", "nbgrader", *words).argv, root / "course")
 
 
@@ -55,11 +55,11 @@ c.CourseDirectory.release_directory = "exercises"
 c.CourseDirectory.submitted_directory = "class/submitted"
 c.GenerateAssignment.force = True
 """
-"""nbgrader without anything of ours."""
+"""An nbgrader_config.py without our additions."""
 
 
 def make_empty(root: Path) -> None:
-    """The same notebook with cells that do nothing, for nbgrader as it comes."""
+    """Write the same notebook with empty cells, for plain nbgrader."""
     make_class(root, None)
     (root / "course" / "nbgrader_config.py").write_text(PLAIN.format(root=str(root)))
     file = root / "solutions" / STEP / f"{STEP}.ipynb"
@@ -79,7 +79,7 @@ def _empty(cell: dict[str, Any]) -> None:
 
 
 def hand_in(root: Path, students: int) -> None:
-    """The solution, handed in by so many; each differs a little, so that none is known already."""
+    """Hand in the solution for this many students; each copy differs a little, so that each is graded."""
     node = f"{STEP}/my_robot_controller/my_robot_controller/draw_circle.py"
     solution = (course_folder().parent / "solutions" / node).read_text()
     for number in range(students):

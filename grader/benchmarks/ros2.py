@@ -1,9 +1,9 @@
-"""What the command `ros2` costs: `topic list` beside a turtlesim, and `interface show`, against a bare rclpy node.
+"""What the command `ros2` costs: `topic list` beside a turtlesim, and `interface show`, compared with an rclpy node.
 
     python -m grader.benchmarks.ros2 [--times N]
 
-Everything is measured in one run, alternating, so that a busy moment strikes all alike. Says how often the list was
-complete.
+Everything is measured in one run, in turns, so that a busy moment affects all measurements. It also prints how often
+the list was complete.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _ROS2 = str(Path(sys.executable).with_name("ros2"))
 _NODE = "import rclpy; rclpy.init(); node = rclpy.create_node('bare'); node.destroy_node(); rclpy.shutdown()"
 _COMPLETE = "/parameter_events\n/rosout\n/turtle1/cmd_vel\n/turtle1/color_sensor\n/turtle1/pose\n"
 AIM_S = {"topic list": 0.8, "interface show": 0.25}
-"""Wall seconds on a machine that does nothing else."""
+"""The aims: wall seconds on an idle machine."""
 
 
 def main() -> None:
@@ -36,7 +36,7 @@ def main() -> None:
     ros = underlay.with_turtlesim(installation.find_ros())
     with tempfile.TemporaryDirectory() as home:
         user = {"HOME": home, "PATH": os.environ.get("PATH", "/usr/bin:/bin")}
-        # A domain that no user has by default.
+        # No user has this domain by default.
         env = installation.users_environment(ros, user, domain=0)
         commands = {
             "topic list": [_ROS2, "topic", "list"],

@@ -1,8 +1,8 @@
-"""What confinement costs, in F: the same grading with the student's code in cells and without.
+"""What the sandbox costs, in F: the same grading with the student's code in cells and without cells.
 
     python -m grader.benchmarks.sandbox [--times N] [--submission FOLDER]
 
-Everything is measured in one run on the same machine, alternating, so that a busy moment strikes all alike.
+Everything is measured in one run on the same machine, in turns, so that a busy moment affects all measurements.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from grader.sandbox import bubblewrap
 _ROOT = Path(__file__).resolve().parents[2]
 _EXERCISE = "03-circle-publisher"
 _MOST = 0.5
-"""What confinement may cost (F)."""
-# Both in a process of its own, as a check is.
+"""What the sandbox may cost (F)."""
+# Each grading runs in a process of its own, as a check does.
 _GRADE = """
 import sys
 from grader.checks.exercises import find_exercise
@@ -60,7 +60,7 @@ def main() -> None:
     extra = wall["graded, confined"] - wall["graded, not confined"]
     print(f"\nconfinement: {extra:+.2f} s, {extra / f_s:+.2f} F (at most {_MOST} F)")
     if extra > _MOST * f_s:
-        raise MachineError("Confinement costs more than it may; was the machine busy?")  # noqa: EM101
+        raise MachineError("The sandbox costs more than allowed. Was the machine busy?")  # noqa: EM101
 
 
 if __name__ == "__main__":

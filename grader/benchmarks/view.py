@@ -1,9 +1,10 @@
-"""What the live view costs: frames a second, processor time, from key to moved pixel, ten tabs against one.
+"""What the live view costs: frames per second, processor time, time from key to moved pixel, ten tabs and one tab.
 
     python -m grader.benchmarks.view [--seconds 10] [--keys 30]
 
-Simulator, server and a browser with one page run here for real; nine more pages are programs that only listen. The
-browser's own processor time is not counted. A quiet machine is needed: browser and simulator share its cores.
+The simulator, the server and a browser with one page are real; nine more pages are programs that only listen. The
+browser's own processor time is not counted. Run it on an idle machine, since the browser and the simulator share the
+cores.
 """
 
 from __future__ import annotations
@@ -32,10 +33,10 @@ if TYPE_CHECKING:
 
 AIM_FRAMES_HZ = 30.0
 AIM_CPU = 0.15
-"""Of one core, for simulator and server together."""
+"""The aim: the share of one core for the simulator and the server together."""
 AIM_LATENCY_S = 0.06
 
-# Milliseconds from the press until the frame in which the turtle stands elsewhere is on its way to the screen.
+# Returns the milliseconds from the key press until the browser draws the frame in which the turtle has moved.
 _LATENCY = """key => new Promise(resolve => {
     const turtle = document.querySelector(".turtle");
     const before = turtle.getAttribute("transform");
@@ -60,7 +61,7 @@ _FRAMES = """seconds => new Promise(resolve => {
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one core: what the simulator takes, and its view."""
+    """The share of one core that the simulator and its view use."""
 
     simulator: float
     view: float
@@ -100,7 +101,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         none = Cost(*_share(pids, options.seconds))
         node.stop()
     middle_ms = 1000 * statistics.median(latencies)
-    print(f"frames a second on the page:  {hertz:6.1f}    (aim {AIM_FRAMES_HZ:.0f})")
+    print(f"frames per second on the page: {hertz:5.1f}    (aim {AIM_FRAMES_HZ:.0f})")
     print(f"key to moved turtle, median:  {middle_ms:6.0f} ms (aim {1000 * AIM_LATENCY_S:.0f})")
     print(f"                     longest: {1000 * latencies[-1]:6.0f} ms")
     print(f"\n{'% of one core':24}{'simulator':>10}{'view':>8}{'both':>8}")
@@ -120,7 +121,7 @@ def _opened(browser: Browser, url: str) -> Page:
 
 @contextmanager
 def _listening(url: str) -> Iterator[None]:
-    """What the server sees of one more tab, without a browser that would want the processors for itself."""
+    """Act as one more tab for the server, without the processor time of a browser."""
     host, _, token = url.removeprefix("http://").partition("/#")
     with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as link:
         reading = threading.Thread(target=lambda: [None for _ in link], daemon=True)
@@ -130,13 +131,13 @@ def _listening(url: str) -> Iterator[None]:
 
 
 def _latency(page: Page, number: int) -> float:
-    """Seconds from a key to the turtle's move; forwards and backwards in turn, so that it meets no wall."""
+    """Return the seconds from a key to the turtle's move; forwards and backwards in turns, away from the walls."""
     key = "ArrowUp" if number % 2 else "ArrowDown"
     if number == 0:
-        # The first key brings the driving node into the graph.
+        # The first key adds the driving node to the graph.
         page.evaluate(_LATENCY, key)
         _rest(page, key)
-    # At any moment of a frame.
+    # Press at any time within a frame.
     time.sleep(0.2 + (number * 7 % 32) / 1000)
     latency: float = page.evaluate(_LATENCY, key)
     _rest(page, key)

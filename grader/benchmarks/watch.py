@@ -1,9 +1,9 @@
-"""What `grader watch` costs, from save to verdict, in F: a bare colcon build and a bare process with one rclpy node.
+"""What `grader watch` costs from save to verdict, in F: a bare colcon build plus a bare process with one rclpy node.
 
     python -m grader.benchmarks.watch [--times N] [--submission FOLDER --exercise NAME --file PATH]
 
-A real terminal is watched: the time runs from the save until the line that follows the verdict. F is measured in the
-same run, alternating, so that a busy moment strikes both alike.
+It watches a real terminal: the time runs from the save until the line after the verdict. F is measured in the same run,
+in turns, so that a busy moment affects both.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _STEP = "03-circle-publisher"
 _FILE = "my_robot_controller/draw_circle.py"
 _PATIENCE_S = 300
 _REST_S = 2.0
-"""A learner thinks for at least so long between two saves; meanwhile the next trial gets ready."""
+"""The shortest time that a learner thinks between two saves; the next trial is prepared meanwhile."""
 
 
 def main() -> None:
@@ -36,14 +36,14 @@ def main() -> None:
     parser.add_argument("--times", type=int, default=5, help="saves; medians are printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _STEP / "my_robot_controller")
     parser.add_argument("--exercise", default=_STEP)
-    parser.add_argument("--file", default=_FILE, help="what is saved, below the submission")
+    parser.add_argument("--file", default=_FILE, help="the file to save, relative to the submission")
     asked = parser.parse_args()
     bare, saves = [], []
     for _ in range(asked.times):
         with tempfile.TemporaryDirectory() as folder:
             package = Path(shutil.copytree(asked.submission, Path(folder) / "home" / asked.submission.name))
             saves.append(_save_s(package, asked.exercise, package / asked.file))
-            # Only now: what is measured there waits for every child of ours.
+            # Only now: that measurement waits for all children of this process.
             scratch = Path(folder) / "bare"
             scratch.mkdir()
             bare.append(sum(each.wall_s for each in bare_costs(package, scratch).values()))
@@ -53,7 +53,7 @@ def main() -> None:
 
 
 def _save_s(package: Path, exercise: str, file: Path) -> float:
-    """Watch the package, save the file with another remark in it; the seconds from save to verdict."""
+    """Watch the package, save the file with a new comment, and return the seconds from save to verdict."""
     env = {
         **os.environ,
         "HOME": str(package.parent),

@@ -1,8 +1,8 @@
-"""The set-up's first half: look at the machine, make .venv; then grader.setup.install fills it. Quick when all is done.
+"""The first half of the set-up: look at the machine and make .venv; then grader.setup.install fills it.
 
     python3 -m grader.setup.bootstrap (learner | cluster | notebooks | docs | tests) [--python PYTHON]
 
-Like machine.py, this runs under any Python 3 before anything is installed: syntax of Python 3.6.
+Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import argparse
@@ -39,7 +39,7 @@ PARTS = {
 
 
 class Stamp(NamedTuple):
-    """What .venv was made of; written into it at the very end, so that an interrupted set-up has none."""
+    """How .venv was made. It is written at the very end, so an interrupted set-up has no stamp."""
 
     root: str
     ros: str
@@ -47,13 +47,13 @@ class Stamp(NamedTuple):
     python: str
     version: List[int]
     digest: str
-    """Of the lock file and pyproject.toml."""
+    """The hash of the lock file and pyproject.toml."""
     parts: List[str]
     seconds: Dict[str, float]
 
 
 def read_stamp(path: Path = STAMP) -> Optional[Stamp]:
-    """The stamp of a finished set-up, if there is one that this version wrote."""
+    """Return the stamp of a finished set-up; None if there is none from this version."""
     try:
         return Stamp(**json.loads(path.read_text()))
     except (OSError, ValueError, TypeError):
@@ -61,14 +61,14 @@ def read_stamp(path: Path = STAMP) -> Optional[Stamp]:
 
 
 def write_stamp(stamp: Stamp, path: Path = STAMP) -> None:
-    """Write the stamp whole or not at all."""
+    """Write the stamp atomically."""
     unfinished = path.with_suffix(".new")
     unfinished.write_text(json.dumps(stamp._asdict(), indent=1))
     unfinished.replace(path)
 
 
 def digest() -> str:
-    """One value for all that decides which packages are installed."""
+    """Return a hash of everything that decides which packages are installed."""
     whole = hashlib.sha256()
     for name in ("requirements.lock", "pyproject.toml"):
         whole.update((ROOT / name).read_bytes())
@@ -76,7 +76,7 @@ def digest() -> str:
 
 
 def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> bool:
-    """Whether .venv is where it was made, for this ROS 2, and its Python still the one it was made with."""
+    """Return whether .venv is still in its place, for this ROS 2, with the Python that made it."""
     now = machine.probe(str(PYTHON))
     same = now is not None and (now.path, list(now.version)) == (stamp.python, stamp.version)
     if not same or stamp.root != str(ROOT) or (wanted is not None and wanted.path != stamp.python):
@@ -87,13 +87,13 @@ def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[mac
 
 
 def say(text: str) -> None:
-    """A heading of the set-up; bold on a terminal."""
+    """Print a heading of the set-up; bold on a terminal."""
     bold = sys.stdout.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
     print(f"\033[1m{text}\033[0m" if bold else text, flush=True)
 
 
 def clean_environment(env: Mapping[str, str]) -> Dict[str, str]:
-    """The caller's environment without what would lead an installer elsewhere: a sourced ROS 2, an active venv."""
+    """Return the environment without what would mislead an installer: a sourced ROS 2, an active venv."""
     foreign = {
         "PYTHONPATH",
         "PYTHONHOME",
@@ -103,18 +103,18 @@ def clean_environment(env: Mapping[str, str]) -> Dict[str, str]:
         "PIP_USER",
         "PIP_REQUIRE_VIRTUALENV",
     }
-    # The ROS 2 wheels would else start every interpreter twice.
+    # Otherwise the ROS 2 wheels would start every interpreter twice.
     return {**{name: env[name] for name in env if name not in foreign}, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
 
 
 def look(
     ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python], parts: Sequence[str], *, made: bool
 ) -> Tuple[Optional[machine.Python], List[Need]]:
-    """The Python to make .venv with (None if it is `made`), and what the system lacks for these parts."""
+    """Return the Python for .venv (None if it is `made` already), and what the system lacks for these parts."""
     path = os.environ.get("PATH", "")
     tools = machine.missing_tools(path, ros)
     if "tests" in parts:
-        # Half of the tests are about the sandbox.
+        # Half of the tests need the sandbox.
         tools = [need._replace(lost="") for need in tools] + machine.missing_of_tests(path)
     if made:
         return None, tools
@@ -132,7 +132,7 @@ def look(
 
 
 def tell_lacks(needs: Sequence[Need], why: str) -> bool:
-    """Tell what the system lacks, and `why` it was not installed; whether that stops the set-up."""
+    """Print what the system lacks, and `why` it was not installed; return whether that stops the set-up."""
     root = os.getuid() == 0
     manager = packages.find_manager(os.environ.get("PATH", ""))
     if not all(need.lost for need in needs):
@@ -146,46 +146,46 @@ def tell_lacks(needs: Sequence[Need], why: str) -> bool:
 
 
 def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool:
-    """Make .venv, in place of any that is there; False if Python could not."""
+    """Make .venv, and replace an existing one; return False if Python could not."""
     say("Making .venv with Python {}.{}.{} ({})".format(*python.version, python.path))
     options = ["--clear"]
     if ros:
-        say(f"ROS 2 Jazzy is sourced from {ros.prefix}: it is used, and none is installed")
+        say(f"ROS 2 Jazzy is sourced from {ros.prefix}: this one is used, and no other is installed")
         options.append("--system-site-packages")
     making = interpreter.interpreter(
         "-m", "venv", *options, str(VENV), python=python.path, env=clean_environment(os.environ)
     )
     try:
-        # Kept back, since all it ever says is why it failed, or that it was interrupted.
+        # Its output is shown only if it fails: then it says why.
         subprocess.check_output(making.argv, stderr=subprocess.STDOUT, env=making.env, cwd=str(ROOT))
     except subprocess.CalledProcessError as error:
         said = error.output.decode(errors="replace")
         known = refused.of_output(said, VENV)
-        unknown = f"{said}Python could not make {VENV}; what it said stands above."
+        unknown = f"{said}Python could not make {VENV}; its messages are above."
         print(known or unknown, file=sys.stderr)
         return False
     return True
 
 
 def read_arguments(arguments: Sequence[str]) -> argparse.Namespace:
-    """`parts`, by a name of PARTS, and `python`, None unless one was asked for. Exits where they make no sense."""
+    """Parse the arguments: `parts`, a name in PARTS, and `python`, by default None."""
     parser = argparse.ArgumentParser(prog="python3 -m grader.setup.bootstrap", description=__doc__.splitlines()[0])
-    parser.add_argument("parts", choices=list(PARTS), help="what .venv is for; what else is in it stays")
-    parser.add_argument("--python", type=asked_python, help="what to make .venv with: a program's name or path")
+    parser.add_argument("parts", choices=list(PARTS), help="what .venv is for; other parts in it are kept")
+    parser.add_argument("--python", type=asked_python, help="the Python for .venv: a name or a path")
     return parser.parse_args(arguments)
 
 
 def asked_python(name: str) -> machine.Python:
-    """The interpreter of this name. Raises ArgumentTypeError where none answers."""
+    """Return the interpreter with this name; raise ArgumentTypeError if it does not answer."""
     python = machine.probe(shutil.which(name) or name)
     if python is None:
-        message = f"{name} is no Python that runs here"
+        message = f"{name} is not a Python that runs here"
         raise argparse.ArgumentTypeError(message)
     return python
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Bring .venv up to date; returns the exit code."""
+    """Bring .venv up to date; return the exit code."""
     asked = read_arguments(arguments)
     ros = machine.sourced_ros(os.environ, VENV)
     problem = machine.platform_problem(platform.system(), platform.machine(), platform.libc_ver(), ros)
@@ -193,19 +193,19 @@ def main(arguments: Sequence[str]) -> int:
         print(problem, file=sys.stderr)
         return MACHINE_BROKEN
     with (ROOT / "requirements.lock").open() as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # A second `make` waits for the first.
+        fcntl.flock(lock, fcntl.LOCK_EX)  # A second `make` waits for the first one.
         return set_up(PARTS[asked.parts], ros, asked.python)
 
 
 def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> int:
-    """Look at the machine, make .venv and fill it, each only if it is to be done; returns the exit code."""
+    """Look at the machine, make .venv and fill it, each only if necessary; return the exit code."""
     kind = ros.prefix if ros else WHEELS
     stamp = read_stamp()
     made = stamp is not None and stands(stamp, ros, wanted)
     unfinished = not (stamp and made and stamp.digest == digest() and set(parts) <= set(stamp.parts))
     python, needs = look(ros, wanted, parts, made=made)
     why = ""
-    # What can be done without is tried for when something is set up, and not again every time.
+    # Optional programs are installed only when something is set up, not every time.
     if any(unfinished or not need.lost for need in needs):
         why = provide(needs, os.environ, say)
         python, needs = look(ros, wanted, parts, made=made)
@@ -215,9 +215,9 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     if not unfinished:
         return 0
     if STAMP.exists():
-        STAMP.unlink()  # From here to the end .venv is unfinished.
+        STAMP.unlink()  # From here to the end, .venv is unfinished.
     if stamp and made:
-        # What was set up for something else stays: a machine may both grade for another one and have notebooks.
+        # Keep the parts that are installed already: a machine may both grade for another one and have notebooks.
         parts = [part for part in PARTS["tests"] if part in parts or part in stamp.parts]
         stamp = stamp._replace(digest=digest(), parts=parts, seconds={})
     elif python:

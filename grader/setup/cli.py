@@ -1,4 +1,4 @@
-"""The verbs for a machine and its shells: doctor, env, shell. No logic."""
+"""The commands doctor, env and shell."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ PANEL = "Your machine"
 
 
 def add_to(app: typer.Typer) -> None:
-    """Add these verbs to the command."""
+    """Add these commands to `grader`."""
     app.command(epilog="Example: source <(grader env)", rich_help_panel=PANEL)(env)
     app.command(epilog="Example: grader shell --domain 7", rich_help_panel=PANEL)(shell)
     app.command(epilog="Example: grader doctor", rich_help_panel=PANEL)(doctor)
 
 
 def doctor() -> None:
-    """See whether this machine can grade: which ROS 2, colcon, compiler, sandbox; and what to do about the rest."""
+    """Check whether this machine can grade (ROS 2, colcon, compiler, sandbox), and say what to do if not."""
     from rich.console import Console
 
     from grader.report.progress_line import progress
@@ -34,12 +34,12 @@ def doctor() -> None:
 
 Domain = Annotated[
     Optional[int],  # noqa: UP045
-    typer.Option(help="Which ROS domain: 0 to 101. Without it the one that is set, else one of your own."),
+    typer.Option(help="ROS domain, 0 to 101. Default: the one that is set, or else one of your own."),
 ]
 
 
 def env(domain: Domain = None) -> None:
-    """Print shell code that puts ROS 2 into this shell: for `source <(grader env)`, in bash and zsh."""
+    """Print shell code that puts ROS 2 into this shell: type `source <(grader env)`, in bash or zsh."""
     from grader.report.progress_line import progress
     from grader.ros import shell
     from grader.ros.installation import find_ros, who_hears
@@ -48,18 +48,18 @@ def env(domain: Domain = None) -> None:
         with progress() as tell:
             wanted = shell.users_environment(domain, tell)
     except GraderError:
-        # Whoever sources this sees nothing of our exit code.
+        # A shell that sources this does not see our exit code.
         print("false")
         raise
     ros = find_ros()
     if ros.kind == "sourced":
-        used = f"The ROS 2 that is sourced in this terminal is used: {ros.prefix}"
+        used = f"Using the ROS 2 that is sourced in this terminal: {ros.prefix}"
         print(f"{used} ({who_hears(wanted)})", file=sys.stderr)
     sys.stdout.write(shell.code(wanted, sourced=ros.kind == "sourced"))
 
 
 def shell(domain: Domain = None) -> None:
-    """Open a shell in which ROS 2 is there, until you type exit."""
+    """Open a shell with ROS 2; type exit to leave it."""
     from grader.report.progress_line import progress
     from grader.ros import shell as shells
     from grader.ros.installation import who_hears

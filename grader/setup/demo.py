@@ -1,7 +1,7 @@
-"""The end of `make demo`: grade the solution of a step as a learner would, tell where the time went, say what is next.
+"""The end of `make demo`: grade the solution of a step as a learner would, show the times, say what is next.
 
-`python -m grader.setup.demo --since SECONDS`: when the command began, in seconds since 1970, so that a set-up which it
-made is told and one of another day is not.
+`python -m grader.setup.demo --since SECONDS` takes the time when `make` began, in seconds since 1970. The times of the
+set-up are shown only if this `make` did the set-up.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ STAGES = {
     "trial": "simulator and node",
     "checks": "checks",
 }
-"""The report's names of its stages, in words."""
+"""The names of the report's stages, in words."""
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Grade `solutions/03-circle-publisher`; returns 0, or what `grader check` ended with if that was not expected."""
+    """Grade `solutions/03-circle-publisher`; return 0, or the exit code of `grader check` if it was not expected."""
     parser = argparse.ArgumentParser(description="Grade the solution of a step and say what to type next.")
     parser.add_argument("--since", type=float, default=time.time(), help="when the command began, seconds since 1970")
     since = parser.parse_args(arguments).since
@@ -37,7 +37,7 @@ def main(arguments: list[str] | None = None) -> int:
     image, report = FOLDER / f"{STEP}.png", FOLDER / f"{STEP}.json"
     (ROOT / FOLDER).mkdir(parents=True, exist_ok=True)
     (ROOT / report).unlink(missing_ok=True)
-    # Students get the course without solutions: what they start from shows the way just as well.
+    # Students get the course without solutions; then the starting point is graded.
     side = "solutions" if (ROOT / "solutions" / STEP).is_dir() else "exercises"
     command = ["grader", "check", f"{side}/{STEP}", "--image", str(image), "--json", str(report)]
     say("$ " + " ".join(command))
@@ -52,21 +52,23 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"  {name:<40} {seconds:6.1f} s")
     print(f"  {'in all':<40} {time.time() - since:6.1f} s")
     print(f"\nThe picture of the turtle's path: {image}")
-    print("\nNext, in this folder: make the environment yours, and begin with the first step.\n")
+    print("\nNext, in this folder: source the setup file, and begin with the first step.\n")
     print("    source .venv/setup.bash")
     print("    grader start 01")
     return 0
 
 
 def closing_words(exit_code: int) -> str:
-    """What to do when the course's own solution did not pass."""
+    """Return what to do if the course's own solution did not pass."""
     if exit_code == MACHINE_BROKEN:
-        return "\nThe solution could not be graded on this machine. See what it lacks: .venv/bin/grader doctor"
-    return "\nThe course's own solution did not pass: the course's fault, not yours. Please report what stands above."
+        return (
+            "\nThe solution could not be graded on this machine. To see what is missing, type: .venv/bin/grader doctor"
+        )
+    return "\nThe course's own solution did not pass. This is not your mistake. Please report the lines above."
 
 
 def set_up_seconds(since: float) -> list[tuple[str, float]]:
-    """The stages of a set-up that this command made, in seconds; none if it was there before."""
+    """Return the stages of the set-up that this command made, in seconds; empty if it was there before."""
     stamp = read_stamp()
     if stamp is None or STAMP.stat().st_mtime < since:
         return []
@@ -74,7 +76,7 @@ def set_up_seconds(since: float) -> list[tuple[str, float]]:
 
 
 def grading_seconds(report: Path) -> list[tuple[str, float]]:
-    """The stages of the grading, in seconds."""
+    """Return the stages of the grading, in seconds."""
     seconds = json.loads(report.read_text(encoding="utf-8"))["seconds"]
     return [(words, float(seconds[name])) for name, words in STAGES.items() if name in seconds]
 

@@ -1,6 +1,6 @@
-"""`grader doctor`: is everything here that grading needs? Each line is ok, or says what to do.
+"""`grader doctor`: does this machine have everything that grading needs? Each line is ok or says what to do.
 
-What can be tried is tried: the turtlesim interfaces are built if they are not yet, and a node talks from a cell.
+It tries what it can: it builds the turtlesim interfaces if necessary, and lets a node publish from a cell.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ LITTLE_MEMORY = 1 * GIB
 
 @dataclass(frozen=True)
 class Line:
-    """What one look found. `advice` is worth reading and stops nothing; `broken` must be mended before grading."""
+    """The result of one test. `advice` does not prevent grading; `broken` must be fixed before grading."""
 
     subject: str
     seen: str
@@ -51,7 +51,7 @@ class Line:
 
 
 def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] = lambda _: None) -> list[Line]:
-    """All lines, in the order in which things need each other; `tell` gets a line where something takes long."""
+    """Return all lines, each after the lines that it depends on; `tell` gets a line if a test takes long."""
     lines = [look_at_system(), look_at_python(), *look_at_set_up(env), *look_at_tools(env), look_at_colcon()]
     lines += [look_at_disk(xdg.cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
     seen, todo = shares()
@@ -70,18 +70,18 @@ def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] 
         ros = underlay.with_turtlesim(ros, tell)
     except MachineError as error:
         return [*lines, Line("turtlesim", "its interfaces are not built", "broken", str(error))]
-    where = f"the course's own interfaces, built in {ros.underlay}" if ros.underlay else "ROS 2 brings it"
+    where = f"the course's own interfaces, built in {ros.underlay}" if ros.underlay else "part of ROS 2"
     lines.append(Line("turtlesim", where))
     return [*lines, look_at_node(ros, confined=confined)]
 
 
 def exit_code(lines: Iterable[Line]) -> int:
-    """3 if something must be mended, else 0."""
+    """Return 3 if something must be fixed, else 0."""
     return BROKEN_EXIT_CODE if any(line.state == "broken" for line in lines) else 0
 
 
 def render(lines: Iterable[Line], console: Console) -> None:
-    """Print the lines; plain text where the console is no terminal."""
+    """Print the lines, as plain text if the console is not a terminal."""
     styles = {"ok": "green", "advice": "yellow", "broken": "bold red"}
     for line in lines:
         console.print(f"{line.state:<8}", style=styles[line.state], end="", highlight=False)
@@ -90,29 +90,29 @@ def render(lines: Iterable[Line], console: Console) -> None:
             console.print(f"{'':<20}-> {line.todo}", markup=False, highlight=False, soft_wrap=True)
 
 
-# --- what lies there --------------------------------------------------------------------------------------
+# --- what is installed -------------------------------------------------------------------------------------
 
 
 def look_at_system() -> Line:
-    """Kernel, machine and distribution."""
+    """Return the kernel, the machine and the distribution."""
     seen = f"{_distribution()}, {platform.system()} on {platform.machine()}, {os.cpu_count()} cores"
     return Line("system", seen)
 
 
 def look_at_python() -> Line:
-    """The interpreter that runs this, and whether it is one that the course knows."""
+    """Return this interpreter, and whether the course supports it."""
     seen = f"CPython {platform.python_version()}, {Path(sys.executable).parent}"
     if machine.OLDEST <= sys.version_info[:2] <= machine.NEWEST:
         return Line("Python", seen)
     versions = f"3.{machine.OLDEST[1]} to 3.{machine.NEWEST[1]}"
-    return Line("Python", seen, "broken", f"ROS 2 Jazzy is here for Python {versions}: make demo PYTHON=python3.12")
+    return Line("Python", seen, "broken", f"ROS 2 Jazzy needs Python {versions}: make demo PYTHON=python3.12")
 
 
 def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None) -> Iterator[Line]:
-    """Whether .venv is what the lock file says now, and fits the ROS 2 that is sourced now."""
+    """Return whether .venv is what the lock file says now, and fits the ROS 2 that is sourced now."""
     stamp = stamp or bootstrap.read_stamp()
     if stamp is None or Path(sys.prefix) != bootstrap.VENV:
-        yield Line("set-up", "not made by `make`; the lock file's versions are not certain")
+        yield Line("set-up", "not made by `make`; its versions may differ from the lock file")
         return
     ros = machine.sourced_ros(env, bootstrap.VENV)
     now = ros.prefix if ros else bootstrap.WHEELS
@@ -130,7 +130,7 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
 
 
 def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
-    """The system's programs and Python's headers, with one command for all that is missing."""
+    """Return the system's programs and Python's headers, with one command for everything that is missing."""
     ros = machine.sourced_ros(env, bootstrap.VENV)
     needs = machine.missing_tools(env.get("PATH", ""), ros)
     headers = Path(sysconfig.get_path("include"), "Python.h").is_file()
@@ -143,7 +143,7 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
             yield Line(name, version)
     if builds and headers:
         yield Line("headers", "Python.h is there")
-    # What can be done without has a line of its own, which says what is lost.
+    # Each optional program has a line of its own, which says what does not work without it.
     needs = [need for need in needs if not need.lost]
     if needs:
         seen = "missing: " + "; ".join(need.what for need in needs)
@@ -152,7 +152,7 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
 
 
 def look_at_colcon() -> Line:
-    """The colcon that builds submissions: this Python's, not the system's."""
+    """Return the colcon that builds submissions: this Python's, not the system's."""
     try:
         version = metadata.version("colcon-core")
     except metadata.PackageNotFoundError:
@@ -163,7 +163,7 @@ def look_at_colcon() -> Line:
 
 
 def look_at_disk(folder: Path) -> Line:
-    """Free space where the interfaces are kept (bytes)."""
+    """Return the free space (bytes) on the disk of the interfaces."""
     there = next(path for path in [folder, *folder.parents] if path.is_dir())
     free = shutil.disk_usage(there).free
     seen = f"{free / GIB:.1f} GiB free for {folder}"
@@ -178,10 +178,10 @@ def look_at_disk(folder: Path) -> Line:
 
 
 def look_at_memory(meminfo: str) -> Line:
-    """Memory that programs can get; `meminfo` is the text of /proc/meminfo."""
+    """Return the memory that programs can get; `meminfo` is the content of /proc/meminfo."""
     kib = next((int(line.split()[1]) for line in meminfo.splitlines() if line.startswith("MemAvailable:")), None)
     if kib is None:
-        return Line("memory", "the system does not say")
+        return Line("memory", "unknown: the system does not report it")
     seen = f"{kib * 1024 / GIB:.1f} GiB available"
     if kib * 1024 >= LITTLE_MEMORY:
         return Line("memory", seen)
@@ -189,24 +189,22 @@ def look_at_memory(meminfo: str) -> Line:
 
 
 def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
-    """Which ROS 2 grades, and whether it fits this Python."""
+    """Return the ROS 2 that grading uses, and whether it fits this Python."""
     sourced = machine.sourced_ros(env, bootstrap.VENV)
     if ros.kind == "sourced" and sourced and sourced.python != sys.version_info[:2]:
         wanted = ".".join(map(str, sourced.python))
-        return Line("ROS 2", f"{ros.name}, for Python {wanted}", "broken", "make demo, with this ROS 2 sourced")
+        return Line("ROS 2", f"{ros.name}, for Python {wanted}", "broken", "source this ROS 2, and type: make demo")
     other = env.get("ROS_DISTRO", DISTRO)
     if other != DISTRO:
-        return Line(
-            "ROS 2", f"{ros.name}; {other} is sourced and not used", "advice", "nothing, if that is what you want"
-        )
+        return Line("ROS 2", f"{ros.name}; {other} is sourced, but not used", "advice", "nothing, if you want this")
     return Line("ROS 2", f"{ros.name}" + (f", {ros.prefix}" if ros.kind == "sourced" else ""))
 
 
-# --- what can only be tried -------------------------------------------------------------------------------
+# --- what must be tried ------------------------------------------------------------------------------
 
 
 def look_at_sandbox() -> Line:
-    """Make a cell, as every student's process gets one; those who only check their own code can do without."""
+    """Make a cell like that of a student's process; it is optional for people who only check their own code."""
     why = bubblewrap.why_unavailable()
     if why is None:
         return Line("sandbox", "bubblewrap makes cells")
@@ -214,27 +212,30 @@ def look_at_sandbox() -> Line:
 
 
 def look_at_limits() -> Line:
-    """Who counts what a cell holds in all."""
+    """Return how the memory and the processes of a cell are counted."""
     with control_group(bubblewrap.NODE_LIMITS) as group:
         if group:
             return Line("limits", "memory and processes of a cell are counted by the kernel")
     return Line(
-        "limits", "memory of a cell is counted ten times a second: the kernel lets nobody else make control groups"
+        "limits",
+        "the grader counts a cell's memory ten times a second: the kernel does not let it create control groups",
     )
 
 
 def look_at_node(ros: Ros, *, confined: bool = True) -> Line:
-    """Let a node talk to another, as in a trial: interpreter, ROS 2, network and interfaces at once.
+    """Let a node publish to another, as in a trial: this tests the interpreter, ROS 2, the network and the interfaces.
 
-    `confined`: it is in a cell, and the other outside of it.
+    With `confined`, the publisher is in a cell, and the other node is outside.
     """
     why = why_not_heard(ros, confined=confined)
     if why is None:
-        return Line("a node", "starts in a cell and is heard outside" if confined else "starts and is heard")
+        return Line(
+            "a node", "starts in a cell; its messages arrive outside" if confined else "starts; its messages arrive"
+        )
     closed = machine.closed_folder(os.path.realpath(sys.executable))
-    todo = "please report this, with all these lines"
+    todo = "please report this with all these lines"
     if closed and os.getuid() == 0:
-        todo += f"; it may help that other users can enter {closed}, where this Python lies"
+        todo += f"; it may help to let other users enter {closed}, which contains this Python"
     return Line("a node", f"is not heard{' from a cell' if confined else ''}: {why}", "broken", todo)
 
 

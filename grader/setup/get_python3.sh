@@ -1,5 +1,5 @@
 #!/bin/sh
-# Install python3 where there is none: the rest of the set-up is written in it (bootstrap.py). As root, or by sudo.
+# Install python3 if it is missing, as root or with sudo: the rest of the set-up is written in Python (bootstrap.py).
 
 if command -v apt-get > /dev/null; then
     install='apt-get update && apt-get install -y python3 python3-venv python3-dev'
@@ -21,15 +21,15 @@ elif [ "$(id -u)" = 0 ]; then
 elif sudo -n true 2> /dev/null; then
     sudo='sudo -n'
 elif command -v sudo > /dev/null && [ -t 0 ]; then
-    echo 'There is no python3 here. To install it, sudo may ask for your password. INSTALL_SYSTEM=0 does not.'
+    echo 'There is no python3 here. To install it, sudo may ask for your password (unless INSTALL_SYSTEM=0).'
     sudo=sudo
 else
     sudo=none
 fi
 
 if [ "$sudo" != none ]; then
-    echo "Installing python3, which is not here: $install"
-    # shellcheck disable=SC2086 # sudo may be nothing, or have an option
+    echo "Installing python3, which is missing: $install"
+    # shellcheck disable=SC2086 # sudo may be empty, or have an option
     said=$(DEBIAN_FRONTEND=noninteractive $sudo sh -c "$install" 2>&1) && command -v python3 > /dev/null && exit 0
     echo "$said" | tail -n 4 >&2
 fi

@@ -1,4 +1,4 @@
-"""What a wheel holds beside the package: the course, and what a repository of it needs, which lie beside it here."""
+"""Adds to a wheel what is beside the package in this repository: the course, and what a copy of it needs."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitign
 
 
 class CourseHook(BuildHookInterface):  # type: ignore[type-arg]
-    """Puts the course's folders into the package; an editable install finds them where they are."""
+    """Puts the course's folders into the wheel; an editable install finds them in the repository."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Add the folders, called by hatchling before it builds."""
+        """Add the folders; hatchling calls this before it builds."""
         if version == "standard":
             # (An instructor's copy for students has no solutions.)
             there = [name for name in _FOLDERS if Path(self.root, name).is_dir()]

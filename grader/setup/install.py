@@ -1,7 +1,7 @@
-"""The set-up's second half: fill .venv from the lock file. Runs in .venv, before anything is installed there.
+"""The second half of the set-up: fill .venv from the lock file. It runs in .venv before anything is installed there.
 
-`python -m grader.setup.install STAMP`: STAMP is what bootstrap.py found out, as JSON; with the seconds that each stage
-took it is written into .venv at the very end, so that an interrupted set-up is seen as unfinished.
+`python -m grader.setup.install STAMP`: STAMP is the stamp of bootstrap.py as JSON. It is written into .venv at the very
+end, with the seconds of each stage, so an interrupted set-up has no stamp.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
 _PROGRESS = ("Downloading ", "Using cached ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
 _MOST_LINES = 40
 _RETRIES = 2
-"""A name that was not found twice is no hiccup: pip would go on for ten seconds."""
+"""How many failed look-ups of a name end the installation: pip would go on for ten seconds."""
 _FIRST = frozenset({"uv", "setuptools"})
-"""What pip, which is slower, installs; setuptools because uv builds empy with it."""
+"""The packages that pip installs, which is slower: uv itself, and setuptools, which uv needs to build empy."""
 _UNKNOWN = (
-    "The packages could not be installed; what the installer said stands above. A proxy is read from HTTPS_PROXY, a "
+    "The packages could not be installed; the installer's messages are above. A proxy is read from HTTPS_PROXY, a "
     f"mirror from pip's own configuration; {refused.AGAIN}."
 )
 
 
 class Ran(NamedTuple):
-    """An installer that has ended: its exit code, its progress, and all else that it printed."""
+    """An installer that has ended: its exit code, its progress, and everything else that it printed."""
 
     code: int
     shown: list[str]
@@ -44,7 +44,7 @@ class Ran(NamedTuple):
 
 
 def main(stamp: Stamp) -> int:
-    """Install the stamp's parts and the project itself, then write the stamp; returns the exit code."""
+    """Install the stamp's parts and the project itself, then write the stamp; return the exit code."""
     try:
         seconds = {**stamp.seconds, **install(stamp.parts, sourced=stamp.ros != "wheels")}
     except MachineError as error:
@@ -56,10 +56,9 @@ def main(stamp: Stamp) -> int:
 
 
 def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
-    """Install from the lock file; returns the seconds of download and of installation.
+    """Install from the lock file; return the seconds of download and of installation.
 
-    Raises:
-        MachineError: no installer could do it.
+    Raises: MachineError: no installer succeeded.
     """
     text = lock.LOCK_FILE.read_text(encoding="utf-8")
     if sourced:
@@ -74,22 +73,21 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     rest = _write("rest", lock.select(text, parts, without=without))
     downloading = _uv("-r", str(rest), *_OPTIONS, "--compile-bytecode")
     if downloading is None:
-        # pip knows settings that uv does not read: mirrors, certificates and proxies in pip.conf.
-        say("That did not work with uv; once more with pip, which is slower")
+        # pip reads settings that uv does not: mirrors, certificates and proxies in pip.conf.
+        say("uv failed; trying again with pip, which is slower")
         _pip(rest)
     project = ("--no-deps", "--no-build-isolation", "--editable", str(ROOT))
     if _uv(*project) is None:
-        message = f"The course's own package could not be installed from {ROOT}; what the installer said stands above."
+        message = f"The course's own package could not be installed from {ROOT}; the installer's messages are above."
         raise MachineError(message)
     total = time.monotonic() - begin
     return {"download": downloading or 0.0, "install": total - (downloading or 0.0)}
 
 
 def _pip(requirements: Path) -> None:
-    """`pip install` from the lock.
+    """Run `pip install` with the lock file.
 
-    Raises:
-        MachineError: it failed.
+    Raises: MachineError: pip failed.
     """
     options = ("--disable-pip-version-check", "--no-input", "--retries", "2", "--progress-bar", "off", *_OPTIONS)
     done = _run(*interpreter("-m", "pip", "install", *options, "-r", str(requirements)))
@@ -104,17 +102,18 @@ def _pip(requirements: Path) -> None:
 
 
 def _uv(*arguments: str) -> float | None:
-    """`uv pip install`; returns the seconds of download, or None if it failed and pip may do better.
+    """Run `uv pip install`; return the seconds of download, or None if it failed and pip may succeed.
 
-    Raises:
-        MachineError: the machine has no room or no rights for it.
+    Raises: MachineError: the machine has no disk space, or the user has no rights for it.
     """
     command = [str(BIN / "uv"), "pip", "install", "--python", sys.executable, *arguments]
     stores = ssl.get_default_verify_paths()
     if stores.cafile or (stores.capath and any(Path(stores.capath).iterdir())):
-        command.append("--system-certs")  # As other programs here do; a minimal system has none, and uv brings some.
+        command.append(
+            "--system-certs"
+        )  # Use the system's certificates, as other programs do; a minimal system has none, and then uv uses its own.
     if not _may_write(refused.cache()):
-        command.append("--no-cache")  # Of a home that cannot be written to, uv needs nothing else.
+        command.append("--no-cache")  # If the home folder is not writable, uv needs only this.
     done = _run(command, clean(os.environ))
     if done.code == 0:
         return seconds_of(next((line for line in done.shown if line.startswith("Prepared ")), ""))
@@ -126,15 +125,16 @@ def _uv(*arguments: str) -> float | None:
 
 
 def _may_write(folder: Path) -> bool:
-    """Whether files can be made below a folder, which may still have to be made itself."""
+    """Return whether files can be created below a folder, which may not exist yet."""
     there = next((above for above in [folder, *folder.parents] if above.exists()), folder)
     return os.access(there, os.W_OK)
 
 
 def _run(command: list[str], env: dict[str, str]) -> Ran:
-    """Run an installer and show its progress as lines; where it finds no network twice, it is ended at once.
+    """Run an installer and show its progress line by line; stop it if it finds no network twice.
 
-    Piped, both installers print a line where a download begins: a slow one is seen, and logs stay readable.
+    In a pipe, both installers print a line when a download begins, so that the user sees a slow one and logs stay
+    readable.
     """
     shown: list[str] = []
     rest: list[str] = []
@@ -155,12 +155,12 @@ def _run(command: list[str], env: dict[str, str]) -> Ran:
 
 
 def _repeat(done: Ran) -> None:
-    """Print the end of what an installer said."""
+    """Print the end of an installer's messages."""
     print("".join(done.said.splitlines(keepends=True)[-_MOST_LINES:]), end="", flush=True)
 
 
 def seconds_of(line: str) -> float:
-    """The duration at the end of a line of uv's: `Prepared 9 packages in 1m 05s`, `... in 302ms` (in seconds)."""
+    """Return the duration (s) at the end of a line of uv: `Prepared 9 packages in 1m 05s`, `... in 302ms`."""
     units = {"ms": 1e-3, "s": 1.0, "m": 60.0, "h": 3600.0}
     found: list[tuple[str, str]] = re.findall(r"(\d+(?:\.\d+)?)(ms|s|m|h)\b", line.rpartition(" in ")[2])
     return sum(float(number) * units[unit] for number, unit in found)

@@ -1,8 +1,8 @@
-"""The lock file: every version that the set-up installs, for all Pythons, with hashes, in parts.
+"""The lock file: every version that the set-up installs, for all versions of Python, with hashes, in parts.
 
-One file in pip's format, in sections: `# part: NAME` opens what one part needs, `# part: NAME NAME` what several need.
-So each set-up installs all that it needs and nothing else. `python -m grader.setup.lock` (`make lock`) writes it.
-Standard library only: the set-up reads the file before anything is installed.
+It is one file in pip's format, in sections: `# part: NAME` begins what only this part needs, `# part: NAME NAME` what
+several parts need. So each set-up installs exactly what it needs. `python -m grader.setup.lock` (`make lock`) writes
+it. Standard library only: the set-up reads the file before anything is installed.
 """
 
 from __future__ import annotations
@@ -25,22 +25,23 @@ ROOT = Path(__file__).parents[2]
 PROJECT = ROOT / "pyproject.toml"
 LOCK_FILE = ROOT / "requirements.lock"
 PARTS = {
-    "setup": "what installs the rest",
-    "grader": "what the grader runs on",
-    "ros": "ROS 2 Jazzy as wheels; left out where a ROS 2 is sourced",
+    "setup": "the installer of the other parts",
+    "grader": "the libraries of the grader",
+    "ros": "ROS 2 Jazzy as wheels; not installed if a ROS 2 is sourced",
     "cluster": "grading on many machines",
     "notebooks": "JupyterLab and nbgrader",
     "docs": "the documentation as a site",
     "tests": "tests",
 }
-"""Name of each part and what it is for, in the file's order."""
+"""The name of each part and its purpose, in the order of the file."""
 
 ALWAYS = ("setup", "grader")
-"""Parts of every set-up: what one of them needs stands there alone. Any other part may be left out, `ros` too, so each
-of those has all that it needs beside these two."""
+"""The parts of every set-up: what they need is listed only there. Any other part is optional, `ros` too, so each of
+them lists everything that it needs in addition to these two.
+"""
 
 SOURCED_BRINGS = frozenset({"numpy", "empy"})
-"""Left to a sourced ROS 2: its extensions are built for its own numpy, its generators for its own empy."""
+"""Packages that a sourced ROS 2 provides: its extensions are built for its numpy, its generators for its empy."""
 
 _MARK = "# part: "
 _NAME = re.compile(r"([A-Za-z0-9][A-Za-z0-9._-]*)==(\S+)")
@@ -48,7 +49,7 @@ _NAME = re.compile(r"([A-Za-z0-9][A-Za-z0-9._-]*)==(\S+)")
 
 @dataclass(frozen=True)
 class Entry:
-    """One version of one package. `text` is its lines in the file, hashes included, with the last line break."""
+    """One version of one package. `text` has its lines in the file, with the hashes and the last line break."""
 
     name: str
     version: str
@@ -56,7 +57,7 @@ class Entry:
 
 
 def parse(text: str) -> dict[str, list[Entry]]:
-    """The entries of each part, in the file's order; what several parts need is in each of them.
+    """Return the entries of each part, in the order of the file; what several parts need is in each of them.
 
     Raises:
         UsageError: a line belongs to no part or to no entry.
@@ -88,19 +89,18 @@ def parse(text: str) -> dict[str, list[Entry]]:
 def select(
     text: str, parts: Collection[str], *, without: Collection[str] = (), only: Collection[str] | None = None
 ) -> str:
-    """The requirements of `parts`, as pip reads them: all packages but `without`, or `only` those named."""
+    """Return the requirements of `parts` for pip: all packages except `without`, or `only` these packages."""
     entries = dict.fromkeys(entry for part, entries in parse(text).items() if part in parts for entry in entries)
     chosen = (entry for entry in entries if entry.name not in without and (only is None or entry.name in only))
     return "".join(entry.text for entry in chosen)
 
 
 def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str:
-    """The lock file's text: each entry below the names of the parts that need its package; `needs` are packages' names.
+    """Return the content of the lock file: each entry below its parts' names; `needs` has the packages of each part.
 
-    A package that has other versions for other Pythons is in a part with all of them.
+    If a package has several versions for different Pythons, a part has all of them.
 
-    Raises:
-        MachineError: the parts do not need just these packages.
+    Raises: MachineError: the parts do not need exactly these packages.
     """
     sections: dict[tuple[str, ...], list[str]] = {(part,): [] for part in PARTS}
     rest = set().union(*needs.values())
@@ -108,12 +108,12 @@ def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str
         parts = tuple(part for part in PARTS if entry.name in needs.get(part, ()))
         always = [part for part in ALWAYS if part in parts]
         if not parts:
-            message = f"No part of the lock file needs {entry.name}, but the whole does."
+            message = f"No part of the lock file needs {entry.name}, but the whole file does."
             raise MachineError(message)
         sections.setdefault((always[0],) if always else parts, []).append(entry.text)
         rest.discard(entry.name)
     if rest:
-        message = f"By itself a part of the lock file needs what the whole does not: {sorted(rest)}."
+        message = f"A part of the lock file alone needs packages that the whole does not need: {sorted(rest)}."
         raise MachineError(message)
     text = "# Made by `make lock` from pyproject.toml, not to be edited: every version, with hashes, for all Pythons.\n"
     order = list(PARTS)
@@ -123,9 +123,9 @@ def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str
 
 
 def make(uv: str, *, upgrade: bool = False) -> str:
-    """The text of a new lock file for pyproject.toml, resolved by uv (needs the network).
+    """Return the content of a new lock file for pyproject.toml, resolved by uv (needs the network).
 
-    Versions in the present lock file are kept where they still fit, unless `upgrade`.
+    The versions in the existing lock file are kept if they still fit, unless `upgrade` is true.
     """
     with tempfile.TemporaryDirectory() as folder:
         whole = Path(folder, "whole.txt")
@@ -144,14 +144,14 @@ def make(uv: str, *, upgrade: bool = False) -> str:
             ("tests", None, ["--extra", "dev"]),
         ]:
             path = Path(folder, f"{part}.txt")
-            # Of the versions that the whole has for each Python.
+            # Limit each part to the versions of the whole for each Python.
             _compile(uv, path, [*arguments, "--constraint", str(whole)], requirements)
             needs[part] = {name for name, _ in _NAME.findall(path.read_text(encoding="utf-8"))}
     return split(entries, needs)
 
 
 def _requirements(extra: str) -> list[str]:
-    """What an extra of the project names, without the project's own dependencies."""
+    """Return the requirements of an extra, without the project's own dependencies."""
     if sys.version_info >= (3, 11):
         import tomllib
     else:
@@ -161,17 +161,17 @@ def _requirements(extra: str) -> list[str]:
 
 
 def _compile(uv: str, output: Path, arguments: list[str], requirements: str | None = None) -> None:
-    """Resolve the project, or `requirements` (one a line) instead of it, into `output`."""
+    """Resolve the project, or `requirements` (one per line) instead of it, into `output`."""
     command = [
         *(uv, "pip", "compile", str(PROJECT) if requirements is None else "-"),
         *("--output-file", str(output), "--quiet", *arguments),
         *("--universal", "--python-version", "3.10", "--no-python-downloads"),
-        # Where a package is downloaded from is each machine's own business: no index, no addresses.
+        # Each machine decides where packages are downloaded from, so the file has no index and no addresses.
         *("--generate-hashes", "--no-emit-index-url", "--no-annotate", "--no-header"),
     ]
     done = subprocess.run(command, cwd=ROOT, check=False, input=requirements, text=True)
     if done.returncode != 0:
-        message = f"uv could not make the lock file (its exit code is {done.returncode}; what it said stands above)."
+        message = f"uv could not make the lock file (exit code {done.returncode}; its messages are above)."
         raise MachineError(message)
 
 

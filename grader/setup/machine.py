@@ -1,7 +1,7 @@
-"""What this machine has and lacks: Pythons, a sourced ROS 2, the system's programs, and the words for what is missing.
+"""What this machine has and lacks: Pythons, a sourced ROS 2, the system's programs, and messages about what is missing.
 
-The set-up asks before anything is installed, under whatever `python3` there is, so that the answer for one that is too
-old is a sentence and not a SyntaxError: syntax of Python 3.6 and standard library only, here and in bootstrap.py.
+The set-up runs this before anything is installed, with any `python3`. If that is too old, the user must see a message
+and not a SyntaxError, so this module and bootstrap.py use only the syntax of Python 3.6 and the standard library.
 """
 
 import json
@@ -20,7 +20,9 @@ from grader.common.refusal import of_the_machine
 OLDEST, NEWEST = (3, 10), (3, 14)
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SYSTEM_PATH = ("/usr/local/bin", "/usr/bin", "/bin")
-NO_SANDBOX = "your own code is checked with limits on time, memory, processes and file size only; no marks are given"
+NO_SANDBOX = (
+    "only your own code can be checked, with limits on time, memory, processes and file size; marks need the sandbox"
+)
 
 CONTAINER = """\
   - a container, started in this folder (--privileged, since the grader makes sandboxes of its own):
@@ -53,7 +55,7 @@ print(json.dumps({
 
 
 class Python(NamedTuple):
-    """An interpreter: `path` is free of symlinks; `cpython` means one that the ROS 2 wheels are built for."""
+    """An interpreter: `path` has no symlinks; `cpython` means a CPython that the ROS 2 wheels support."""
 
     path: str
     version: Tuple[int, int, int]
@@ -65,12 +67,12 @@ class Python(NamedTuple):
 
     @property
     def is_systems(self) -> bool:
-        """Whether the system's package manager installed it, and so has its missing pieces."""
+        """Whether the system's package manager installed it, and so has its missing parts."""
         return Path(self.path).parent == Path("/usr/bin")
 
 
 class SourcedRos(NamedTuple):
-    """A sourced ROS 2 Jazzy: its prefix, the (major, minor) of its Python, and whether it brings a turtlesim."""
+    """A sourced ROS 2 Jazzy: its prefix, the (major, minor) of its Python, and whether it has a turtlesim."""
 
     prefix: str
     python: Tuple[int, int]
@@ -78,7 +80,7 @@ class SourcedRos(NamedTuple):
 
 
 def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
-    """The ROS 2 Jazzy that the caller has sourced, if any; `ours` is the prefix of the wheels, which does not count."""
+    """Return the ROS 2 Jazzy that is sourced, if any; `ours` is the prefix of the wheels, which is ignored."""
     if env.get("ROS_DISTRO") != "jazzy":
         return None
     for prefix in map(Path, clean(env).get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
@@ -92,30 +94,30 @@ def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
 
 
 def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Optional[SourcedRos]) -> str:
-    """Why the ROS 2 wheels cannot be installed here, with what to do instead; empty if they can.
+    """Return why the ROS 2 wheels cannot be installed here and what to do instead; an empty string if they can.
 
-    The arguments are what the module `platform` says: system(), machine(), libc_ver().
+    The arguments are platform.system(), platform.machine() and platform.libc_ver().
     """
     if system == "Linux" and ros:
         return ""
     if system != "Linux" or machine != "x86_64":
         seen = "{} on {}".format({"Darwin": "macOS"}.get(system, system or "unknown"), machine or "unknown")
     elif libc[0] != "glibc":
-        seen = "a Linux with another C library than glibc"
+        seen = "a Linux with a C library other than glibc"
     elif tuple(int(number) for number in libc[1].split(".")[:2]) < (2, 28):
         seen = f"a Linux with glibc {libc[1]}"
     else:
         return ""
     return (
         "The course brings ROS 2 as packages that exist for Linux on x86-64 with glibc 2.28 or newer (Debian 10, "
-        f"Ubuntu 20.04 or later). This is {seen}.\nTwo ways from here:\n{CONTAINER}"
+        f"Ubuntu 20.04 or later). This is {seen}.\nYou can use one of these instead:\n{CONTAINER}"
     )
 
 
 def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
-    """Whether packages certainly cannot be downloaded: no way leads out of this machine, and nothing else is set up.
+    """Return whether packages certainly cannot be downloaded: there is no network route, and nothing else is set up.
 
-    With a mirror, a proxy or a folder of wheels on this machine, only an installer can tell. `root` is where /proc is.
+    With a mirror, a proxy or a folder of wheels on this machine, only an installer can find out. `root` contains /proc.
     """
     settings = ("PIP_", "UV_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")
     home = Path(env.get("HOME", "/nowhere"))
@@ -131,16 +133,16 @@ def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
 
 
 def closed_folder(path: str) -> Optional[Path]:
-    """The topmost folder above `path` that other users cannot enter: what lies below it, they cannot run."""
+    """Return the topmost folder above `path` that other users cannot enter; they cannot run programs below it."""
     folders = Path(path).resolve().parents
     return next((folder for folder in reversed(list(folders)) if not folder.stat().st_mode & stat.S_IXOTH), None)
 
 
 def probe(executable: str) -> Optional[Python]:
-    """Ask an interpreter what it is; None if it does not answer, like a shim for one not installed.
+    """Ask an interpreter what it is; None if it does not answer, such as a shim for a Python that is not installed.
 
     Raises:
-        OSError: the machine has no room for a process more, which tells nothing about the interpreter.
+        OSError: the machine cannot start another process, so nothing is known about the interpreter.
     """
     try:
         asking = interpreter("-c", _PROBE, python=executable)
@@ -168,7 +170,7 @@ def for_ros(python: Python, ros: SourcedRos) -> Python:
 
 
 def find_pythons(path: str) -> Iterator[Python]:
-    """Interpreters on PATH and in the system's folders: `python3` first, then by name from the newest."""
+    """Return the interpreters on PATH and in the system's folders: `python3` first, then the newest first."""
     folders = list(dict.fromkeys([*filter(None, path.split(os.pathsep)), *SYSTEM_PATH]))
     seen = set()
     for name in ["python3", *(f"python3.{minor}" for minor in range(NEWEST[1], OLDEST[1] - 1, -1))]:
@@ -182,16 +184,16 @@ def find_pythons(path: str) -> Iterator[Python]:
 def choose_python(
     pythons: Iterable[Python], *, root: bool, wanted: Optional[Tuple[int, int]] = None
 ) -> Optional[Python]:
-    """The interpreter for .venv: the first that will do, and one that lacks nothing before one that does.
+    """Return the interpreter for .venv: the first suitable one; complete ones come before those that lack something.
 
-    Root gets one that others can run too (not below its own home), since the sandbox gives up root's rights.
-    `wanted` is the only (major, minor) that will do: the one a sourced ROS 2 was built for.
+    For root it must be one that others can run too (not below root's home), since the sandbox gives up root's rights.
+    `wanted` is the only suitable (major, minor): the one that a sourced ROS 2 was built for.
     """
     best: Optional[Tuple[Tuple[bool, bool, bool], Python]] = None
     for python in pythons:
         fits = python.version[:2] == wanted if wanted else OLDEST <= python.version[:2] <= NEWEST
         lacks = not (python.venv and python.headers) or bool(python.lacks)
-        # What a Python that is not the system's lacks, no package manager could add.
+        # The package manager cannot add missing parts to a Python that it did not install.
         if not python.cpython or not fits or (lacks and not python.is_systems):
             continue
         rank = (bool(python.lacks), root and closed_folder(python.path) is not None, lacks)
@@ -203,7 +205,7 @@ def choose_python(
 
 
 def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
-    """Programs that the system lacks. Where turtlesim is installed, its messages need no compiler."""
+    """Return the programs that the system lacks. If turtlesim is installed, its messages need no compiler."""
     tools = {"bwrap": Need("bubblewrap, the sandbox that student code runs in", "bubblewrap", NO_SANDBOX)}
     limits = Need("setpriv, prlimit and choom, which set the sandbox's limits", "util-linux")
     tools.update({"setpriv": limits, "prlimit": limits, "choom": limits})
@@ -216,7 +218,7 @@ def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
 
 
 def missing_of_tests(path: str) -> List[Need]:
-    """What is missing that only some tests need: no reason to stop, since the others run without it."""
+    """Return what is missing and only needed for some tests; the others run without it."""
     tools = {
         BROWSERS: Need("a browser", "chromium", "the tests of the pages do not run"),
         ("shellcheck",): Need("shellcheck", "shellcheck", "the test of the shell scripts does not run"),
@@ -232,7 +234,7 @@ def missing_of_python(
     newer: str = "",
     refused: Sequence[Python] = (),
 ) -> List[Need]:
-    """What the chosen Python lacks; all of it, if there is none.
+    """Return what the chosen Python lacks; everything if there is no Python.
 
     `newer` is the package of a Python that the system has beside one that is too old, `refused` are those of the
     `wanted` version that cannot import what the sourced ROS 2 needs.
@@ -249,7 +251,7 @@ def missing_of_python(
     name = "python3" if default else f"python{python.version[0]}.{python.version[1]}"
     needs = []
     if not python.venv:
-        needs.append(Need("Python's module venv, which makes the course's own environment", name + "-venv"))
+        needs.append(Need("Python's module venv, which creates the course's environment", name + "-venv"))
     if not python.headers:
         needs.append(Need("Python's headers (Python.h), for turtlesim's messages", name + "-dev"))
     lacks = [Need(f"the module {name}, which the sourced ROS 2 needs", LEFT_TO_ROS[name]) for name in python.lacks]
@@ -257,9 +259,9 @@ def missing_of_python(
 
 
 def lack_message(needs: Sequence[Need], manager: Optional[packages.Manager], *, root: bool, why: str = "") -> str:
-    """All that the system lacks, and the one command for it; `why` it was not installed at once."""
+    """Return a message with everything that the system lacks, the command for it, and `why` it was not installed."""
     whats = [f"  - {what}" for what in dict.fromkeys(need.what for need in needs)]
-    lines = ["The course needs these, which this system does not have:", *whats]
+    lines = ["The course needs the following, which this system does not have:", *whats]
     lines += [f"They were not installed: {why}."] if why else []
     how = packages.command(manager, needs, root=root)
     if manager is None:
@@ -268,7 +270,7 @@ def lack_message(needs: Sequence[Need], manager: Optional[packages.Manager], *, 
         lines += ["Install them with this command, then run make again:", "", "    " + how, ""]
     if any(need.what.startswith("CPython") for need in needs):
         lines += [
-            "Where the system's own Python is older, take a newer system (Debian 12, Ubuntu 22.04), or",
+            "If the system's own Python is older, use a newer system (Debian 12, Ubuntu 22.04), or",
             CONTAINER,
         ]
     return "\n".join(lines)

@@ -1,4 +1,4 @@
-"""Install what the system lacks, as root or by sudo; where that cannot be had, say why.
+"""Install what the system lacks, as root or with sudo; if that is not possible, say why.
 
 Runs under any Python 3 before anything is installed, as machine.py does: syntax of Python 3.6.
 """
@@ -12,33 +12,33 @@ from typing import Callable, List, Mapping, Optional, Sequence
 from grader.common import packages
 
 TOLD_LINES = 3
-"""How much of what a package manager says is repeated when it fails."""
+"""How much of a package manager's output is shown if it fails."""
 _ERROR = re.compile(r"(E:|W:|Err:|error|problem|fatal|no package|nothing provides|sudo:)", re.IGNORECASE)
 
 
 def provide(needs: Sequence[packages.Need], env: Mapping[str, str], say: Callable[[str], None]) -> str:
-    """Install what is needed, with a line to `say` beforehand; return why not all of it could be.
+    """Install what is needed, and print a line with `say` first; return why something could not be installed.
 
-    What cannot be done without goes first, and anything else by itself, so that one package that the system does not
-    have stops no other.
+    The required packages are installed first, together. Each optional package is installed separately, so that a
+    missing one does not stop the others.
     """
     path = env.get("PATH", "")
     manager = packages.find_manager(path)
     if env.get("INSTALL_SYSTEM") == "0":
-        return "INSTALL_SYSTEM=0 leaves the system as it is"
+        return "INSTALL_SYSTEM=0 forbids changes to the system"
     if manager is None:
-        return "no package manager that the set-up knows is here"
+        return "the set-up does not know a package manager of this system"
     groups = _groups(needs)
     rights = _rights(path)
     if rights is None:
-        return "only root can install it, and sudo is not here"
+        return "only root can install it, and there is no sudo"
     script = packages.script(manager, groups)
     command = packages.command(manager, needs, root=os.getuid() == 0)
     if rights[-1:] == ["-n"] and not _quietly(rights):
         if not _at_terminal():
             return "only root can install it, and sudo needs a password, for which there is no terminal"
         rights = rights[:-1]
-        say("The system lacks some programs. sudo asks for your password to install them (INSTALL_SYSTEM=0 does not):")
+        say("The system lacks some programs. sudo asks for your password to install them (unless INSTALL_SYSTEM=0):")
         print(f"    sudo sh -c '{script}'", flush=True)
     else:
         say(f"Installing what the system lacks: {command}")
@@ -46,13 +46,13 @@ def provide(needs: Sequence[packages.Need], env: Mapping[str, str], say: Callabl
 
 
 def _groups(needs: Sequence[packages.Need]) -> List[List[packages.Need]]:
-    """All that cannot be done without in one group, each other need in one of its own."""
+    """Return the required needs in one group, and each optional need in a group of its own."""
     musts = [need for need in needs if not need.lost]
     return [*([musts] if musts else []), *([need] for need in needs if need.lost)]
 
 
 def _rights(path: str) -> Optional[List[str]]:
-    """Return what a command is started by to be root's; None if it cannot be."""
+    """Return the prefix that runs a command as root; None if there is none."""
     if os.getuid() == 0:
         return []
     sudo = packages.find_program("sudo", path)
@@ -60,7 +60,7 @@ def _rights(path: str) -> Optional[List[str]]:
 
 
 def _quietly(rights: Sequence[str]) -> bool:
-    """Tell whether sudo asks for nothing."""
+    """Return whether sudo works without a password."""
     return subprocess.call([*rights, "true"], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL) == 0
 
 
@@ -69,9 +69,9 @@ def _at_terminal() -> bool:
 
 
 def _run(command: Sequence[str], program: str, env: Mapping[str, str]) -> str:
-    """Run a package manager; return what went wrong in its own words."""
+    """Run a package manager; return its error message, empty if it succeeded."""
     try:
-        # sudo asks at the terminal itself, whatever these are.
+        # sudo asks on the terminal itself, so these do not matter for it.
         done = subprocess.run(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=env
         )

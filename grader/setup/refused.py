@@ -1,4 +1,4 @@
-"""Why a set-up stopped, in one sentence with what to do: by an error of ours, or by what an installer printed.
+"""Why a set-up stopped, in one sentence with what to do: from an error here, or from an installer's output.
 
 Like machine.py, this runs under any Python 3 before anything is installed: syntax of Python 3.6.
 """
@@ -16,14 +16,14 @@ from grader.common.refusal import refusal, sentence
 
 MACHINE_BROKEN = 3
 NEEDED_MB = 700
-"""What .venv takes for a learner, with room for the rest."""
-AGAIN = "the same command goes on from here, and what was downloaded is kept"
+"""The size of a learner's .venv, with a reserve."""
+AGAIN = "the same command continues from here, and the downloads are kept"
 NO_NETWORK = (
-    "This machine does not reach the packages of Python ({}). Is it online? A proxy is read from HTTPS_PROXY, a mirror "
+    "This machine cannot reach the Python packages ({}). Is it online? A proxy is read from HTTPS_PROXY, a mirror "
     "from pip's own configuration; " + AGAIN + "."
 )
 _FULL_MB = 50
-"""With less than that, whatever failed could not have succeeded."""
+"""With less free space than this, the disk is the reason for any failure."""
 _NUMBER = re.compile(r"\[Errno (\d+)\]|\(os error (\d+)\)")
 _OFFLINE = re.compile(
     "(?:Temporary failure in )?name resolution|Name or service not known|No address associated with hostname|"
@@ -34,20 +34,20 @@ _WRITE = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 
 
 def guarded(main: Callable[[], int]) -> int:
-    """Run a program of the set-up; what the system refuses, and Ctrl-C, is a sentence. Returns the exit code."""
+    """Run a program of the set-up, print system errors and Ctrl-C as one sentence, and return the exit code."""
     try:
         code = main()
         sys.stdout.flush()
     except KeyboardInterrupt:
-        print("\nStopped. The same command goes on from here: what was downloaded is kept.", file=sys.stderr)
+        print("\nStopped. The same command continues from here; the downloads are kept.", file=sys.stderr)
         return 130
     except BrokenPipeError:
-        _silence()  # Whoever read us has gone.
+        _silence()  # The reader of our output has ended.
         return 1
     except Exception as error:
         if os.environ.get("GRADER_DEBUG"):
             raise
-        fault = f"A fault of the set-up itself: {type(error).__name__}: {error}. GRADER_DEBUG=1 before it shows where."
+        fault = f"An error in the set-up itself: {type(error).__name__}: {error}. Set GRADER_DEBUG=1 to see where."
         print(of_error(error) or fault, file=sys.stderr)
         _silence()
         return MACHINE_BROKEN
@@ -55,12 +55,12 @@ def guarded(main: Callable[[], int]) -> int:
 
 
 def _silence() -> None:
-    """Keep the interpreter from failing once more at its end, when it empties its buffers."""
+    """Keep the interpreter from failing again at its end, when it flushes its buffers."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 def of_error(error: BaseException) -> Optional[str]:
-    """The sentence for an error that the system has raised in the set-up; None for any other error."""
+    """Return the sentence for a system error in the set-up; None for any other error."""
     if isinstance(error, OSError) and isinstance(error.filename, (str, bytes)):
         return _of_number(error.errno or 0, Path(os.fsdecode(error.filename)))
     if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
@@ -69,7 +69,7 @@ def of_error(error: BaseException) -> Optional[str]:
 
 
 def of_output(said: str, folder: Path) -> Optional[str]:
-    """The sentence for what stopped an installer, which printed `said` and fills `folder`; None if it is not known."""
+    """Return why an installer failed that printed `said` and fills `folder`, as one sentence; None if unknown."""
     found = _NUMBER.search(said)
     number = int(found.group(1) or found.group(2)) if found else 0
     if number in (errno.ENOSPC, errno.EDQUOT) or _fullest([folder]):
@@ -80,13 +80,13 @@ def of_output(said: str, folder: Path) -> Optional[str]:
 
 
 def offline(said: str) -> Optional[str]:
-    """What shows that there is no network in what an installer printed; None where nothing does."""
+    """Return the part of an installer's output that shows a missing network; None if there is none."""
     found = _OFFLINE.search(said)
     return found.group() if found else None
 
 
 def cache() -> Path:
-    """Where uv keeps what it has downloaded."""
+    """Return the folder in which uv keeps its downloads."""
     named = os.environ.get("UV_CACHE_DIR") or "{}/uv".format(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
     return Path(named).expanduser()
 
@@ -97,14 +97,12 @@ def _of_number(number: int, where: Optional[Path]) -> str:
         return sentence(number, str(where or ""), room)
     if number in _WRITE:
         told = f"{where} cannot be written to ({os.strerror(number)})"
-        return (
-            f"{told}: copy the folder of the course to where you may write, such as your home, and type the same there."
-        )
+        return f"{told}: copy the course's folder to where you may write, such as your home, and try again there."
     return sentence(number, str(where or ""))
 
 
 def _fullest(folders: List[Path]) -> Optional[Path]:
-    """The first of the folders on whose disk there is next to no room."""
+    """Return the first of the folders whose disk is nearly full."""
     for folder in folders:
         there = next((above for above in [folder, *folder.parents] if above.exists()), None)
         if there and shutil.disk_usage(str(there)).free < _FULL_MB * 2**20:

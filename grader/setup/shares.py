@@ -1,4 +1,4 @@
-"""What the kernel lets this user have at once: open files, processes, and pipes of the size that a trial wants."""
+"""The limits of this user: open files, processes, and the size of pipes that a trial needs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LEAST_PROCESSES = 1024
 
 
 def shares() -> tuple[str, str]:
-    """What there is, and what to do where that is too little for a grading; empty where it is enough."""
+    """Return the limits, and what to do if they are too low for grading; an empty string if they are not."""
     files, processes = (resource.getrlimit(which)[0] for which in (resource.RLIMIT_NOFILE, resource.RLIMIT_NPROC))
     reads, writes = os.pipe()
     try:
@@ -26,4 +26,4 @@ def shares() -> tuple[str, str]:
         return seen, f"ulimit -n {4 * LEAST_FILES}"
     if not unlimited and processes < LEAST_PROCESSES:
         return seen, f"ulimit -u {4 * LEAST_PROCESSES}"
-    return seen if large else f"{seen}; pipes stay small while other programs hold many", ""
+    return seen if large else f"{seen}; pipes stay small while other programs use many", ""

@@ -136,7 +136,7 @@ def test_a_sourced_ros_for_another_python_is_broken(bare: pytest.MonkeyPatch, wh
 def test_another_sourced_distribution_is_told(wheels: Ros) -> None:
     line = doctor.look_at_ros(wheels, {"ROS_DISTRO": "humble"})
     assert line.state == "advice"
-    assert "humble is sourced and not used" in line.seen
+    assert "humble is sourced, but not used" in line.seen
 
 
 @pytest.mark.parametrize(("free", "state"), [(10 * 2**30, "ok"), (2**30, "advice"), (2**20, "broken")])

@@ -88,7 +88,7 @@ def test_what_a_machine_has_no_room_for_pip_is_not_asked_for(installers: Install
 
 def test_what_is_not_understood_is_repeated(installers: Installers, capfd: pytest.CaptureFixture[str]) -> None:
     installers.failed["pip"] = "ERROR: THESE PACKAGES DO NOT MATCH THE HASHES\n"
-    with pytest.raises(MachineError, match="what the installer said stands above"):
+    with pytest.raises(MachineError, match="the installer's messages are above"):
         install.install(PARTS["learner"], sourced=False)
     assert "DO NOT MATCH THE HASHES" in capfd.readouterr().out
 

@@ -298,7 +298,7 @@ def test_a_newer_python_beside_one_that_is_too_old_is_asked_for_by_its_name() ->
 def test_one_message_with_one_command() -> None:
     needs = [Need("a compiler", "g++"), Need("setpriv", "util-linux"), Need("prlimit", "util-linux")]
     assert machine.lack_message(needs, APT, root=False).splitlines() == [
-        "The course needs these, which this system does not have:",
+        "The course needs the following, which this system does not have:",
         "  - a compiler",
         "  - setpriv",
         "  - prlimit",

@@ -77,7 +77,7 @@ def test_ctrl_c_says_how_to_go_on(capsys: pytest.CaptureFixture[str]) -> None:
         raise KeyboardInterrupt
 
     assert refused.guarded(main) == 130
-    assert "The same command goes on from here" in capsys.readouterr().err
+    assert "The same command continues from here" in capsys.readouterr().err
 
 
 def test_a_machine_that_starts_no_process_says_nothing_about_its_pythons(monkeypatch: pytest.MonkeyPatch) -> None:
