@@ -182,7 +182,7 @@ def to_text(drawn: Picture, *, ascii_only: bool = False) -> str:
     if drawn.alone:
         lines += [""] if lines else []
         lines += [f"{_node(node.name, counts)}  none of the topics shown" for node in drawn.alone]
-    legend = f"(node) {strokes.one} [topic] {strokes.one} (node): an arrow goes the way the messages go."
+    legend = f"(node) {strokes.one} [topic] {strokes.one} (node): arrows point in the direction of the messages."
     return "\n".join([*lines, "", legend]) + "\n"
 
 

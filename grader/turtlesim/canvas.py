@@ -1,6 +1,6 @@
-"""The canvas: 500 x 500 px on which the turtles' pens leave their trail.
+"""The canvas: 500 x 500 px on which the turtles' pens draw their trails.
 
-Pixel (0, 0) is the upper left corner; a turtle at (x, y) m stands on pixel (45 x, 499 - 45 y).
+Pixel (0, 0) is the upper left corner; a turtle at (x, y) m is at pixel (45 x, 499 - 45 y).
 """
 
 from __future__ import annotations
@@ -17,34 +17,34 @@ if TYPE_CHECKING:
 
 BACKGROUND: Rgb = (69, 86, 255)
 
-# Far enough outside that a line's visible part keeps its direction, near enough for Pillow's integers.
+# Far enough outside to keep the direction of a line's visible part, near enough for Pillow's integers.
 _FAR_PX = 100_000.0
 
 
 class Canvas:
-    """The trail, and the background that shows where nothing was drawn: changing it repaints nothing."""
+    """The trail, and the background behind it; a new background colour does not repaint the trail."""
 
     def __init__(self, background: Rgb = BACKGROUND) -> None:
         self.background = background
         self.clear()
 
     def clear(self) -> None:
-        """Wipe off the trail."""
-        # Transparent where nothing was drawn. RGBA without blending: what is drawn replaces what was there.
+        """Clear the trail."""
+        # Transparent at first. RGBA without blending: a new line replaces what is below it.
         self._image = Image.new("RGBA", (SIDE_PX, SIDE_PX), (0, 0, 0, 0))
         self._draw = ImageDraw.Draw(self._image)
         self._pixels: Any = self._image.load()
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
-        """Draw a line between two points in m with round ends; one with an end that is no number leaves none."""
+        """Draw a line between two points in m with round ends; draw nothing if a coordinate is not a number."""
         if not (math.isfinite(x0) and math.isfinite(y0) and math.isfinite(x1) and math.isfinite(y1)):
             return
         start, end = _pixel(x0, y0), _pixel(x1, y1)
         ink = (*pen.color, 255)
         if start != end:
             self._draw.line((start, end), ink, pen.width)
-        # A frame's line is a pixel or two long: dots keep the trail whole where Pillow's short, wide lines leave
-        # gaps at their joints.
+        # The line of a frame is one or two pixels long. Pillow's short, wide lines leave gaps at their joints, which
+        # these dots fill.
         self._dot(start, ink, pen.width)
         self._dot(end, ink, pen.width)
 
@@ -56,18 +56,18 @@ class Canvas:
         self._draw.ellipse((left, top, left + width - 1, top + width - 1), ink)
 
     def color_at(self, x: float, y: float) -> Rgb:
-        """Return the colour under a point in m: the trail's, or the background's where there is none."""
+        """Return the colour under a point in m: that of the trail, or else of the background."""
         if not (0.0 <= x <= SIDE_M and 0.0 <= y <= SIDE_M):
             return self.background
         red, green, blue, drawn = self._pixels[_pixel(x, y)]
         return (red, green, blue) if drawn else self.background
 
     def trail(self) -> Image.Image:
-        """Return what was drawn, RGBA: transparent where nothing was."""
+        """Return the trail as RGBA, transparent where nothing was drawn."""
         return self._image
 
     def image(self) -> Image.Image:
-        """Return the picture, RGB."""
+        """Return the picture as RGB."""
         picture = Image.new("RGB", self._image.size, self.background)
         picture.paste(self._image, mask=self._image)
         return picture

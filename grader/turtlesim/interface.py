@@ -1,4 +1,4 @@
-"""What one turtle shows to ROS 2: its topics, services and action."""
+"""The ROS 2 interface of one turtle: its topics, services and action."""
 
 from __future__ import annotations
 
@@ -32,12 +32,11 @@ _FLOAT32_MAX = 3.4028234663852886e38
 
 @dataclass(frozen=True)
 class Hooks:
-    """Who wants to know what the simulator hears and says. `data` is a message's CDR form.
+    """Callbacks for what the simulator receives and sends. `data` is the serialized message (CDR).
 
-    `on_command(topic, data, twist)`: a command as it arrived, before it moves the turtle.
-    `on_publish(topic, type, data)`: a pose or colour as it is sent.
-    `on_intervention(name)`: somebody called a service or an action ("spawn", "rotate_absolute") or set a parameter
-    ("set_background" for the colours alone, else "set_parameters").
+    `on_command(topic, data, twist)`: a command has arrived; it has not moved the turtle yet. `on_publish(topic, type,
+    data)`: a pose or a colour is sent. `on_intervention(name)`: somebody called a service or an action ("spawn",
+    "rotate_absolute") or set a parameter ("set_background" if only the colours changed, else "set_parameters").
     """
 
     on_command: Callable[[str, bytes, Any], object]
@@ -46,10 +45,10 @@ class Hooks:
 
 
 class TurtleInterface:
-    """Topics, services and action of the turtle that is called `name`, whichever it is: a reset changes it."""
+    """The topics, services and action for the turtle called `name`; after a reset this is another turtle."""
 
     def __init__(self, node: Node, name: str, world: World, hooks: Hooks, pose_every: int = 1) -> None:
-        """Enter the ROS graph; whatever rclpy raises for a name that is none comes through, and nothing is left."""
+        """Enter the ROS graph. If rclpy raises an error for an invalid name, nothing of the turtle stays there."""
         self.name = name
         self._world = world
         self._hooks = hooks
@@ -83,16 +82,16 @@ class TurtleInterface:
 
     @property
     def idle(self) -> bool:
-        """Whether nobody waits for the end of a rotation."""
+        """Return whether no client waits for the end of a rotation."""
         return self._rotate.idle
 
     def before_frame(self) -> None:
-        """Hand over what the turtle must know before it moves."""
+        """Pass the requests of clients on to the turtle before it moves."""
         if not self._rotate.idle:
             self._rotate.before_frame()
 
     def after_frame(self) -> None:
-        """Publish where the turtle is, what it sees, and how its rotation goes."""
+        """Publish the turtle's pose and colour, and the feedback of its rotation."""
         if not self._rotate.idle:
             self._rotate.after_frame()
         turtle = self._turtle()
@@ -130,7 +129,7 @@ class TurtleInterface:
         try:
             twist = deserialize_message(data, Twist)
         except Exception:
-            self._log.error(f"What came on {self._command_topic} is no Twist; ignored")
+            self._log.error(f"A message on {self._command_topic} is not a Twist; ignored")
             return
         self._hooks.on_command(self._command_topic, data, twist)
         turtle = self._turtle()
@@ -147,7 +146,7 @@ class TurtleInterface:
             if request.off:
                 turtle.pen = replace(turtle.pen, down=False)
             else:
-                # A width of 0 is a pen of one pixel, not the width it had.
+                # A width of 0 gives a pen of one pixel; it does not keep the last width.
                 turtle.pen = Pen((request.r, request.g, request.b), request.width or 1)
         return response
 
@@ -171,7 +170,7 @@ class TurtleInterface:
 
 
 class _Sender:
-    """A publisher with its message, serialized only when it changed: a turtle at rest says the same each frame."""
+    """A publisher that serializes its message only if it has changed: a turtle at rest always sends the same one."""
 
     def __init__(self, node: Node, message_type: type, topic: str, parts: ExitStack) -> None:
         publisher = node.create_publisher(message_type, topic, QOS)
@@ -187,7 +186,7 @@ class _Sender:
 
 
 def _narrow(value: float) -> float:
-    """Return what a float32 field takes: beyond its range lies infinity, as in C++."""
+    """Return the value for a float32 field; a value beyond its range becomes infinity, as in C++."""
     if abs(value) > _FLOAT32_MAX:
         return math.copysign(math.inf, value)
     return value

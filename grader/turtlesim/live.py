@@ -1,7 +1,7 @@
-"""`python -m grader.turtlesim.live`: turtlesim at wall time for somebody who watches from another process.
+"""`python -m grader.turtlesim.live`: turtlesim in wall time, watched by another process.
 
-Standard output gets the picture as it changes: four bytes of length (big endian), then a PNG. Whoever reads slowly
-misses pictures, never the last one. It ends when its standard input is closed.
+It writes the picture to standard output when it changes: four bytes for the length (big endian), then a PNG. A slow
+reader misses pictures, but never the last one. It ends when its standard input is closed.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from grader.turtlesim.world import World
 
 EVERY = 12
-"""Frames from one picture to the next: 5 a second."""
+"""The number of frames from one picture to the next: 5 pictures per second."""
 SIZE_PX = 330
 TURTLE: tuple[int, int, int] = (124, 197, 118)
 
 
 def main() -> int:
-    """Run it; returns the exit code."""
+    """Run the simulator; return the exit code."""
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
@@ -54,7 +54,7 @@ def _wait_for_end(stop: threading.Event) -> None:
 
 
 class _ShownNode(TurtlesimNode):
-    """turtlesim, whose frames go to a screen."""
+    """A turtlesim that shows its frames on a screen."""
 
     screen: _Screen | None = None
 
@@ -65,7 +65,7 @@ class _ShownNode(TurtlesimNode):
 
 
 class _Screen:
-    """Writes pictures in a thread of its own, so that a reader who is slow, or gone, never stops a turtle."""
+    """Writes pictures in a thread of its own, so that a slow or missing reader never stops a turtle."""
 
     def __init__(self, world: World, stop: threading.Event) -> None:
         self._world = world
@@ -84,7 +84,7 @@ class _Screen:
         self._frames += 1
 
     def close(self) -> None:
-        """Show the last picture, and wait until it is read."""
+        """Show the last picture, and wait until it has been read."""
         self._show()
         with self._ready:
             self._closed = True

@@ -1,7 +1,7 @@
 """The node `turtlesim`: a headless turtlesim for ROS 2.
 
-Whoever owns the node spins it and calls `frame` once a frame with the time on its own clock: a trial, or alone.py at
-wall time. The node uses no timer and no ROS clock.
+The owner of the node spins it and calls `frame` once per frame with the time of its own clock. The owner is a trial, or
+standalone.py in wall time. The node uses no timer and no ROS clock.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import State
 
 MOST_TURTLES = 64
-"""The real turtlesim has no limit; ours must not be brought down by whoever spawns without end."""
+"""The real turtlesim has no limit; ours needs one, so that endless spawning does not crash it."""
 
 _FRAMES_TO_LEAVE = 4
-"""A killed turtle's entities stay this long, so that what was already asked of them is answered."""
+"""How long the entities of a killed turtle stay, so that earlier requests are answered."""
 
 
 def _nobody(*_: object) -> None:
-    """Nobody listens."""
+    """The default hook, which does nothing."""
 
 
 class TurtlesimNode(Node):
@@ -54,9 +54,10 @@ class TurtlesimNode(Node):
         canvas: Canvas | None = None,
         **node: Any,  # noqa: ANN401 - handed on to rclpy
     ) -> None:
-        """`start`: where turtle1 begins (m, m, rad), after a reset too; the `on_...` are described in `Hooks`.
+        """Create the node. turtle1 begins at `start` (m, m, rad), after a reset too; see `Hooks` for the `on_...`.
 
-        `pose_every`: a pose is published every so many frames; turtlesim does it in each. `canvas`: what is drawn on.
+        A pose is published every `pose_every` frames; turtlesim does it in each frame. `canvas` is what the turtles
+        draw on.
         """
         self._pose_every = pose_every
         self._hooks = Hooks(on_command, on_publish, on_intervention)
@@ -65,8 +66,8 @@ class TurtlesimNode(Node):
         self.world = World(start or Start(), canvas)
         self._take_parameters(self._parameters_of_ours())
         self.add_post_set_parameters_callback(self._parameters_set)
-        # turtlesim listens to parameter events to repaint its window. There is none here, but who looks at the
-        # graph should see the same node.
+        # turtlesim subscribes to parameter events to repaint its window. There is no window here, but the node should
+        # look the same in the graph.
         for _ in ("turtlesim", "the clock that rclcpp gives every node"):
             self.create_subscription(
                 ParameterEvent, "/parameter_events", lambda _: None, qos_profile_parameter_events, raw=True
@@ -83,7 +84,7 @@ class TurtlesimNode(Node):
         self._tell_spawned("turtle1")
 
     def frame(self, now_s: float) -> None:
-        """Make one frame (16 ms) that takes place at `now_s` on the caller's clock (s), and publish it."""
+        """Compute one frame (16 ms) at `now_s` on the caller's clock (s), and publish it."""
         self._frames += 1
         while self._leaving and self._leaving[0][0] <= self._frames and self._leaving[0][1].idle:
             self._leaving.popleft()[1].destroy()
@@ -95,7 +96,7 @@ class TurtlesimNode(Node):
             interface.after_frame()
 
     def turtle_state(self, name: str = "turtle1") -> State | None:
-        """Return a turtle as of the last frame; None when there is none of that name."""
+        """Return a turtle as of the last frame; None if there is no turtle with that name."""
         turtle = self.world.turtles.get(name)
         return turtle.state() if turtle is not None else None
 
@@ -106,7 +107,7 @@ class TurtlesimNode(Node):
     # --- turtles ----------------------------------------------------------------------------------------------
 
     def _show(self, name: str) -> None:
-        """Give a turtle its topics, services and action; those of a killed namesake are its own again."""
+        """Give a turtle its topics, services and action; it gets those of a killed turtle with the same name back."""
         for waiting in self._leaving:
             if waiting[1].name == name:
                 self._leaving.remove(waiting)
@@ -115,7 +116,7 @@ class TurtlesimNode(Node):
         self._interfaces[name] = TurtleInterface(self, name, self.world, self._hooks, self._pose_every)
 
     def _hide(self, name: str) -> None:
-        # Not at once: this runs in a callback, and the executor may hold others of the same turtle.
+        # Remove it later: this runs in a callback, and the executor may hold other callbacks of the same turtle.
         self._leaving.append((self._frames + _FRAMES_TO_LEAVE, self._interfaces.pop(name)))
 
     def _tell_spawned(self, name: str) -> None:
@@ -127,7 +128,7 @@ class TurtlesimNode(Node):
     def _spawn(self, request: Spawn.Request, response: Spawn.Response) -> Spawn.Response:
         self._hooks.on_intervention("spawn")
         if len(self.world.turtles) >= MOST_TURTLES:
-            self.get_logger().error(f"There are {MOST_TURTLES} turtles already, and no more are let in")
+            self.get_logger().error(f"There are {MOST_TURTLES} turtles already; no more can be spawned")
             return response
         name = self.world.spawn(request.name, Start(request.x, request.y, request.theta))
         if not name:
@@ -136,7 +137,7 @@ class TurtlesimNode(Node):
         try:
             self._show(name)
         except Exception as error:
-            # turtlesim itself ends here with an exception. The first line says which characters are allowed.
+            # The real turtlesim ends here with an exception. The first line says which characters are allowed.
             self.world.kill(name)
             self.get_logger().error(f"A turtle cannot be named [{name}]: {str(error).partition(chr(10))[0]}")
             return response
@@ -158,7 +159,7 @@ class TurtlesimNode(Node):
         return response
 
     def clear(self) -> None:
-        """Wipe off the trail."""
+        """Clear the trail."""
         self.get_logger().info("Clearing turtlesim.")
         self.world.canvas.clear()
 
@@ -168,7 +169,7 @@ class TurtlesimNode(Node):
         return response
 
     def reset(self) -> None:
-        """Begin anew: turtle1 alone, at its start, and no trail."""
+        """Reset: only turtle1, at its start, and no trail."""
         self.get_logger().info("Resetting turtlesim.")
         self.world.reset()
         for name in [name for name in self._interfaces if name != "turtle1"]:
@@ -180,7 +181,7 @@ class TurtlesimNode(Node):
     # --- parameters -------------------------------------------------------------------------------------------
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
-        """Set parameters as rclpy does, but refuse in turtlesim's words."""
+        """Set parameters as rclpy does, but reject them with turtlesim's messages."""
         return parameters.refusal(parameter_list) or super().set_parameters_atomically(parameter_list)
 
     def _parameters_of_ours(self) -> list[Parameter]:

@@ -1,4 +1,4 @@
-"""The parameters of the node turtlesim, described as turtlesim describes them."""
+"""The parameters of the node turtlesim, with turtlesim's descriptions."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 CHANNELS = ("background_r", "background_g", "background_b")
 HOLONOMIC = "holonomic"
 
-# rclcpp declares these for the publisher of /parameter_events, rclpy does not; the values are what both use.
+# rclcpp declares these for the publisher of /parameter_events, but rclpy does not; both use these values.
 _EVENTS_QOS = {"depth": 1000, "durability": "volatile", "history": "keep_last", "reliability": "reliable"}
 
 
 def declare(node: Node) -> None:
-    """Declare the parameters; what rclpy raises for a start value that is out of range comes through."""
+    """Declare the parameters. rclpy raises an error for an initial value that is out of range."""
     for name, color, value in zip(CHANNELS, ("Red", "Green", "Blue"), BACKGROUND, strict=True):
         descriptor = ParameterDescriptor(
             description=f"{color} channel of the background color",
@@ -39,13 +39,13 @@ def declare(node: Node) -> None:
         node.declare_parameter(
             f"qos_overrides./parameter_events.publisher.{policy}", setting, descriptor, ignore_override=True
         )
-    # A parameter of every node, which rclcpp describes in these words and rclpy in others.
+    # Every node has this parameter; rclcpp describes it in these words, rclpy in other words.
     every_nodes = node.describe_parameter("start_type_description_service")
     every_nodes.description = "Start the ~/get_type_description service for this node."
 
 
 def refusal(parameters: Iterable[Parameter]) -> SetParametersResult | None:
-    """Refuse a colour out of range in turtlesim's words, which are rclcpp's: rclpy has others."""
+    """Reject a colour out of range with turtlesim's message, which is that of rclcpp; rclpy has another one."""
     for parameter in parameters:
         if parameter.name in CHANNELS and isinstance(parameter.value, int) and not 0 <= parameter.value <= 255:
             reason = f"Parameter {{{parameter.name}}} doesn't comply with integer range."

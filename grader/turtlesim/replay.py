@@ -1,4 +1,4 @@
-"""Replay a recording of the real turtlesim and measure how far our turtle is from it.
+"""Replay a recording of the real turtlesim, and measure how much our turtle differs from it.
 
     python -m grader.turtlesim.replay NAME.inputs.csv NAME.poses.csv
 
@@ -44,14 +44,14 @@ def replay(inputs: Path, poses: Path) -> Difference:
     for (frame, recorded), (turtle, _) in zip(_poses(poses), _frames(inputs), strict=False):
         for field, theirs, ours in zip(FIELDS, recorded, _as_published(turtle.state()), strict=True):
             size = abs(theirs - ours)
-            # Not `size > worst.size`: nan must count as the worst there is.
+            # Not `size > worst.size`: nan must count as the largest difference.
             if not size <= worst.size:
                 worst = Difference(size, frame, field)
     return worst
 
 
 def rotations(inputs: Path, frames: int) -> Iterator[Rotation]:
-    """Replay so many frames; yield the rotation as it is after each frame that had one."""
+    """Replay this many frames; yield the rotation after each frame that had one."""
     for _, rotation in itertools.islice(_frames(inputs), frames):
         if rotation is not None:
             yield rotation
@@ -66,7 +66,7 @@ class _Input:
 
 
 def _frames(inputs: Path) -> Iterator[tuple[Turtle, Rotation | None]]:
-    """Yield turtle1 after every frame, with the rotation that the frame began with, without end."""
+    """Yield turtle1 after every frame, for ever, with the rotation at the start of the frame."""
     world = World()
     turtle = world.turtles["turtle1"]
     by_frame = _inputs(inputs)
@@ -84,8 +84,8 @@ def _frames(inputs: Path) -> Iterator[tuple[Turtle, Rotation | None]]:
 def _frame_time(before_s: float, last_command_s: float | None, *, timed_out: bool) -> float:
     """Return the time of the next frame.
 
-    The recorded turtlesim's frames followed its wall clock, so a time-out came 62 to 64 frames after the command.
-    The time given to the world is stretched so that it finds the command too old in the same frame.
+    The frames of the recorded turtlesim followed its wall clock, so a time-out came 62 to 64 frames after the command.
+    The time is stretched here, so that our turtle times out in the same frame.
     """
     now_s = before_s + FRAME_S
     if last_command_s is None:
@@ -93,7 +93,7 @@ def _frame_time(before_s: float, last_command_s: float | None, *, timed_out: boo
     deadline_s = last_command_s + TIME_OUT_S
     if timed_out:
         return max(now_s, deadline_s + _HAIR_S)
-    # Before the time-out was recorded, time comes up to the deadline and waits there.
+    # Before the recorded time-out, the time stops at the deadline.
     return min(now_s, max(before_s, deadline_s - _HAIR_S)) if before_s <= deadline_s else now_s
 
 
@@ -141,7 +141,7 @@ def _as_published(state: State) -> tuple[float, ...]:
 
 
 def main() -> None:
-    """Print the largest difference of each pair of files named on the command line."""
+    """Print the largest difference for each pair of files on the command line."""
     names = [Path(name) for name in sys.argv[1:]]
     for inputs, poses in zip(names[::2], names[1::2], strict=True):
         worst = replay(inputs, poses)

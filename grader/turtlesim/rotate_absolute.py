@@ -1,4 +1,4 @@
-"""The action rotate_absolute of one turtle: goals in, feedback each frame, one result."""
+"""The action rotate_absolute of one turtle: it takes goals, sends feedback in each frame, and one result."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 class _DeferringActionServer(ActionServer):
-    """An action server whose goals are executed elsewhere: here, by the turtle's frames.
+    """An action server whose goals are not executed in its callback: the turtle's frames execute them.
 
-    rclpy would run a callback from acceptance to result. Ours would have to wait in it, and a waiting callback
-    keeps an executor busy; so a goal is marked as executing, and the callback comes when the result is there.
+    rclpy would run a callback from the acceptance of a goal to its result. This callback would have to wait, and would
+    keep an executor busy. So a goal is marked as executing, and the callback runs when there is a result.
     """
 
     def notify_execute(
@@ -28,20 +28,20 @@ class _DeferringActionServer(ActionServer):
         goal_handle: ServerGoalHandle,
         execute_callback: Callable[[ServerGoalHandle], RotateAbsolute.Result] | None,
     ) -> None:
-        """Leave the goal to the frames."""
+        """Do nothing: the frames execute the goal."""
 
     def give_result(self, goal_handle: ServerGoalHandle, result: RotateAbsolute.Result) -> None:
-        """Answer whoever asks for the result of a goal that has ended."""
+        """Send the result of a goal that has ended to the clients that ask for it."""
         super().notify_execute(goal_handle, lambda _: result)
 
 
 class RotateAbsoluteServer:
-    """Connects the goals of one turtle's action to its rotations."""
+    """Connects the goals of a turtle's action with its rotations."""
 
     def __init__(
         self, node: Node, name: str, find_turtle: Callable[[], Turtle | None], on_goal: Callable[[], object]
     ) -> None:
-        """`find_turtle` gives the turtle of today (none when it was killed); `on_goal` is told of every goal."""
+        """Create the server. `find_turtle` returns the current turtle (None if killed); `on_goal` runs per goal."""
         self._log = node.get_logger()
         self._find_turtle = find_turtle
         self._on_goal = on_goal
@@ -69,12 +69,12 @@ class RotateAbsoluteServer:
         self._goals.append((turtle.rotate_to(goal.request.theta), goal))
 
     def before_frame(self) -> None:
-        """Hand the requests to cancel to the turtle."""
+        """Pass cancel requests on to the turtle."""
         for rotation, goal in self._goals:
             rotation.cancel = goal.is_cancel_requested
 
     def after_frame(self) -> None:
-        """Tell the clients how far the turtle has come."""
+        """Send feedback and results to the clients."""
         ended = False
         for rotation, goal in self._goals:
             if rotation.end in (None, "succeeded"):
@@ -99,9 +99,9 @@ class RotateAbsoluteServer:
 
     @property
     def idle(self) -> bool:
-        """Whether no goal is going on."""
+        """Return whether there is no current goal."""
         return not self._goals
 
     def destroy(self) -> None:
-        """Take the action out of the graph."""
+        """Remove the action from the graph."""
         self._server.destroy()

@@ -1,4 +1,4 @@
-"""turtlesim alone at wall time: what `grader sim` and the executable turtlesim_node run, until Ctrl-C."""
+"""turtlesim alone in wall time, until Ctrl-C: `grader sim` and the executable turtlesim_node run it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     OpenView = Callable[[Kind, int | None], AbstractContextManager["View"]]
 
 _MOST_AT_ONCE = 200
-"""Callbacks handled before a frame: a flood of messages must not stop the turtle."""
+"""How many callbacks are handled per frame at most: a flood of messages must not stop the turtle."""
 _NO_WINDOW = (
     "This turtlesim has no window. To see the turtle, stop it with Ctrl-C and start it with --view (a page in the "
     "browser) or --view terminal."
@@ -41,13 +41,13 @@ _NO_WINDOW = (
 
 
 class Feed(Protocol):
-    """What a view is told as it happens; `canvas` is what the turtles draw on while it watches."""
+    """Callbacks for a view, and the canvas on which the turtles draw while it watches."""
 
     namespace: str
 
     @property
     def canvas(self) -> Canvas:
-        """The canvas, which the view sees too."""
+        """The canvas that the view shows."""
 
     @property
     def on_command(self) -> Callable[..., Any]:
@@ -59,7 +59,7 @@ class Feed(Protocol):
 
 
 class View(Protocol):
-    """A running view of the simulator. `paused`: the turtles' time stands still. `open`: it is still there."""
+    """A running view of the simulator. `paused`: the turtles' time stands still. `open`: the view is still running."""
 
     paused: bool
     open: bool
@@ -67,16 +67,16 @@ class View(Protocol):
 
     @property
     def feed(self) -> Feed:
-        """Where it is told what happens."""
+        """The callbacks of the view."""
 
     def after_frame(self, node: TurtlesimNode) -> None:
-        """Show the world after a frame, and do what the view asks for."""
+        """Show the world after a frame, and handle the requests of the view."""
 
 
 def main(open_view: OpenView, args: Sequence[str] | None = None) -> int:
     """Run turtlesim; return the exit code: 0 after Ctrl-C, 2 for wrong arguments.
 
-    `open_view` starts the view that `--view` asks for, on a port or, with None, on one of its own choice.
+    `open_view` starts the view for `--view`, on the given port; with None, it chooses a port.
     """
     arguments = list(sys.argv if args is None else ["turtlesim_node", *args])
     stop = threading.Event()
@@ -116,9 +116,9 @@ def _node(view: View | None) -> TurtlesimNode:
 
 
 def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -> None:
-    """Make a frame every 16 ms of CLOCK_MONOTONIC until `stop`. A late frame is caught up, none is left out.
+    """Compute a frame every 16 ms of CLOCK_MONOTONIC until `stop`. Late frames are caught up; none is skipped.
 
-    While the view has paused it, the turtles' time stands still.
+    While the view pauses the simulator, the turtles' time stands still.
     """
     executor = SingleThreadedExecutor(context=node.context)
     executor.add_node(node)
@@ -128,7 +128,7 @@ def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -
         early_s = begun + ticks * FRAME_S - time.monotonic()
         if early_s > 0:
             time.sleep(early_s)
-        # As turtlesim does: what has arrived is handled at the start of a frame.
+        # Like turtlesim, handle what has arrived at the start of a frame.
         _handle_what_arrived(executor)
         if view is None or not view.paused:
             node.frame(frames * FRAME_S)
@@ -139,7 +139,7 @@ def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -
             if not view.open:
                 if view.kind == "terminal":
                     return
-                node.get_logger().warning("The view has ended; turtlesim goes on without it.")
+                node.get_logger().warning("The view has ended; turtlesim continues without it.")
                 view = None
 
 
@@ -156,7 +156,7 @@ def _handle_what_arrived(executor: SingleThreadedExecutor) -> None:
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="turtlesim_node",
-        description="turtlesim at wall time, until Ctrl-C; without a window, so --view shows it.",
+        description="Run turtlesim in wall time, until Ctrl-C. It has no window; --view shows it.",
         epilog="Example: ros2 run turtlesim turtlesim_node --view",
     )
     parser.add_argument("--image", type=Path, metavar="FILE.png", help="write the canvas with the trails on exit")
@@ -165,12 +165,12 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
         nargs="?",
         const="page",
         choices=("page", "terminal"),
-        help="see it move: on a page of this machine (the default), or drawn in this terminal",
+        help="show the turtles: on a page on this machine (the default), or in this terminal",
     )
-    parser.add_argument("--port", type=int, help="of the page; the same as the last time, or a free one")
+    parser.add_argument("--port", type=int, help="port of the page (default: the same as the last time, or a free one)")
     options = parser.parse_args(arguments)
     if options.port is not None and options.view != "page":
-        parser.error("--port is for --view, which serves a page there")
+        parser.error("--port needs --view, which serves a page on this port")
     return options
 
 

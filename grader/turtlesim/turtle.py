@@ -1,7 +1,7 @@
-"""The motion of one turtle, frame by frame, as turtlesim 1.8 moves it. No ROS, no clock.
+"""The motion of one turtle, frame by frame, as in turtlesim 1.8. It needs no ROS and no clock.
 
-Positions in m from the lower left corner, angles in rad counter-clockwise from east, times in s on whatever
-clock the caller passes in. State is kept in doubles; what is published is narrowed to float32 by the message.
+Positions in m from the lower left corner, angles in rad counter-clockwise from east, times in s on whatever clock the
+caller passes in. The state is kept in doubles; messages narrow it to float32.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple, Protocol
 
 FRAME_S = 0.016
-"""One frame: turtlesim steps by this, however late the frame comes."""
+"""The time of one frame: turtlesim advances by this, even if a frame is late."""
 
 PIXELS_PER_M = 45
 SIDE_PX = 500
-# turtlesim keeps the canvas's size in 32-bit floats, so its walls and its start stand where these do.
+# turtlesim keeps the canvas's size in 32-bit floats, which determines its walls and its start.
 SIDE_M = 11.088889122009277
 """The square canvas, m: float32 of (SIDE_PX - 1) / PIXELS_PER_M."""
 
@@ -31,19 +31,19 @@ Rgb = tuple[int, int, int]
 
 
 def normalize(angle: float) -> float:
-    """Return the same direction in [-pi, pi); nan for what is no direction (nan, infinity)."""
+    """Return the same direction in [-pi, pi); nan for nan and infinity."""
     if -math.pi <= angle < math.pi:
         return angle
     if not math.isfinite(angle):
         return math.nan
-    # fmod is exact, so a huge angle still ends in the interval (turtlesim's own formula loses it there).
+    # fmod is exact, so the result for a huge angle is in the interval (that of turtlesim's own formula is not).
     turned = math.fmod(angle + math.pi, math.tau)
     turned += math.pi if turned < 0.0 else -math.pi
     return turned if turned < math.pi else -math.pi
 
 
 class Start(NamedTuple):
-    """Where a turtle begins: x, y in m, theta in rad."""
+    """The start pose of a turtle: x, y in m, theta in rad."""
 
     x: float = SIDE_M / 2
     y: float = SIDE_M / 2
@@ -52,7 +52,7 @@ class Start(NamedTuple):
 
 @dataclass(frozen=True)
 class Pen:
-    """What a turtle draws with; `width` in pixels."""
+    """The pen of a turtle; `width` is in pixels."""
 
     color: Rgb = (179, 184, 255)
     width: int = 3
@@ -60,7 +60,7 @@ class Pen:
 
 
 class State(NamedTuple):
-    """A turtle after a frame: m, m, rad, m/s (never negative), rad/s; `wall` when the frame was clamped."""
+    """A turtle after a frame: m, m, rad, m/s (never negative), rad/s; `wall` is true if a wall stopped it."""
 
     x: float
     y: float
@@ -71,7 +71,7 @@ class State(NamedTuple):
 
 
 class Paper(Protocol):
-    """What a turtle draws on and looks at; coordinates in m."""
+    """The canvas that a turtle draws on and looks at; coordinates are in m."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         """Draw from (x0, y0) to (x1, y1)."""
@@ -88,9 +88,9 @@ class Rotation:
     start: float
     remaining: float = 0.0
     delta: float = 0.0
-    """The turn from now back to the start: turtlesim's result has this sign."""
+    """The turn from the current direction back to the start; turtlesim's result has this sign."""
     cancel: bool = False
-    """Set by the caller; honoured in the next frame."""
+    """Set by the caller; the next frame handles it."""
     end: Literal["succeeded", "canceled", "aborted"] | None = None
 
 
@@ -106,7 +106,7 @@ class _Relative(NamedTuple):
 
 
 class Turtle:
-    """One turtle. Requests take effect in the next `update`, velocities at once."""
+    """One turtle. Requests take effect in the next `update`, velocities immediately."""
 
     def __init__(self, start: Start = Start()) -> None:  # noqa: B008 (a tuple cannot be changed)
         self.x, self.y, self.theta = start
@@ -115,7 +115,7 @@ class Turtle:
         """What the colour sensor saw in the last frame."""
         self.rotation: Rotation | None = None
         self.clamped_from: tuple[float, float] | None = None
-        """Where the last frame would have gone if there were no wall."""
+        """The position of the last frame if there were no wall."""
         self.last_command_s: float | None = None
         self._command_is_new = False
         self._vx = self._vy = self._spin = 0.0
@@ -129,8 +129,8 @@ class Turtle:
     def command(self, linear_x: float, linear_y: float | None, angular_z: float) -> None:
         """Take a velocity command (m/s, m/s, rad/s); it aborts a rotation.
 
-        None for `linear_y` leaves the sideways velocity as it is: so turtlesim does when it is not holonomic, and
-        a turtle that was, drifts on until it is told to stop or the time-out comes.
+        None for `linear_y` keeps the sideways velocity, as in a turtlesim that is not holonomic. A turtle that was
+        holonomic before then drifts until it gets a stop command or times out.
         """
         self.abort_rotation()
         self._vx, self._spin = linear_x, angular_z
@@ -139,27 +139,27 @@ class Turtle:
         self._command_is_new = True
 
     def teleport_absolute(self, x: float, y: float, theta: float) -> None:
-        """Ask to stand at (x, y) facing theta."""
+        """Request a teleport to (x, y) with the direction theta."""
         self._teleports.append(_Absolute(x, y, theta))
 
     def teleport_relative(self, linear: float, angular: float) -> None:
-        """Ask to turn by `angular`, then to go `linear` forward."""
+        """Request a teleport: turn by `angular`, then move `linear` forwards."""
         self._teleports.append(_Relative(linear, angular))
 
     def rotate_to(self, theta: float) -> Rotation:
-        """Accept a goal of rotate_absolute; one that is still going on is aborted."""
+        """Accept a goal of rotate_absolute; a current goal is aborted."""
         self.abort_rotation()
         self.rotation = Rotation(theta=theta, start=self.theta)
         return self.rotation
 
     def abort_rotation(self) -> None:
-        """End the rotation that is going on, if any."""
+        """End the current rotation, if any."""
         if self.rotation is not None:
             self.rotation.end = "aborted"
             self.rotation = None
 
     def update(self, dt: float, now_s: float, paper: Paper) -> None:
-        """Advance by one frame of `dt` s that takes place at `now_s`."""
+        """Advance by one frame of `dt` s at the time `now_s`."""
         self._take_new_command(now_s)
         if self._teleports:
             self._teleport(paper)
@@ -169,13 +169,13 @@ class Turtle:
         x, y = self.x, self.y
         self._move(dt)
         self._clamp()
-        # The sensor looks before the pen draws: a turtle on fresh ground sees what was there before.
+        # The sensor looks before the pen draws, so it sees what was on the canvas before this frame.
         self.color = paper.color_at(self.x, self.y)
         if (self.x != x or self.y != y) and self.pen.down:
             paper.line(x, y, self.x, self.y, self.pen)
 
     def _take_new_command(self, now_s: float) -> None:
-        # turtlesim runs its callbacks at the start of a frame, so a command's age counts from there.
+        # turtlesim runs its callbacks at the start of a frame, so the age of a command counts from there.
         if self._command_is_new:
             self.last_command_s = now_s
             self._command_is_new = False
@@ -184,7 +184,7 @@ class Turtle:
         for request in self._teleports:
             x, y = self.x, self.y
             if isinstance(request, _Absolute):
-                # Above the canvas turtlesim stops at its edge already here; the other sides are clamped later.
+                # At the upper edge, turtlesim clamps the position already here; the other sides are clamped later.
                 self.x, self.y = request.x, min(request.y, SIDE_M)
                 self.theta = normalize(request.theta)
             else:
@@ -206,7 +206,7 @@ class Turtle:
             return
         self._vx = self._vy = 0.0
         self._spin = -ROTATE_SPEED if rotation.remaining < 0.0 else ROTATE_SPEED
-        # A rotation may last longer than a command lives.
+        # A rotation may last longer than the time-out of commands.
         self.last_command_s = now_s
 
     def _end_rotation(self, rotation: Rotation, end: Literal["succeeded", "canceled"]) -> None:
@@ -225,7 +225,7 @@ class Turtle:
         self.y += (sin * self._vx + cos * self._vy) * dt
 
     def _clamp(self) -> None:
-        # Written so that nan passes through, as in turtlesim: a turtle sent nowhere says so in its pose.
+        # Written so that nan passes through to the pose, as in turtlesim.
         if self.x < 0.0 or self.x > SIDE_M or self.y < 0.0 or self.y > SIDE_M:
             self.clamped_from = (self.x, self.y)
             self.x = min(max(self.x, 0.0), SIDE_M)

@@ -1,4 +1,4 @@
-"""All turtles on one canvas, moved frame by frame. The time is always passed in: there is no clock here."""
+"""All turtles on one canvas, moved frame by frame. The caller passes the time; this module has no clock."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class World:
         self.reset()
 
     def reset(self) -> None:
-        """Remove all turtles and the trail and put turtle1 at its start; parameters stay as they are."""
+        """Remove all turtles and the trail, and put turtle1 at its start; the parameters do not change."""
         for turtle in self.turtles.values():
             turtle.abort_rotation()
         self.turtles.clear()
@@ -28,21 +28,21 @@ class World:
         self.canvas.clear()
 
     def new_name(self) -> str:
-        """Return the next free turtleN. A number is never given twice between two resets."""
+        """Return the next free turtleN. Between two resets, no number is used twice."""
         return next(name for number in self._numbers if (name := f"turtle{number}") not in self.turtles)
 
     def spawn(self, name: str, start: Start) -> str:
-        """Add a turtle; without a name it is called turtleN. Return its name, "" when the name is taken."""
+        """Add a turtle; without a name, it is called turtleN. Return its name, or "" if the name is taken."""
         if name in self.turtles:
             return ""
         name = name or self.new_name()
         self.turtles[name] = Turtle(start)
-        # turtlesim moves its turtles in the order of their names, which decides whose line lies on top.
+        # turtlesim moves its turtles in the order of their names, which decides whose line is on top.
         self.turtles = dict(sorted(self.turtles.items()))
         return name
 
     def kill(self, name: str) -> bool:
-        """Remove a turtle, keeping its trail; False when there is none of that name."""
+        """Remove a turtle and keep its trail; return False if there is no turtle with that name."""
         turtle = self.turtles.pop(name, None)
         if turtle is None:
             return False
@@ -50,10 +50,10 @@ class World:
         return True
 
     def command(self, name: str, linear_x: float, linear_y: float, angular_z: float) -> None:
-        """Give a turtle a velocity command (m/s, m/s, rad/s). Sideways counts only for holonomic turtles."""
+        """Give a turtle a velocity command (m/s, m/s, rad/s). `linear_y` has an effect only for holonomic turtles."""
         self.turtles[name].command(linear_x, linear_y if self.holonomic else None, angular_z)
 
     def step(self, now_s: float) -> None:
-        """Advance every turtle by one frame (16 ms) that takes place at `now_s` (s on the caller's clock)."""
+        """Advance every turtle by one frame (16 ms) at the time `now_s` (s on the caller's clock)."""
         for turtle in self.turtles.values():
             turtle.update(FRAME_S, now_s, self.canvas)

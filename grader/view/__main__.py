@@ -1,4 +1,4 @@
-"""`python -m grader.view (page | terminal) --feed FD ...`: the view's own process, started by its simulator."""
+"""`python -m grader.view (page | terminal) --feed FD ...`: the process of a view, started by its simulator."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from grader.errors import GraderError
 
 
 def main() -> int:
-    """Run it until the simulator ends; returns the exit code."""
-    # Ctrl-C ends quietly from the first moment: while ROS 2 is being imported, too.
+    """Run the view until the simulator ends; return the exit code."""
+    # Ctrl-C ends the program without a traceback, even while ROS 2 is being imported.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     parser = argparse.ArgumentParser(prog="python -m grader.view", description="Started by turtlesim_node --view.")
     parser.add_argument("kind", choices=("page", "terminal"))
     parser.add_argument("--feed", type=int, required=True, help="the socket to the simulator")
     parser.add_argument("--listen", type=int, help="the socket to serve the page on")
-    parser.add_argument("--before", action="store_true", help="a tab of the last time may still be open")
-    parser.add_argument("--said", type=int, help="a pipe from which comes what the simulator prints")
+    parser.add_argument("--before", action="store_true", help="a tab from the last run may still be open")
+    parser.add_argument("--said", type=int, help="a pipe with the output of the simulator")
     options = parser.parse_args()
     feed = socket.socket(fileno=options.feed)
     try:

@@ -1,7 +1,7 @@
-"""Where a view is served: always on this machine only, and if possible where it was the last time.
+"""The address of a view: always on this machine only, and if possible the same as the last time.
 
-Port and token are remembered for each user and kind of view, so that a tab that is still open finds a simulator that
-was started again.
+The port and the token are stored per user and kind of view, so that an open tab finds a simulator that is started
+again.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 HOST = "127.0.0.1"
 _TOKEN_BYTES = 16
 _TOKEN_CHARS = 22
-"""Of 16 bytes in base 64."""
+"""The length of the token: 16 bytes in base 64."""
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,13 @@ class Address:
 
     @property
     def url(self) -> str:
-        """What to open. A browser sends nothing behind the #, so the token stands in no request but the page's own."""
+        """The URL to open. A browser does not send the part after the #, so only the page's requests have the token."""
         return f"http://{HOST}:{self.port}/#{self.token}"
 
 
 @dataclass(frozen=True)
 class Place:
-    """An address with the socket that listens there; `before`: there was a view at it, so a tab may still be open."""
+    """An address and its listening socket; `before`: it had a view before, so a tab may still be open."""
 
     address: Address
     listening: socket.socket
@@ -49,16 +49,16 @@ class Place:
 
 
 def listen(kind: str, port: int | None = None) -> Place:
-    """Take `port`, else the one that this kind of view had the last time, else any that is free.
+    """Take `port`, or else the last port of this kind of view, or else any free port.
 
     Raises:
-        UsageError: the port cannot be had.
+        UsageError: the port is not available.
     """
     kept = _remembered(kind)
     token = kept.token if kept else secrets.token_urlsafe(_TOKEN_BYTES)
     listening = _bound(port) if port is not None else _free(kept.port if kept else 0)
     address = Address(listening.getsockname()[1], token)
-    # A second view beside one that runs takes another port; the next one is to find that of the first.
+    # A second view takes another port, but it is not stored: the next view should use the port of the first one.
     if kept is None or port is not None:
         _remember(kind, address)
     return Place(address, listening, before=kept == address)
@@ -69,7 +69,7 @@ def _bound(port: int) -> socket.socket:
         return _socket(port)
     except (OSError, OverflowError) as error:
         reason = getattr(error, "strerror", None) or "ports are numbers from 0 to 65535"
-        message = f"--port {port} cannot be had: {reason}. Without --port a free one is taken."
+        message = f"--port {port} is not available: {reason}. Without --port, a free port is used."
         raise UsageError(message) from error
 
 
@@ -83,7 +83,7 @@ def _free(preferred: int) -> socket.socket:
 def _socket(port: int) -> socket.socket:
     with contextlib.ExitStack() as stack:
         made = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
-        # Connections of the view before may be fading away; a port on which somebody listens is refused all the same.
+        # Old connections of the last view may still be closing; a port on which somebody listens is still refused.
         made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         made.bind((HOST, port))
         made.listen(128)
@@ -102,14 +102,14 @@ def _remembered(kind: str) -> Address | None:
         kept = Address(**json.loads(file.read_text("utf-8")))
     except (OSError, ValueError, TypeError):
         return None
-    # A file that others could write or read holds no secret.
+    # Ignore a file that others can read or write: its token is not secret.
     ours = stat.st_uid == os.getuid() and not stat.st_mode & 0o077
     whole = isinstance(kept.port, int) and isinstance(kept.token, str) and len(kept.token) >= _TOKEN_CHARS
     return kept if ours and whole else None
 
 
 def _remember(kind: str, address: Address) -> None:
-    """Keep it for the next time; a home that cannot be written to costs only that."""
+    """Store the address for the next time; do nothing if the home folder is not writable."""
     file = _file(kind)
     new = file.with_suffix(f".{os.getpid()}")
     with contextlib.suppress(OSError):

@@ -1,4 +1,4 @@
-"""The canvas in characters: half blocks, each two pixels one above the other, so that a square stays a square."""
+"""The canvas as characters: half blocks, each of which is two pixels high, so that a square stays a square."""
 
 from __future__ import annotations
 
@@ -23,32 +23,32 @@ if TYPE_CHECKING:
     from grader.view.trail import Stroke
 
 FINER = 4
-"""Drawn so many times as large, then made small: edges get soft."""
+"""The picture is drawn this many times larger and then scaled down, which makes the edges smooth."""
 _TURTLE_PX = 11
-"""A turtle is at least so long, in the terminal's pixels, or nobody would see where it looks."""
+"""The smallest length of a turtle, in the terminal's pixels: its direction must be visible."""
 _SHELL, _SKIN, _EDGE = (47, 125, 50), (124, 197, 118), (255, 255, 255)
 
 Rgb = tuple[int, int, int]
 
 
 class Picture:
-    """The trail as a picture that grows with it: painted anew only when it was wiped off, or the size is another."""
+    """A picture that grows with the trail; it is painted again only after a clear or a change of the size."""
 
     def __init__(self, side: int) -> None:
-        """`side`: in pixels of the terminal, which are as many columns and half as many rows."""
+        """Create the picture; `side` is in pixels of the terminal: this many columns, and half as many rows."""
         self.side = side
         self._trail = Image.new("RGBA", (side * FINER, side * FINER))
 
     def begin(self, state: State) -> None:
-        """Paint all there is."""
+        """Paint the whole trail."""
         self._trail = state.trail.painted(self.side * FINER, FINER)
 
     def add(self, pieces: list[Stroke]) -> None:
-        """Paint what is new."""
+        """Paint the new part of the trail."""
         paint(self._trail, pieces, self.side * FINER / SIDE_PX, FINER)
 
     def of(self, state: State) -> Image.Image:
-        """The canvas with its turtles, RGB, `side` pixels a side."""
+        """Return the canvas with its turtles as RGB, `side` pixels wide and high."""
         picture = Image.new("RGB", self._trail.size, state.background)
         picture.paste(self._trail, mask=self._trail)
         draw = ImageDraw.Draw(picture)
@@ -78,13 +78,13 @@ def _draw_turtle(draw: ImageDraw.ImageDraw, x: float, y: float, theta: float, si
 
 
 class Blocks:
-    """A picture for rich."""
+    """Return a picture for rich."""
 
     def __init__(self, picture: Image.Image) -> None:
         self._picture = picture
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Rows of half blocks, as few pieces as there are changes of colour."""
+        """Return rows of half blocks, with one segment per change of colour."""
         width, height = self._picture.size
         pixels: list[Rgb] = list(self._picture.getdata())
         for row in range(0, height - 1, 2):

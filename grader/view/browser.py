@@ -1,4 +1,4 @@
-"""Opening a page in the user's browser, where there is one."""
+"""Open a page in the user's browser, if there is one."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import subprocess
 from grader.common.interpreter import clean, interpreter
 
 _OPENED_S = 3.0
-"""A program that has not failed by then has opened the page."""
+"""A browser that has not failed after this time has opened the page."""
 
 
 def there_is_one() -> bool:
-    """Whether a page can be shown: there is a screen, or a program of the user's choice (as in a remote editor)."""
+    """Return whether a page can be shown: there is a screen, or a program of the user (as in a remote editor)."""
     return bool(os.environ.get("BROWSER")) or _screen()
 
 
@@ -22,13 +22,13 @@ def _screen() -> bool:
 
 
 def open_page(url: str) -> bool:
-    """Open a page; returns whether that worked. Never a browser that would draw into this terminal."""
+    """Open a page; return whether that worked. A browser that draws in this terminal is never used."""
     if not there_is_one():
         return False
     opener = shutil.which("xdg-open")
     if _screen() and opener is not None and not os.environ.get("BROWSER"):
         return _started([opener, url], clean(os.environ))
-    # In a process of its own: some browsers only come back when they are closed.
+    # Use a process of its own: some browsers return only when they are closed.
     return _started(*interpreter("-m", "webbrowser", url))
 
 

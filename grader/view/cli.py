@@ -1,4 +1,4 @@
-"""The verb `grader sim`: turtlesim without a workspace. No logic."""
+"""The command `grader sim`: turtlesim without a workspace."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ def sim(
     image: Image = None,
     view: Annotated[
         bool,
-        typer.Option("--view", help="See it move, on a page of this machine; `--view terminal`: in this terminal."),
+        typer.Option("--view", help="Show the turtles on a page on this machine; `--view terminal`: in this terminal."),
     ] = False,
-    port: Annotated[Optional[int], typer.Option(help="Of the page; the one of the last time when left out.")] = None,  # noqa: UP045
+    port: Annotated[Optional[int], typer.Option(help="Port of the page. Default: the same as the last time.")] = None,  # noqa: UP045
 ) -> None:
-    """Run turtlesim as a node, at wall time, until Ctrl-C; it has no window, so --view shows it."""
+    """Run turtlesim as a node, in wall time, until Ctrl-C. It has no window; --view shows it."""
     from grader.common.interpreter import interpreter
     from grader.report.files import check_writable
     from grader.report.progress_line import progress
@@ -44,7 +44,7 @@ def sim(
     check_writable(image)
     with progress() as tell:
         ros = with_turtlesim(find_ros(), tell)
-    # typer has no option that may stand with and without a value.
+    # typer has no option with an optional value.
     where = context.args.pop(0) if view and context.args[:1] in (["page"], ["terminal"]) else "page"
     given = [("--image", image), ("--view", where if view else None), ("--port", port)]
     options = [text for name, value in given if value is not None for text in (name, str(value))]

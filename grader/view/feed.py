@@ -1,7 +1,7 @@
-"""What a simulator tells its view, and what the view asks of the simulator: small JSON messages over a socket.
+"""The messages between a simulator and its view: small JSON messages over a socket.
 
-The simulator never waits for the view: what cannot be sent now is sent with the next frame, and of a trail that has
-become too long meanwhile a picture.
+The simulator never waits for the view: what it cannot send now is sent with the next frame. If the trail has become too
+long in the meantime, a picture of it is sent.
 """
 
 from __future__ import annotations
@@ -24,31 +24,31 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import Pen, Turtle
 
 EVERY_FRAMES = 2
-"""A view is told of every second frame (32 ms) while anything changes: 31 pictures a second."""
+"""While something changes, a view gets every second frame (32 ms): 31 pictures per second."""
 TOLD_EVERY_S = 0.25
-"""While nothing changes: so that rates go on, and a view knows that the simulator is there."""
+"""The interval while nothing changes, so that a view updates the rates and knows that the simulator is running."""
 MOST_LINES = 1500
-"""Waiting to be sent; 60 bytes each, so that a message fits into what a socket takes at once."""
+"""How many lines may wait to be sent; each has 60 bytes, so that a message fits into the buffer of a socket."""
 LARGEST = 1 << 20
-"""Bytes of a message, more than any has."""
+"""The largest size of a message in bytes; no message is larger."""
 LARGEST_PICTURE = 100_000
-"""Bytes: with the rest it must fit into what a socket takes at once (212,992 where nobody has set it otherwise)."""
+"""The largest size of a picture in bytes: the message must fit into the buffer of a socket (212,992 by default)."""
 
 Line = tuple[float, float, float, float, int, int, int, int]
-"""From x, y to x, y (m), in red, green, blue, so many pixels wide."""
+"""A line from x, y to x, y (m), with its red, green, blue and its width in pixels."""
 
 
 class WatchedCanvas(Canvas):
-    """A canvas that remembers what was drawn on it since it was last asked."""
+    """A canvas that remembers what was drawn on it since the last message."""
 
     def clear(self) -> None:
-        """Wipe off the trail."""
+        """Clear the trail."""
         super().clear()
         self.lines: list[Line] = []
         self.cleared = True
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
-        """Draw, and remember it."""
+        """Draw a line, and remember it."""
         super().line(x0, y0, x1, y1, pen)
         if all(map(math.isfinite, (x0, y0, x1, y1))):
             self.lines.append((x0, y0, x1, y1, *pen.color, pen.width))
@@ -56,7 +56,7 @@ class WatchedCanvas(Canvas):
 
 @dataclass
 class Heard:
-    """Messages on a topic since the last message to the view: how many, when the last one came (s), the last one."""
+    """The messages on a topic since the last message to the view: their number, the last one and its time (s)."""
 
     count: int = 0
     last_s: float = 0.0
@@ -65,11 +65,11 @@ class Heard:
 
 @dataclass
 class Feed:
-    """The simulator's end of the socket. Its hooks are for `TurtlesimNode`."""
+    """The simulator's end of the socket, with hooks for `TurtlesimNode`."""
 
     channel: socket.socket
     namespace: str = "/"
-    """Of the node: turtle1's commands come on /turtle1/cmd_vel."""
+    """The namespace of the node: turtle1's commands arrive on /turtle1/cmd_vel."""
     canvas: WatchedCanvas = field(default_factory=WatchedCanvas)
     heard: dict[str, Heard] = field(default_factory=dict)
     sent: dict[str, int] = field(default_factory=dict)
@@ -90,11 +90,11 @@ class Feed:
         heard.twist = (linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
 
     def on_publish(self, topic: str, _: str, __: bytes) -> None:
-        """Count what is sent."""
+        """Count a message that is sent."""
         self.sent[topic] = self.sent.get(topic, 0) + 1
 
     def show(self, turtles: Mapping[str, Turtle], *, paused: bool) -> None:
-        """Tell the view how things stand after a frame, if it is time to."""
+        """Send the state after a frame to the view, if it is time to."""
         self._frames += 1
         if self._frames % EVERY_FRAMES:
             return
@@ -115,7 +115,7 @@ class Feed:
     def _tell(self, state: dict[str, object], now: float) -> None:
         canvas = self.canvas
         if len(canvas.lines) > MOST_LINES:
-            # The view does not keep up: it gets a picture of the whole instead.
+            # The view is too slow: it gets a picture of the whole trail instead.
             canvas.lines.clear()
             self._too_long = True
         message = {
@@ -130,14 +130,14 @@ class Feed:
         try:
             self.channel.send(json.dumps(message, separators=(",", ":")).encode())
         except (BlockingIOError, BrokenPipeError):
-            # A view that is gone is noticed by what it asks.
+            # Reading the view's requests shows whether it is gone.
             return
         self._shown, self._told_s = state, now
         canvas.lines, canvas.cleared, self._too_long = [], False, False
         self.heard, self.sent = {}, {}
 
     def asked(self) -> list[str]:
-        """What the view asks for: "pause", "resume", "clear", "reset".
+        """Return the requests of the view: "pause", "resume", "clear", "reset".
 
         Raises:
             ConnectionError: the view is gone.
@@ -161,12 +161,12 @@ def _told(turtle: Turtle) -> tuple[object, ...]:
 
 
 def _picture(canvas: Canvas) -> str:
-    """The trail as PNG, transparent where nothing was drawn."""
+    """Return the trail as PNG, transparent where nothing was drawn."""
     trail = canvas.trail()
     while True:
         file = io.BytesIO()
         trail.save(file, format="PNG")
         if file.tell() <= LARGEST_PICTURE:
             return base64.b64encode(file.getvalue()).decode()
-        # Whoever draws noise sees it less sharp.
+        # A noisy picture is too large, so it is sent less sharp.
         trail = trail.resize((trail.width // 2, trail.height // 2))

@@ -1,4 +1,4 @@
-"""The graph for a page: where Graphviz puts each node, topic and arrow, so that it lies as rqt_graph draws it."""
+"""The graph for a page: Graphviz lays out the nodes, topics and arrows, so that it looks as in rqt_graph."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from grader.graph.graph import Picture
 
 _INCH = 72.0
-"""Graphviz gives sizes in inches and places in points, y upwards."""
+"""Points per inch: Graphviz gives sizes in inches and positions in points, with y upwards."""
 
 
 def laid_out(drawn: Picture) -> dict[str, Any]:
-    """Width and height (points), the nodes and topics with centre and size, the arrows as points of Bezier curves.
+    """Return width and height (points), nodes and topics with centre and size, arrows as points of Bezier curves.
 
-    An arrow's line is "M" x, y, then three points a piece; `tip` is where its head points to.
+    An arrow's line is "M" x, y, then three points per piece; `tip` is the point of its head.
 
     Raises:
         MachineError: Graphviz cannot draw.

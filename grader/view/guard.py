@@ -1,7 +1,7 @@
-"""Who may come in: only this machine's own page. Pure.
+"""Decide which requests are allowed: only those of this machine's own page. Pure functions.
 
-A page from elsewhere in the same browser can send requests to 127.0.0.1 too. What tells it apart: the browser names
-where it came from (Origin) and under which name it found this machine (Host), and it does not know the token.
+A page from another site in the same browser can send requests to 127.0.0.1, too. The browser reveals it: it sends where
+the page came from (Origin) and the name that it used for this machine (Host). And the page does not know the token.
 """
 
 from __future__ import annotations
@@ -14,31 +14,31 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 NAMES = ("127.0.0.1", "localhost")
-"""Names under which this machine is itself; any port, since ssh may lead another one here."""
+"""The names of this machine; any port is allowed, since ssh may forward another one."""
 
 
 def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:
-    """Why a request is turned away; None when it may come in. `live`: for the connection that reads and drives."""
+    """Return why a request is rejected; None if it is allowed. `live`: for the connection that reads and drives."""
     host = headers.get("host", "")
     if host.rpartition(":")[0] not in NAMES and host not in NAMES:
-        return f"This page is served to {' and '.join(NAMES)} only."
+        return f"This page is only served to {' and '.join(NAMES)}."
     origin = headers.get("origin")
     if origin is None and live:
-        return "No Origin: this is for the page only."
+        return "The request has no Origin header: only the page may connect."
     if origin is not None and origin != f"http://{host}":
-        return "Pages from elsewhere may not come in."
+        return "Pages from other sites may not connect."
     return None
 
 
 def admitted(token: str, shown: str) -> bool:
-    """Whether the token that was shown is ours; takes as long for every wrong one."""
+    """Return whether the token is ours; the comparison takes equally long for every wrong token."""
     return hmac.compare_digest(token.encode(), shown.encode())
 
 
 class Door:
-    """Opens to who knows the token, and to a code once.
+    """Lets in a page that knows the token, and a page with a code once.
 
-    A code is for the browser that is started here: command lines can be read by every user of the machine.
+    The code is for the browser that this process starts: every user of the machine can read command lines.
     """
 
     def __init__(self, token: str) -> None:
@@ -46,13 +46,13 @@ class Door:
         self._codes: set[str] = set()
 
     def code(self) -> str:
-        """A new code."""
+        """Return a new code."""
         made = secrets.token_urlsafe(16)
         self._codes.add(made)
         return made
 
     def opens(self, shown: str) -> bool:
-        """Whether who shows this may come in; a code is worth nothing afterwards."""
+        """Return whether a page with this token or code may connect; a code works only once."""
         if shown in self._codes:
             self._codes.discard(shown)
             return True
@@ -67,7 +67,7 @@ POLICY = (
 
 
 def answer_headers(host: str) -> dict[str, str]:
-    """What every answer says: load nothing from elsewhere, be loaded by nobody else."""
+    """Return the headers of every answer: the page loads nothing from other sites, and no other site may load it."""
     return {
         "content-security-policy": POLICY.format(host=host),
         "x-content-type-options": "nosniff",

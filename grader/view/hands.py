@@ -1,4 +1,4 @@
-"""What a view presses: keys that drive while they are held, keys that turn, buttons for the simulator."""
+"""The input from a view: keys that drive while they are held, keys that turn, buttons for the simulator."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ ARROWS = {
 
 
 def together(held: list[str]) -> Drive:
-    """What the arrows that are held ask for together."""
+    """Return the drive command of all held arrow keys together."""
     drives = [ARROWS[key] for key in dict.fromkeys(held) if key in ARROWS]
     return Drive(sum(drive.linear for drive in drives), sum(drive.angular for drive in drives))
 
 
 class Hands:
-    """Passes on what is pressed: keys to ROS, buttons to the simulator. Which turtles there are, `state` says."""
+    """Passes keys on to ROS and buttons to the simulator; `state` knows the turtles."""
 
     def __init__(self, ears: Ears, state: State, simulator: socket.socket | None) -> None:
         self._ears = ears
         self._state = state
         self._simulator = simulator
         self._driving: dict[object, str] = {}
-        """Who drives which turtle."""
+        """The turtle that each page drives."""
         self._drivers: set[object] = set()
 
     def held(self, page: object, turtle: str, keys: list[str]) -> None:
-        """Drive while keys are held; stop when they are let go."""
+        """Drive while keys are held; stop when they are released."""
         topic = self._full(turtle)
         if topic is None:
             return
@@ -54,13 +54,13 @@ class Hands:
             self._ears.drive(topic, Drive(0.0, 0.0))
 
     def let_go(self, page: object) -> None:
-        """Stop what this page drives."""
+        """Stop the turtle that this page drives."""
         topic = self._driving.pop(page, None)
         if topic is not None:
             self._ears.drive(topic, Drive(0.0, 0.0))
 
     def gone(self, page: object) -> None:
-        """The page is closed. When the last one that drove is, the node that drives for it leaves the graph."""
+        """Forget a closed page. After the last page that drove, the driving node leaves the graph."""
         self.let_go(page)
         if page in self._drivers:
             self._drivers.discard(page)
@@ -68,13 +68,13 @@ class Hands:
                 self._ears.leave()
 
     def pressed(self, turtle: str, key: str) -> None:
-        """Turn to where the key lies, seen from F, or stop turning."""
+        """Turn to the direction of the key, seen from F, or stop turning."""
         typed, _ = keys(key[:1])
         if typed:
             self.turn(turtle, typed[0])
 
     def turn(self, turtle: str, key: Key) -> None:
-        """Do what a key asks for that is not held."""
+        """Handle a key that acts once, not while it is held."""
         topic = self._full(turtle)
         if topic is not None and isinstance(key, Turn | Cancel):
             self._ears.drive(topic, key)
@@ -82,12 +82,12 @@ class Hands:
     def asked(self, what: str) -> None:
         """Pause, resume, clear or reset."""
         if what in BUTTONS and self._simulator is not None:
-            # A simulator that is ending hears nothing any more.
+            # A simulator that is ending does not read any more.
             with suppress(OSError):
                 self._simulator.send(json.dumps(what).encode())
 
     def _full(self, turtle: str) -> str | None:
-        """The turtle's full name; None when there is none of that name: no page may make up topics."""
+        """Return the turtle's full name; None if there is no such turtle, since no page may invent topics."""
         if turtle not in self._state.turtles:
             return None
         return f"{self._state.namespace.rstrip('/')}/{turtle}"

@@ -1,4 +1,4 @@
-"""What is told to all pages: written once, however many there are; who slept gets the whole, not what it missed."""
+"""News for all pages: each item is serialized once for all of them; a page that was hidden gets the whole state."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
 
 KEPT = 16
-"""Messages that a slow page may be behind, half a second; then it is told the whole anew."""
+"""How many messages (half a second) a slow page may be behind; then it gets the whole state again."""
 
 
 class Hub:
-    """News in order, each with a number. `whole` gives what a page that knows nothing must be told."""
+    """Numbered news in order. `whole` returns the whole state for a new page."""
 
     def __init__(self, whole: Callable[[], dict[str, object]]) -> None:
         self._whole = whole
         self._news: deque[str] = deque(maxlen=KEPT)
         self._number = 0
-        """Of the next news."""
+        """The number of the next item."""
         self._written: tuple[int, str] = (-1, "")
         self._pages: set[asyncio.Event] = set()
         self.wholes = 0
-        """How often a page was told the whole."""
+        """How often a page got the whole state."""
 
     @property
     def pages(self) -> int:
-        """How many follow and are awake."""
+        """How many pages follow and are awake."""
         return len(self._pages)
 
     def tell(self, kind: str, news: dict[str, object]) -> None:
-        """Tell all that are awake."""
+        """Send an item to all pages that are awake."""
         self._number += 1
         if self._pages:
             self._news.append(_text(kind, news))
@@ -43,7 +43,7 @@ class Hub:
             page.set()
 
     async def follow(self, send: Callable[[str], Awaitable[None]]) -> None:
-        """Tell a page the whole, then all news, until cancelled; `send` waits while the page does not listen."""
+        """Send the whole state to a page, then all news, until cancelled; `send` waits for a slow page."""
         woken = asyncio.Event()
         self._pages.add(woken)
         try:
@@ -51,7 +51,7 @@ class Hub:
             while True:
                 woken.clear()
                 if next_ < self._number - len(self._news):
-                    # Taken before it is sent: what comes meanwhile is news.
+                    # Take the number before sending: what arrives in the meantime is news.
                     next_, text = self._number, self._all()
                     self.wholes += 1
                     await send(text)

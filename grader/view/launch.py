@@ -1,4 +1,4 @@
-"""The view of a simulator as the simulator sees it: a process of its own, so that no page can make the turtle late."""
+"""Start the view of a simulator in a process of its own, so that no page can delay the turtle."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 Kind = Literal["page", "terminal"]
 _SERVED_WITH = ("starlette", "uvicorn", "websockets")
 _WITHOUT_COLOURS = ("", "dumb", "unknown")
-"""Values of TERM."""
+"""Values of TERM for terminals without colours."""
 _ENDS_S = 5.0
-"""A view that has not ended by then, after its simulator, is killed."""
+"""How long a view may run after its simulator has ended; then it is killed."""
 
 
 class View:
-    """A view that runs. `paused`: somebody has stopped the turtles' time. `open`: it is still there."""
+    """A running view. `paused`: somebody has stopped the turtles' time. `open`: the view is still running."""
 
     def __init__(self, kind: Kind, feed: Feed) -> None:
         self.kind = kind
@@ -40,7 +40,7 @@ class View:
         self.open = True
 
     def after_frame(self, node: TurtlesimNode) -> None:
-        """Tell the view how things stand, and do what it asks for."""
+        """Send the state to the view, and handle its requests."""
         self.feed.show(node.world.turtles, paused=self.paused)
         try:
             for wanted in self.feed.asked():
@@ -62,12 +62,12 @@ class View:
 
 
 def see_that_it_can_be_served() -> None:
-    """Raise MachineError where what a page is served with is not installed."""
+    """Raise MachineError if a library that serves the page is not installed."""
     missing = [name for name in _SERVED_WITH if find_spec(name) is None]
     if missing:
         message = (
-            f"the page is served with {', '.join(missing)}, which this Python does not have. `make demo` in the "
-            "course's folder installs it; --view terminal works without."
+            f"the page needs {', '.join(missing)}, which this Python does not have. `make demo` in the "
+            "course's folder installs it; --view terminal works without it."
         )
         raise MachineError(message)
 
@@ -77,8 +77,8 @@ def view(kind: Kind, port: int | None = None) -> Iterator[View]:
     """Start a view, and end it.
 
     Raises:
-        UsageError: the port cannot be had, or there is no terminal to draw in.
-        MachineError: what it needs is not installed.
+        UsageError: the port is not available, or there is no terminal to draw in.
+        MachineError: a library that it needs is not installed.
     """
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with ours, theirs:
@@ -88,7 +88,7 @@ def view(kind: Kind, port: int | None = None) -> Iterator[View]:
             try:
                 yield View(kind, Feed(ours))
             finally:
-                # What it waits for: the end of the simulator.
+                # The view ends when this is closed, at the end of the simulator.
                 ours.close()
                 try:
                     process.wait(_ENDS_S)
@@ -103,14 +103,14 @@ def _page(feed: socket.socket, port: int | None) -> Iterator[subprocess.Popen[by
     with place.listening as listening:
         given = ["--feed", str(feed.fileno()), "--listen", str(listening.fileno())]
         before = ["--before"] if place.before else []
-        # The token is for nobody else's eyes, and arguments can be seen by all.
+        # The token is secret, and all users can see the arguments of a process.
         start = _start("page", *given, *before, GRADER_VIEW_TOKEN=place.address.token)
         with subprocess.Popen(
             start.argv,
             pass_fds=[feed.fileno(), listening.fileno()],
             env=start.env,
             stdin=subprocess.DEVNULL,
-            # Ctrl-C is for the simulator; the view ends with it.
+            # Ctrl-C is meant for the simulator; the view ends with it.
             start_new_session=True,
         ) as process:
             listening.close()
@@ -120,16 +120,16 @@ def _page(feed: socket.socket, port: int | None) -> Iterator[subprocess.Popen[by
 
 @contextmanager
 def _terminal(feed: socket.socket) -> Iterator[subprocess.Popen[bytes]]:
-    """The terminal belongs to the view; what the simulator says goes there to be shown."""
+    """Give the terminal to the view, and send the simulator's output to the view, which shows it."""
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         message = (
-            "--view terminal draws in a terminal and reads its keys, and here standard input or output is none (a "
-            "pipe, a file, or it was started in the background)."
+            "--view terminal needs a terminal to draw in and to read keys from, but standard input or output is not a "
+            "terminal (it is a pipe or a file, or the command was started in the background)."
         )
         raise UsageError(message)
     name = os.environ.get("TERM", "")
     if name in _WITHOUT_COLOURS:
-        message = f"--view terminal draws in colours, and this terminal (TERM={name}) has none."
+        message = f"--view terminal needs colours, but this terminal (TERM={name}) has none."
         raise UsageError(message)
     before = termios.tcgetattr(sys.stdin.fileno())
     reading, writing = os.pipe()
@@ -149,7 +149,7 @@ def _terminal(feed: socket.socket) -> Iterator[subprocess.Popen[bytes]]:
             os.close(was)
         os.close(writing)
         with suppress(termios.error):
-            # Whatever happened to the view.
+            # Always do this, even if the view has crashed.
             termios.tcsetattr(sys.stdin.fileno(), termios.TCSADRAIN, before)
 
 

@@ -1,4 +1,4 @@
-"""The process that serves the page: listens to the simulator and to ROS, tells the pages, does what they ask."""
+"""The process that serves the page: it reads from the simulator and from ROS, and handles the pages' requests."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
     from grader.view.system import System
 
 _RECONNECTS_S = 2.0
-"""A tab that is still open from the last time has found us by then."""
+"""How long a tab that is still open from the last time needs to connect again."""
 _TIMES = 20
 _SETTINGS: dict[str, Any] = {
     "log_level": "warning",
     "access_log": False,
     "ws": "websockets-sansio",
-    # Within one machine it would only cost.
+    # Compression would only cost time within one machine.
     "ws_per_message_deflate": False,
     "ws_max_size": 65536,
     "lifespan": "off",
@@ -49,7 +49,7 @@ _SETTINGS: dict[str, Any] = {
 
 
 class Page:
-    """The view of one system: of a simulator that feeds it, or of the graph alone."""
+    """The view of a simulator, or of the graph alone."""
 
     def __init__(self, feed: socket.socket | None, show: Show | None = None) -> None:
         self._feed = feed
@@ -63,9 +63,9 @@ class Page:
         self._ended = asyncio.Event()
 
     async def serve(self, place: Place) -> bool:
-        """Serve until the simulator ends, or until Ctrl-C; returns whether the page could be opened in a browser.
+        """Serve until the simulator ends, or until Ctrl-C; return whether the page could be opened in a browser.
 
-        Where there is no simulator, who asked for the page wants to see it: it ends at once where it cannot be opened.
+        Without a simulator, it ends at once if the page cannot be opened.
         """
         loop = asyncio.get_running_loop()
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -97,7 +97,7 @@ class Page:
         return opened
 
     async def _open(self, place: Place, door: Door) -> bool:
-        """Open the page where there is a browser, unless a tab of the last time has come back by then."""
+        """Open the page if there is a browser, unless a tab from the last time has connected again."""
         for _ in range(_TIMES if place.before else 0):
             if self._hub.pages:
                 return True
@@ -157,11 +157,11 @@ class Page:
 
 
 class _Server(uvicorn.Server):
-    """uvicorn's, that leaves signals to whoever runs it."""
+    """A uvicorn server that leaves the signals to its caller."""
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Capture none."""
+        """Capture no signals."""
         yield
 
 

@@ -1,4 +1,4 @@
-"""How often something arrives, from counts of arrivals. Pure: the time (s) is always passed in."""
+"""Compute rates from counts of arrivals. Pure: the caller passes the time (s)."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from collections import deque
 from dataclasses import dataclass, field
 
 WINDOW_S = 5.0
-"""A rate tells of the last seconds, or of the last two arrivals where they lie further apart."""
+"""A rate covers the last seconds, or the last two arrivals if they are further apart."""
 _LONGEST_S = 30.0
 _GAPS = 2.5
-"""So many times the usual gap without an arrival, and what came regularly comes no more."""
+"""After this many usual intervals without an arrival, the messages have stopped."""
 _AT_LEAST_S = 1.0
 
 
@@ -18,16 +18,16 @@ class Arrivals:
     """Arrivals on one topic."""
 
     _seen: deque[tuple[float, int]] = field(default_factory=deque)
-    """When the last of some arrived, and how many those were."""
+    """The time of the last arrival of each group, and the size of the group."""
 
     def add(self, when_s: float, count: int = 1) -> None:
-        """Note that `count` have arrived since the last call, the last of them at `when_s`."""
+        """Note that `count` messages have arrived since the last call, the last of them at `when_s`."""
         self._seen.append((when_s, count))
         while len(self._seen) > 2 and self._seen[1][0] < when_s - WINDOW_S:
             self._seen.popleft()
 
     def hertz(self, now_s: float) -> float | None:
-        """The mean rate; None where nothing arrives (any more), or only once so far."""
+        """Return the mean rate; None if nothing arrives any more, or only one message has arrived."""
         if len(self._seen) < 2:
             return None
         (first_s, _), (last_s, _) = self._seen[0], self._seen[-1]

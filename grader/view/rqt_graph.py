@@ -23,7 +23,7 @@ _FORMATS = (".svg", ".png", ".dot")
 _OURS = ("-o", "--output", "--text", "--port", "--active", "--debug", "--hidden", "--all")
 """What the rqt_graph of a sourced ROS 2, which opens a window, does not know."""
 _NOTHING = (
-    "No node is running here (ROS_DOMAIN_ID is {domain}). Start one in another terminal, with the same domain id: "
+    "No node is running (ROS_DOMAIN_ID is {domain}). Start one in another terminal, with the same domain id: "
     "ros2 run turtlesim turtlesim_node"
 )
 
@@ -35,10 +35,10 @@ _MISSING = (
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns the exit code: 0 drawn, 1 no node is running, else docs/design.md, decision 9."""
+    """Run the command; return 0 if the graph was drawn, 1 if no node runs, else see docs/design.md, decision 9."""
     argv = list(sys.argv[1:] if arguments is None else arguments)
     for number in (signal.SIGTERM, signal.SIGHUP):
-        # As Ctrl-C does, so that the node leaves the graph in order.
+        # End as after Ctrl-C, so that the node leaves the graph properly.
         if signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, signal.default_int_handler)
     try:
@@ -53,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
-        # Whoever read us has gone, as in `rqt_graph | head`.
+        # The reader of our output has ended, as in `rqt_graph | head`.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return 1
 
@@ -66,18 +66,18 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="rqt_graph",
         description="Show which nodes are running, and which topics they publish and subscribe to.",
-        epilog="Without --output it is shown live in a browser, until Ctrl-C; without a browser it is printed as text. "
+        epilog="Without --output, it is shown live in a browser until Ctrl-C, or printed as text without a browser. "
         "Example: rqt_graph --output graph.svg",
     )
     parser.add_argument(
         "-o", "--output", type=Path, metavar="FILE", help="write the picture: graph.svg, graph.png or graph.dot"
     )
-    parser.add_argument("--text", action="store_true", help="print it as text, also where there is a browser")
-    parser.add_argument("--port", type=int, help="of the page; the same as the last time, or a free one")
-    parser.add_argument("--active", action="store_true", help="leave out topics that nobody publishes or subscribes to")
+    parser.add_argument("--text", action="store_true", help="print the graph as text, even if there is a browser")
+    parser.add_argument("--port", type=int, help="port of the page (default: the same as the last time, or a free one)")
+    parser.add_argument("--active", action="store_true", help="hide topics without a publisher or without a subscriber")
     parser.add_argument("--debug", action="store_true", help="show /rosout, /parameter_events, /clock and tools, too")
     parser.add_argument(
-        "--hidden", action="store_true", help='show names with a "_" in front, too: the inside of actions'
+        "--hidden", action="store_true", help='show names that begin with "_", too: the topics of actions'
     )
     parser.add_argument("--all", action="store_true", help="show everything: --debug and --hidden")
     if "_ARGCOMPLETE" in os.environ:
@@ -92,10 +92,10 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
 
 def _check(output: Path) -> None:
     if output.suffix not in _FORMATS:
-        message = f"--output {output}: the name must end in .svg, .png or .dot, which says how the graph is drawn."
+        message = f"--output {output}: the name must end in .svg, .png or .dot."
         raise UsageError(message)
     if not output.absolute().parent.is_dir():
-        message = f"--output {output}: there is no folder {output.absolute().parent}."
+        message = f"--output {output}: the folder {output.absolute().parent} does not exist."
         raise UsageError(message)
 
 
@@ -103,7 +103,7 @@ def _run(options: argparse.Namespace) -> int:
     show = Show(debug=options.debug or options.all, hidden=options.hidden or options.all, dead_ends=not options.active)
     if options.output is None and not options.text and _shown_live(show, options.port):
         return 0
-    # Here, since rclpy cannot be imported before the environment has it.
+    # Import it here: the environment has rclpy only now.
     from grader.graph.discovery import cli_node, settle
     from grader.graph.endpoints import heard
 
@@ -136,7 +136,7 @@ def _write(file: Path, drawn: Picture) -> None:
 
 
 def _shown_live(show: Show, port: int | None) -> bool:
-    """Serve the graph on a page until Ctrl-C; returns False, at once, where there is no browser to show it in."""
+    """Serve the graph on a page until Ctrl-C; return False at once if there is no browser to show it in."""
     from grader.view import browser
 
     if not browser.there_is_one():
@@ -160,7 +160,7 @@ def _shown_live(show: Show, port: int | None) -> bool:
 
     print(f"The graph, live until Ctrl-C: {place.address.url}", flush=True)
     shown = asyncio.run(serve())
-    # From here on Ctrl-C is Python's again.
+    # From here on, Python handles Ctrl-C again.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     return shown
 

@@ -1,4 +1,4 @@
-"""What stands in the terminal: the canvas, beside it turtle, command and topics, below it what the simulator says."""
+"""The content of the terminal: the canvas, beside it turtle, command and topics, below it the simulator's output."""
 
 from __future__ import annotations
 
@@ -26,27 +26,27 @@ if TYPE_CHECKING:
 BESIDE = 38
 """Columns beside the canvas."""
 _BELOW = 6
-"""Rows for the title, what the simulator says, the keys."""
+"""Rows for the title, the simulator's output, and the keys."""
 _LEAST = 8
 _LASTS_S = 1.0
-"""turtlesim forgets a command after that."""
+"""turtlesim stops the turtle this long after the last command."""
 _KEYS = "↑ ↓ ← → drive · E R T D G C V B turn, F stops · Space pause · X clear · Z reset · Tab turtle · Q quit"
 
 
 class Shown(Protocol):
-    """What there is to show."""
+    """Everything that the screen shows."""
 
     @property
     def state(self) -> State:
-        """Of the simulator."""
+        """The state of the simulator."""
 
     @property
     def system(self) -> System | None:
-        """All that runs."""
+        """The running system."""
 
     @property
     def lines(self) -> Iterable[str]:
-        """What the simulator said last."""
+        """The last line of the simulator's output."""
 
     @property
     def chosen(self) -> str:
@@ -58,20 +58,20 @@ class Shown(Protocol):
 
 
 def side_for(console: Console) -> int:
-    """The canvas's side in columns, an even number: as large as the terminal lets it be."""
+    """Return the canvas's width in columns, an even number, as large as possible in the terminal."""
     width, height = console.size
     beside = BESIDE if width >= 2 * BESIDE else 0
     return max(min(width - beside, 2 * (height - _BELOW)), _LEAST) // 2 * 2
 
 
 class Screen:
-    """All of it, for rich."""
+    """Return the whole screen for rich."""
 
     def __init__(self, shown: Shown) -> None:
         self._shown = shown
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """The parts, one below the other."""
+        """Return the parts, one below the other."""
         shown = self._shown
         canvas = Blocks(shown.picture.of(shown.state))
         yield self._title()
@@ -101,7 +101,7 @@ class Screen:
         state, name = self._shown.state, self._shown.chosen
         turtle = state.turtles.get(name)
         if turtle is None:
-            return [Text(f"There is no {name}; Tab chooses another turtle.")]
+            return [Text(f"There is no {name}; press Tab to choose another turtle.")]
         others = f"  (1 of {len(state.turtles)})" if len(state.turtles) > 1 else ""
         lines = [
             Text.assemble((printable(name), "bold"), others),
@@ -111,7 +111,7 @@ class Screen:
         ]
         topic = next((topic for topic in state.commands if topic.endswith(f"/{name}/cmd_vel")), None)
         if topic is None:
-            return [*lines, Text("No command has come yet.", style="dim")]
+            return [*lines, Text("No command has arrived yet.", style="dim")]
         command = state.commands[topic]
         old = "dim" if time.monotonic() - command.when_s > _LASTS_S else ""
         linear, angular = command.twist[0], command.twist[5]

@@ -1,4 +1,4 @@
-"""The page's server: a few files, and one connection a page on which it hears the news and says what is pressed."""
+"""The page's server: a few files, and one connection per page, for news to the page and input from it."""
 
 from __future__ import annotations
 
@@ -25,38 +25,38 @@ if TYPE_CHECKING:
 
 ASSETS = Path(__file__).parent / "assets"
 STYLE = Path(__file__).parents[1] / "report/assets/page.css"
-"""The reports' style, which this page shares."""
+"""The style of the reports, which this page uses, too."""
 HOLD_S = 0.5
-"""A page says again and again which keys are held; one that says nothing for this long holds none."""
+"""A page sends its held keys again and again; after this long without a message, it holds none."""
 _LARGEST = 10_000
 
 
 class Pressed(Protocol):
-    """Who is told what a page asks for."""
+    """The receiver of a page's requests."""
 
     def held(self, page: object, turtle: str, keys: list[str]) -> None:
-        """The keys that are held on this page now."""
+        """Handle the keys that are held on this page now."""
 
     def pressed(self, turtle: str, key: str) -> None:
-        """A key was pressed that does its work at once."""
+        """Handle a key that acts once."""
 
     def asked(self, what: str) -> None:
-        """A button was pressed."""
+        """Handle a button."""
 
     def let_go(self, page: object) -> None:
-        """The page holds no key any more."""
+        """Handle that the page holds no key any more."""
 
     def gone(self, page: object) -> None:
-        """The page is closed."""
+        """Handle that the page is closed."""
 
 
 def application(hub: Hub, hands: Pressed, door: Door) -> ASGIApp:
-    """The server, behind its guard."""
+    """Return the server with its guard."""
 
     def file(request: Request) -> Response:
         name = request.path_params.get("name", "index.html")
         path = STYLE if name == STYLE.name else ASSETS / name
-        # Names of files that are there: nothing is opened by what a request says.
+        # Only these files are served: a request never becomes a path.
         if path != STYLE and path not in set(ASSETS.iterdir()):
             return PlainTextResponse("There is no such file.", 404)
         return FileResponse(path)
@@ -68,7 +68,7 @@ def application(hub: Hub, hands: Pressed, door: Door) -> ASGIApp:
             return
         await socket.accept()
         if shown != door.token:
-            # It came with a code: from now on it has the token, so that it finds the next simulator, too.
+            # The page connected with a code: send it the token, so that it finds the next simulator, too.
             await socket.send_text(json.dumps({"kind": "token", "token": door.token}))
         await _Page(socket, hub, hands).run()
 
@@ -77,7 +77,7 @@ def application(hub: Hub, hands: Pressed, door: Door) -> ASGIApp:
 
 
 class _Guard:
-    """Turns away who may not come in, and puts the policy on every answer."""
+    """Rejects forbidden requests, and adds the policy to every answer."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
@@ -105,7 +105,7 @@ class _Guard:
 
 
 class _Page:
-    """One page that is open."""
+    """One open page."""
 
     def __init__(self, socket: WebSocket, hub: Hub, hands: Pressed) -> None:
         self._socket = socket
@@ -115,7 +115,7 @@ class _Page:
         self._holding = False
 
     async def run(self) -> None:
-        """Serve it until it is closed."""
+        """Serve the page until it is closed."""
         await self._wake()
         try:
             while True:

@@ -1,4 +1,4 @@
-"""What a view knows of its simulator: made of the messages of feed.py, and told to pages and terminals."""
+"""What a view knows about its simulator: built from the messages of feed.py, for pages and terminals."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Seen(NamedTuple):
 
 
 class Command(NamedTuple):
-    """The last command on a topic: when (s, monotonic), linear x, y, z (m/s), angular x, y, z (rad/s)."""
+    """The last command on a topic: its time (s, monotonic), linear x, y, z (m/s), angular x, y, z (rad/s)."""
 
     when_s: float
     twist: tuple[float, ...]
@@ -37,7 +37,7 @@ class Command(NamedTuple):
 
 @dataclass
 class State:
-    """All of it; `now_s` is the time of the last message."""
+    """The whole state; `now_s` is the time of the last message."""
 
     now_s: float = 0.0
     paused: bool = False
@@ -46,13 +46,13 @@ class State:
     turtles: dict[str, Seen] = field(default_factory=dict)
     trail: Trail = field(default_factory=Trail)
     pieces: list[Stroke] = field(default_factory=list)
-    """What the last message added to it."""
+    """The lines that the last message added."""
     commands: dict[str, Command] = field(default_factory=dict)
     rates: dict[str, Arrivals] = field(default_factory=dict)
-    """Of the topics that the simulator itself speaks and hears on, so that nobody has to subscribe to count."""
+    """The rates of the simulator's own topics, so that nobody has to subscribe to measure them."""
 
     def take(self, message: dict[str, Any]) -> dict[str, object]:
-        """Take a message of the simulator; returns what a page that knew all before it has to be told."""
+        """Take a message of the simulator; return the news for a page that knows the state before it."""
         self.now_s = float(message["t"])
         self.paused = bool(message["paused"])
         self.namespace = str(message["namespace"])
@@ -78,7 +78,7 @@ class State:
         return news
 
     def whole(self) -> dict[str, object]:
-        """What a page that knows nothing has to be told."""
+        """Return the whole state for a new page."""
         return {**self._now(), "trail": self.trail.told()}
 
     def _now(self) -> dict[str, object]:
@@ -94,7 +94,7 @@ class State:
 
 
 def _numbers(values: tuple[Any, ...]) -> list[object]:
-    """Four decimals are enough to see; JSON has no infinity."""
+    """Round to four decimal places, which is enough to see; JSON has no infinity."""
     return [_number(value) if isinstance(value, float) else value for value in values]
 
 

@@ -1,7 +1,7 @@
-"""What runs in the whole ROS system: the graph, how often topics speak; and the node that drives for who watches.
+"""The whole ROS system for a view: the graph, the rates of topics, and the node that drives for the user.
 
-The listening node is hidden and offers nothing, so that who is watched sees nobody more than before. A topic is
-subscribed to only while somebody looks, and only if its rate is not known from the simulator.
+The listening node is hidden and offers nothing, so that it does not change what others see. It subscribes to a topic
+only while somebody looks, and only if the simulator does not know its rate.
 """
 
 from __future__ import annotations
@@ -34,28 +34,28 @@ if TYPE_CHECKING:
 
 LOOKED_EVERY_S = 0.4
 MOST_HZ = 500.0
-"""A topic that speaks more often is not listened to: counting it would cost more than it tells."""
+"""A topic with a higher rate is not measured, because counting would cost too much."""
 _SPARED_S = 10.0
 _LAST_WORD_S = 1.0
-"""A last command has arrived by then."""
+"""How long to wait for the last command to arrive."""
 DRIVER = "view_keys"
-"""The node that the graph shows once somebody drives."""
+"""The name of the driving node in the graph."""
 
 _COUNTING = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 
 
 @dataclass(frozen=True)
 class System:
-    """The graph, and the rates (Hz) of the topics that were listened to; None: nothing comes."""
+    """The graph, and the rates (Hz) of the measured topics; None: no messages arrive."""
 
     heard: Heard
     rates: dict[str, float | None]
 
 
 class Ears:
-    """A thread that spins `node`. `tell` is called from that thread, with every look at the graph.
+    """A thread that spins `node`. It calls `tell` with every look at the graph.
 
-    `known`: topics that are counted elsewhere. `looking`: whether anybody wants to know of rates.
+    `known`: topics that are counted elsewhere. `looking`: returns whether anybody looks at the rates.
     """
 
     def __init__(
@@ -121,17 +121,17 @@ class Ears:
     # --- driving ------------------------------------------------------------------------------------------------
 
     def drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
-        """Do what a key of turtle_teleop_key does, for the turtle of this full name, as "/turtle1"."""
+        """Do what a key of turtle_teleop_key does, for the turtle with this full name, such as "/turtle1"."""
         self._leave_s = math.inf
         self._executor.create_task(self._drive, turtle, key)
 
     def leave(self) -> None:
-        """Nobody drives any more: the node leaves the graph, once its last command has arrived."""
+        """Stop driving: the node leaves the graph after its last command has arrived."""
         self._leave_s = time.monotonic() + _LAST_WORD_S
 
     async def _drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
         if self._driver is None or self._driver[0] != turtle:
-            # Only here, since it needs turtlesim, and the graph may be that of other nodes.
+            # Import it only here, since it needs turtlesim, and the graph may have no turtlesim.
             from grader.turtlesim.programs.turtle_teleop_key import Teleop
 
             self._leave()
@@ -155,7 +155,7 @@ class Ears:
 
 
 class _Counter:
-    """Listens to one topic and counts."""
+    """Subscribes to one topic and counts its messages."""
 
     def __init__(self, topic: str, type_name: str) -> None:
         self._topic, self._type = topic, type_name
@@ -167,7 +167,7 @@ class _Counter:
         try:
             self._class = values.load_type(type_name, "msg", "message type")
         except Ros2Error:
-            # A type of somebody's own, which this shell does not know.
+            # A type from a package that is not sourced here.
             self._class = None
 
     def _arrived(self, _: bytes) -> None:
@@ -175,7 +175,7 @@ class _Counter:
         self._arrivals.add(time.monotonic())
 
     def look(self, node: Node, now: float) -> None:
-        """Subscribe if it is time to, and rest from a flood."""
+        """Subscribe if it is time to, and pause during a flood of messages."""
         flood = self._count > MOST_HZ * max(now - self._looked_s, LOOKED_EVERY_S)
         self._count, self._looked_s = 0, now
         if flood:
@@ -186,11 +186,11 @@ class _Counter:
             self._subscription = node.create_subscription(self._class, self._topic, self._arrived, _COUNTING, raw=True)
 
     def hertz(self, now: float) -> float | None:
-        """What was counted; MOST_HZ where it was more."""
+        """Return the measured rate, at most MOST_HZ."""
         return MOST_HZ if now < self._spared_until_s else self._arrivals.hertz(now)
 
     def close(self, node: Node) -> None:
-        """Listen no more."""
+        """Unsubscribe."""
         if self._subscription is not None:
             node.destroy_subscription(self._subscription)
             self._subscription = None

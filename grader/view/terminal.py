@@ -1,6 +1,6 @@
-"""The view in a terminal: the turtle in half blocks, beside it what is said, and keys that drive.
+"""The view in a terminal: the turtle in half blocks, the topics beside it, and keys that drive.
 
-A terminal does not tell when a key is let go. A key that is held repeats, so a key that comes no more was let go.
+A terminal does not report when a key is released. A held key repeats, so a key that stops repeating was released.
 """
 
 from __future__ import annotations
@@ -33,32 +33,32 @@ if TYPE_CHECKING:
 
 FRAME_S = 0.066
 FIRST_HOLD_S = 0.6
-"""Until a key that is held begins to repeat; half a second on most machines."""
+"""The time until a held key begins to repeat; half a second on most machines."""
 HOLD_S = 0.25
-"""Between two repeats, the slowest settings included."""
+"""The time between two repeats, with the slowest settings."""
 _LINES = 3
 
 
 @dataclass
 class Held:
-    """The arrow that is held, until when (s) it is believed to be."""
+    """The held arrow key, and until when (s) it is assumed to be held."""
 
     key: str = ""
     until_s: float = 0.0
 
     def press(self, key: str, now: float) -> None:
-        """It came, once more or for the first time."""
+        """Handle an arrow key, for the first time or as a repeat."""
         again = key == self.key and now < self.until_s
         self.key, self.until_s = key, now + (HOLD_S if again else FIRST_HOLD_S)
 
     def over(self, now: float) -> bool:
-        """Whether it has just been let go."""
+        """Return whether the key has just been released."""
         return bool(self.key) and now >= self.until_s
 
 
 @dataclass(eq=False)
 class Terminal:
-    """What the loop below keeps."""
+    """The state of the loop below."""
 
     feed: socket.socket
     said: int
@@ -73,7 +73,7 @@ class Terminal:
     _rest: str = ""
 
     def hear(self) -> bool:
-        """Take what the simulator tells; returns False when it has ended."""
+        """Take the messages of the simulator; return False if it has ended."""
         while True:
             try:
                 data = self.feed.recv(LARGEST)
@@ -91,7 +91,7 @@ class Terminal:
             self.changed = True
 
     def read_lines(self) -> None:
-        """What the simulator prints."""
+        """Take the output of the simulator."""
         try:
             data = os.read(self.said, 65536)
         except BlockingIOError:
@@ -101,7 +101,7 @@ class Terminal:
         self.changed |= bool(lines)
 
     def next_turtle(self) -> None:
-        """The keys drive another one."""
+        """Let the keys drive the next turtle."""
         names = list(self.state.turtles)
         if names:
             at = names.index(self.chosen) + 1 if self.chosen in names else 0
@@ -109,7 +109,7 @@ class Terminal:
 
 
 def watch(feed: socket.socket, said: int) -> int:
-    """Draw until the simulator ends, Q or Ctrl-C; returns the exit code."""
+    """Draw until the simulator ends, or until Q or Ctrl-C; return the exit code."""
     console = Console(highlight=False, no_color=False)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     feed.settimeout(0.0)
@@ -157,7 +157,7 @@ def _loop(shown: Terminal, read: Callable[..., bytes | None], live: Live, hands:
 
 
 def _do(shown: Terminal, data: bytes, hands: Hands) -> bool:
-    """Do what the keys say; returns False when that is to end."""
+    """Handle the keys; return False if one of them ends the program."""
     text = data.decode("latin-1")
     for char, what in ((" ", "resume" if shown.state.paused else "pause"), ("x", "clear"), ("z", "reset")):
         if char in text.lower():

@@ -1,4 +1,4 @@
-"""The list of topics beside the graph: type, who speaks and hears, how often. Pure."""
+"""The table of topics: types, publishers, subscribers, rates. Pure functions."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ if TYPE_CHECKING:
     from grader.view.system import System
 
 VIEWS = "/_view_"
-"""How the names of nodes that only watch begin."""
+"""The beginning of the names of nodes that only watch."""
 
 
 def rows(system: System, state: State, show: Show) -> list[dict[str, object]]:
-    """A row a topic that the graph shows: its types, the names at its two ends, its rate (Hz, None: silent).
+    """Return one row per topic in the graph: its types, publishers, subscribers and rate (Hz, None: no messages).
 
-    Tools with hidden names, as `ros2 topic pub`, are named too: they are why a topic speaks. Views are not.
+    Tools with hidden names, such as `ros2 topic pub`, are listed too, since they may be why a topic has messages. Views
+    are not listed.
     """
     types: dict[str, list[str]] = {}
     ends: dict[tuple[str, str], list[str]] = {}

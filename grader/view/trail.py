@@ -1,6 +1,6 @@
-"""The trail as a view keeps it: strokes that stay sharp at any size, and below them a picture of what is older.
+"""The trail in a view: strokes that stay sharp at any size, and below them a picture of the older trail.
 
-Coordinates are tenths of the canvas's pixels, y downwards, as whole numbers: short in JSON and fine enough.
+The coordinates are tenths of the canvas's pixels, with y downwards, as whole numbers: short in JSON, and exact enough.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from grader.view.feed import Line
 
 UNIT = 10
-"""Of a pixel: tenths."""
+"""Units per pixel."""
 FAR = 20 * SIDE_PX * UNIT
-"""Nothing is drawn further outside."""
+"""Points further outside are moved to here."""
 MOST_POINTS = 20_000
-"""Of all strokes; then they become part of the picture."""
+"""The largest number of points of all strokes; then the strokes become part of the picture."""
 _SCALE = 3
-"""The picture's pixels for one of the canvas."""
+"""How many pixels of the picture there are per pixel of the canvas."""
 _SLACK = 1.0
-"""How far (in units) a point may lie beside the line that is drawn without it."""
+"""How far (in units) a point may be from a line that is drawn without it."""
 _MOST_SKIPPED = 40
 
 Point = tuple[int, int]
@@ -37,14 +37,14 @@ Point = tuple[int, int]
 
 @dataclass
 class Stroke:
-    """A line drawn with one pen (red, green, blue, width in px). `skipped`: points passed since the last but one."""
+    """A line with one pen (red, green, blue, width in px). `skipped`: the points omitted since the last but one."""
 
     pen: tuple[int, int, int, int]
     points: list[Point]
     skipped: list[Point] = field(default_factory=list)
 
     def add(self, point: Point) -> None:
-        """Go on to a point; one on the way of the line so far is left out."""
+        """Continue to a point; a point on the line so far is omitted."""
         if point == self.points[-1]:
             return
         if len(self.points) >= 2:
@@ -58,7 +58,7 @@ class Stroke:
 
 
 def _beside(point: Point, begin: Point, end: Point) -> float:
-    """How far a point lies from the piece between two others."""
+    """Return the distance of a point from the line segment between two others."""
     along = (end[0] - begin[0], end[1] - begin[1])
     length = math.hypot(*along)
     if length == 0:
@@ -69,20 +69,20 @@ def _beside(point: Point, begin: Point, end: Point) -> float:
 
 
 class Trail:
-    """All that was drawn."""
+    """Everything that was drawn."""
 
     def __init__(self) -> None:
         self.clear()
 
     def clear(self) -> None:
-        """Wipe it off."""
+        """Clear the trail."""
         self.strokes: list[Stroke] = []
         self.picture = b""
         self._open: dict[tuple[object, ...], Stroke] = {}
         self._points = 0
 
     def draw(self, lines: Iterable[Line]) -> list[Stroke]:
-        """Add lines, and return them as strokes: what has begun where another line ended goes on with it."""
+        """Add lines, and return them as strokes: a line that begins at the end of a stroke continues this stroke."""
         new: dict[int, Stroke] = {}
         for x0, y0, x1, y1, red, green, blue, width in lines:
             pen = (red, green, blue, width)
@@ -98,14 +98,14 @@ class Trail:
             self._points += len(stroke.points) - before
             self._open[x1, y1, pen] = stroke
         if len(self._open) > 4 * len(new) + 256:
-            # Ends that nobody came back to.
+            # Forget old ends that no line has continued.
             self._open = dict(list(self._open.items())[-256:])
         if self._points > MOST_POINTS:
             self._flatten()
         return list(new.values())
 
     def take_picture(self, png: bytes) -> None:
-        """Begin anew with a picture of all that was drawn."""
+        """Start again with a picture of everything that was drawn."""
         self.clear()
         self.picture = png
 
@@ -115,7 +115,7 @@ class Trail:
         self.take_picture(file.getvalue())
 
     def painted(self, side: int, least: int = 1) -> Image.Image:
-        """All of it as a picture with so many pixels a side, RGBA; strokes are at least so many wide."""
+        """Return the trail as an RGBA picture with this many pixels per side; strokes have at least this width."""
         picture = Image.new("RGBA", (side, side), (0, 0, 0, 0))
         if self.picture:
             below = Image.open(io.BytesIO(self.picture)).convert("RGBA")
@@ -124,7 +124,7 @@ class Trail:
         return picture
 
     def told(self) -> dict[str, object]:
-        """For a page that has seen nothing yet."""
+        """Return the whole trail for a new page."""
         return {
             "picture": base64.b64encode(self.picture).decode() if self.picture else None,
             "strokes": told(self.strokes),
@@ -132,18 +132,18 @@ class Trail:
 
 
 def told(strokes: Iterable[Stroke]) -> list[list[int]]:
-    """Strokes for a page: red, green, blue, width, then x, y of each point."""
+    """Return strokes for a page: red, green, blue, width, then x, y of each point."""
     return [[*stroke.pen, *(value for point in stroke.points for value in point)] for stroke in strokes]
 
 
 def place(x: float, y: float) -> Point:
-    """Where a point (m) lies in the picture."""
+    """Return the position of a point (m) in the picture."""
     column, row = x * PIXELS_PER_M * UNIT, (SIDE_M - y) * PIXELS_PER_M * UNIT
     return round(min(max(column, -FAR), FAR)), round(min(max(row, -FAR), FAR))
 
 
 def paint(picture: Image.Image, strokes: Sequence[Stroke], scale: float, least: int = 1) -> None:
-    """Paint strokes into a picture that has `scale` pixels for one of the canvas, each at least so many wide."""
+    """Paint strokes into a picture with `scale` pixels per pixel of the canvas; each has at least this width."""
     draw = ImageDraw.Draw(picture)
     for stroke in strokes:
         ink = (*stroke.pen[:3], 255)

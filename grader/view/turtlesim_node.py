@@ -1,6 +1,6 @@
 """`python -m grader.view.turtlesim_node`: what `ros2 run turtlesim turtlesim_node` and `grader sim` run.
 
-The simulator by itself needs no view; here it gets one, for `--view`.
+The simulator itself does not import the view; this module adds it for `--view`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def open_view(kind: Kind, port: int | None) -> AbstractContextManager[View]:
-    """Start a view; until then nothing of it is imported. Raises as `grader.view.launch.view` does."""
+    """Start a view, and import it only now. Raises the same errors as `grader.view.launch.view`."""
     from grader.view.launch import view
 
     return view(kind, port)
@@ -24,7 +24,7 @@ def open_view(kind: Kind, port: int | None) -> AbstractContextManager[View]:
 
 def main() -> None:
     """Run turtlesim until Ctrl-C, and exit."""
-    # Ctrl-C ends quietly from the first moment: while ROS 2 is being imported too, which takes a while.
+    # Ctrl-C ends the program without a traceback, even while ROS 2 is being imported.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     from grader.turtlesim import standalone
 

@@ -81,7 +81,7 @@ def test_where_nothing_can_be_kept_there_is_a_view_all_the_same(
 def test_a_port_that_cannot_be_had_is_told() -> None:
     with closing(socket.create_server(("127.0.0.1", 0))) as taken:
         port = taken.getsockname()[1]
-        with pytest.raises(UsageError, match=f"--port {port} cannot be had"):
+        with pytest.raises(UsageError, match=f"--port {port} is not available"):
             listen("turtlesim", port)
     with pytest.raises(UsageError, match="0 to 65535"):
         listen("turtlesim", 70000)

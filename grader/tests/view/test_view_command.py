@@ -52,14 +52,14 @@ def test_grader_sim_can_draw_in_the_terminal_and_says_when_there_is_none(alone: 
     cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     done = alone.run("grader sim --view terminal", XDG_CACHE_HOME=cache)
     assert done.code == 2
-    assert "--view terminal draws in a terminal" in done.stderr
+    assert "--view terminal needs a terminal" in done.stderr
 
 
 def test_a_simulator_outlives_its_view(alone: World) -> None:
     simulator = alone.start("ros2 run turtlesim turtlesim_node --view", "Spawning turtle")
     (view,) = children(simulator.program)
     os.kill(view, signal.SIGKILL)
-    simulator.wait_for("The view has ended; turtlesim goes on without it.")
+    simulator.wait_for("The view has ended; turtlesim continues without it.")
     assert alone.run("ros2 topic echo /turtle1/pose --once").code == 0
     assert simulator.stop() == 0
 

@@ -210,7 +210,7 @@ def test_pause_stops_the_time_clear_wipes_and_reset_begins_anew(page: Page, syst
     assert len(poses.lines) - seen < 20
     page.get_by_role("button", name="Clear").click()
     until(lambda: drawn(page) < FEW)
-    page.get_by_role("button", name="Go on").click()
+    page.get_by_role("button", name="Resume").click()
     page.get_by_role("status").get_by_text("Live").wait_for()
     until(lambda: turtle(page) != stands)
     node.stop()
@@ -338,7 +338,7 @@ def test_a_foreign_page_can_neither_read_nor_drive(browser: Browser, system: Wor
 def test_a_page_with_a_wrong_token_says_what_to_do(browser: Browser, system: World) -> None:
     tab = browser.new_page()
     tab.goto(address(system)[:-3] + "xyz")
-    tab.get_by_text("This address is not that of the simulator that runs.").wait_for()
+    tab.get_by_text("This is not the address of the running simulator.").wait_for()
     tab.close()
 
 
@@ -356,7 +356,7 @@ def test_the_browser_is_opened_with_a_code_for_which_it_gets_the_token(browser: 
     until(lambda: tab.url == url(simulator))
     second = browser.new_page()
     second.goto(address)
-    second.get_by_text("This address is not that of the simulator that runs.").wait_for()
+    second.get_by_text("This is not the address of the running simulator.").wait_for()
     second.close()
     tab.close()
 

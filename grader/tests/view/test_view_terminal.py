@@ -116,7 +116,7 @@ def test_a_terminal_without_colours_is_told(system: World) -> None:
     ("arguments", "said"),
     [
         ("--view window", "invalid choice: 'window'"),
-        ("--port 8000", "--port is for --view"),
+        ("--port 8000", "--port needs --view"),
         ("--view --port 70000", "0 to 65535"),
     ],
 )

@@ -1,2 +1,2 @@
-# What a workspace's install/setup.bash sources of the turtlesim below it: nothing, since the environment with ROS 2 in
-# it has turtlesim too. colcon takes only a prefix that has such files for one.
+# A workspace's install/setup.bash sources this file. It does nothing, since the environment with ROS 2 has turtlesim
+# already; colcon expects such a file in each prefix.

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rclpy.task import Future
 
 _POSES_TO_SKIP = 3
-"""A pose from before the reset may arrive after its answer."""
+"""How long to wait after the reset: an older pose may arrive after the answer of the reset."""
 
 
 class DrawSquare(Node):
@@ -60,7 +60,7 @@ class DrawSquare(Node):
 
 
 def main() -> int:
-    """Run it until Ctrl-C; returns the exit code."""
+    """Run the node until Ctrl-C; return the exit code."""
     return run(DrawSquare)
 
 

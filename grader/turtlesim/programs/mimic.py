@@ -1,4 +1,4 @@
-"""mimic: drive one turtle as another one moves: from input/pose to output/cmd_vel, which are to be remapped."""
+"""mimic: drive one turtle as another one moves, from input/pose to output/cmd_vel (remap these topics)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Mimic(Node):
 
 
 def main() -> int:
-    """Run it until Ctrl-C; returns the exit code."""
+    """Run the node until Ctrl-C; return the exit code."""
     return run(Mimic)
 
 

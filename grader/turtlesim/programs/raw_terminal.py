@@ -1,4 +1,4 @@
-"""Keys from the terminal as they are pressed; the terminal is left as it was found, whatever happens."""
+"""Read keys from the terminal as they are pressed; the terminal's settings are always restored."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
 
 
 def is_terminal() -> bool:
-    """Whether somebody can press keys here."""
+    """Return whether standard input is a terminal."""
     try:
         return os.isatty(sys.stdin.fileno())
     except (OSError, ValueError, AttributeError):
-        # Closed, or none at all.
+        # Standard input is closed or missing.
         return False
 
 
 @contextmanager
 def keyboard() -> Iterator[Callable[..., bytes | None]]:
-    """Standard input without echo and without waiting for Enter; Ctrl-C and Ctrl-Z work as ever.
+    """Read standard input without echo and without waiting for Enter; Ctrl-C and Ctrl-Z work as usual.
 
-    Gives a function that waits for keys, at most so many seconds (for ever when none are named), and returns what they
-    send: nothing when the terminal is gone, None when the time is up.
+    Yields a function that waits for keys, for at most the given seconds (None: for ever), and returns the bytes that
+    they send: empty if the terminal is gone, None if the time is up.
     """
     number = sys.stdin.fileno()
     before = termios.tcgetattr(number)
@@ -40,13 +40,15 @@ def keyboard() -> Iterator[Callable[..., bytes | None]]:
     old = {name: signal.signal(name, handler) for name, handler in handlers.items()}
     woken, wake = os.pipe()
     os.set_blocking(wake, False)
-    # A signal may reach another thread, one of ROS 2; then this one would go on waiting, and Python not handle it.
+    # A signal may reach another thread, such as one of ROS 2; then this one would continue to wait, and Python would
+    # not handle it.
     old_wake = signal.set_wakeup_fd(wake, warn_on_full_buffer=False)
     try:
         tty.setcbreak(number)
         yield partial(_read, number, woken)
     finally:
-        # What was typed ahead is not for the shell: an arrow would call up its last command. The terminal may be gone.
+        # Discard the keys that were typed ahead: an arrow would call up the shell's last command. The terminal may be
+        # gone.
         with suppress(termios.error):
             termios.tcsetattr(number, termios.TCSAFLUSH, before)
         signal.set_wakeup_fd(old_wake)
@@ -75,6 +77,6 @@ def _end(number: int, _: FrameType | None) -> NoReturn:
 
 
 def _in_front(number: int) -> None:
-    """After Ctrl-Z and fg the shell has made the terminal its own."""
+    """Set the terminal again: after Ctrl-Z and fg, it has the shell's settings."""
     if os.tcgetpgrp(number) == os.getpgrp():
         tty.setcbreak(number)

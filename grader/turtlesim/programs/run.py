@@ -1,4 +1,4 @@
-"""One node alone in its process, until Ctrl-C."""
+"""Run one node in its own process until Ctrl-C."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 
 def run(make: Callable[[], Node]) -> int:
-    """Spin a node; Ctrl-C and SIGTERM end it quietly. Returns the exit code."""
-    # Until here Ctrl-C has ended Python at once; rclpy hands a signal on to whatever was there before it.
+    """Spin a node until Ctrl-C or SIGTERM, without a traceback; return the exit code."""
+    # Before this, Ctrl-C ends Python at once; rclpy passes a signal on to the previous handler.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     rclpy.init(args=sys.argv)
     node = make()

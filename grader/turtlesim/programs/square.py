@@ -1,4 +1,4 @@
-"""A square of 2 m, side by side: where the turtle is goes in, the velocity to drive with comes out. Pure."""
+"""Drive a square of 2 m side by side: compute the velocity from the turtle's pose. Pure functions."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ SIDE_M = 2.0
 _FORWARD_M_S = 1.0
 _TURN_RAD_S = 0.4
 _NEAR_PER_S = 4.0
-"""Slower towards the end: remaining way (m, rad) times this (1/s). A pose that is some frames old then does no harm."""
+"""The gain: the speed is the remaining distance (m, rad) times this (1/s), so a pose may be a few frames old."""
 _CLOSE_M = 0.002
 _CLOSE_RAD = 0.001
 
 
 @dataclass(frozen=True)
 class Leg:
-    """A side, then the turn at its end. `x`, `y` (m) is the corner it leads to, `theta` (rad) its direction."""
+    """A side and the turn at its end. `x`, `y` (m) is the corner that it leads to, `theta` (rad) its direction."""
 
     x: float
     y: float
@@ -25,14 +25,14 @@ class Leg:
 
 
 def first(x: float, y: float, theta: float) -> Leg:
-    """The first side of a square that begins here."""
+    """Return the first side of a square that begins at this pose."""
     return Leg(x + SIDE_M * math.cos(theta), y + SIDE_M * math.sin(theta), theta)
 
 
 def follow(leg: Leg, x: float, y: float, theta: float) -> tuple[Leg, float, float]:
-    """The leg for a turtle at this pose, and its linear (m/s) and angular velocity (rad/s).
+    """Return the leg for a turtle at this pose, and its linear (m/s) and angular velocity (rad/s).
 
-    Corners are reckoned from the first one, so that small errors do not add up.
+    The corners are computed from the first one, so that small errors do not add up.
     """
     if leg.turning:
         remaining = math.remainder(leg.theta + math.pi / 2 - theta, math.tau)

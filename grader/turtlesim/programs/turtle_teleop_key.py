@@ -26,21 +26,21 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 _HELP = """\
-Arrow keys drive the turtle; each press lasts a second.
+The arrow keys drive the turtle, for one second per key press.
     E R T
-    D   G   turn it to look where the key lies, seen from F: G east, R north, D west, V south.
+    D   G   turn it to the direction of the key, seen from F: G east, R north, D west, V south.
     C V B
 F stops turning, Q quits."""
 _NO_TERMINAL = (
-    "turtle_teleop_key: it reads keys from a terminal, and its standard input is none (a pipe, a file, or it was "
-    "started in the background). Start it in a terminal of its own: ros2 run turtlesim turtle_teleop_key"
+    "turtle_teleop_key reads keys from a terminal, but its standard input is not a terminal (it is a pipe or a file, "
+    "or it was started in the background). Start it in a terminal of its own: ros2 run turtlesim turtle_teleop_key"
 )
 _DISCOVERY_S = 2.0
-"""A turtlesim that is running is heard of by then."""
+"""How long the discovery of a running turtlesim takes at most."""
 
 
 class Teleop(Node):
-    """The node teleop_turtle; in a view's hands it has another name, drives another turtle, and says nothing."""
+    """The node teleop_turtle; a view gives it another name and another turtle, and it prints nothing then."""
 
     def __init__(
         self,
@@ -80,12 +80,12 @@ class Teleop(Node):
             await self._goal.cancel_goal_async()
 
     def destroy_node(self) -> None:
-        """Leave the graph; an action client that is kept would keep the node in it."""
+        """Leave the graph; a remaining action client would keep the node in it."""
         self._rotate.destroy()
         super().destroy_node()
 
     def _see_that(self, somebody: Callable[[], bool], name: str) -> bool:
-        """Whether somebody is there; if not in the first two seconds either, say so."""
+        """Return whether somebody listens; print a message if nobody does within the first two seconds."""
         while not somebody() and time.monotonic() < self._begun + _DISCOVERY_S:
             time.sleep(0.01)
         there = somebody()
@@ -96,11 +96,11 @@ class Teleop(Node):
 
 
 def main() -> int:
-    """Run it until Q or Ctrl-C; returns the exit code: 0, or 1 where there is no terminal."""
+    """Run the node until Q or Ctrl-C; return the exit code: 0, or 1 without a terminal."""
     if not is_terminal():
         print(_NO_TERMINAL, file=sys.stderr)
         return 1
-    # Signals end Python's wait for a key; rclpy would only end its own waits.
+    # A signal must end Python's wait for a key; rclpy would only end its own waits.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
     node = Teleop()
@@ -128,7 +128,7 @@ def _spin(executor: SingleThreadedExecutor) -> None:
 
 
 def _follow(read: Callable[[], bytes | None], node: Teleop, executor: SingleThreadedExecutor) -> None:
-    """Do what the keys say until Q, or until the terminal is gone."""
+    """Handle the keys until Q, or until the terminal is gone."""
     rest = ""
     while data := read():
         typed, rest = keys(rest + data.decode("latin-1"))

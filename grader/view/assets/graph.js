@@ -1,4 +1,4 @@
-// The graph, where Graphviz put it.
+// The graph, as Graphviz has laid it out.
 
 import { element } from "./svg.js";
 
@@ -35,7 +35,7 @@ export class Graph {
     if (problem || nodes.length === 0) {
       const none = document.createElement("p");
       none.className = "note";
-      none.textContent = problem ?? "No node is running here.";
+      none.textContent = problem ?? "No node is running.";
       this.place.replaceChildren(none);
       return;
     }

@@ -1,5 +1,5 @@
-// Keys that drive, from the keyboard and from the buttons on the page. They are held until they are let go, and what is
-// held is said again and again: a page that says nothing any more holds nothing.
+// Keys that drive, from the keyboard and from the buttons on the page. The page sends the held keys again and again
+// until they are released; the server releases the keys of a page that sends nothing any more.
 
 const AGAIN_MS = 100;
 const ARROWS = { ArrowUp: "up", ArrowDown: "down", ArrowLeft: "left", ArrowRight: "right" };

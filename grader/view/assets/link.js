@@ -1,4 +1,4 @@
-// The connection to the server: opened again and again until it is there, told when the page sleeps and wakes.
+// The connection to the server: it tries again until it succeeds, and reports when the page is hidden or shown.
 
 const AGAIN_MS = 700;
 
@@ -29,7 +29,7 @@ export class Link {
     });
     socket.addEventListener("message", (event) => {
       const news = JSON.parse(event.data);
-      // Opened with a code that is used up now: the address gets the token instead, for the next time.
+      // The page was opened with a code, which works only once: put the token into the address for the next time.
       if (news.kind === "token") history.replaceState(null, "", `#${news.token}`);
       else this.news(news);
     });
@@ -39,7 +39,7 @@ export class Link {
     });
   }
 
-  // A page that nobody sees is told nothing, and everything at once when it is seen again.
+  // A hidden page gets no news, and everything at once when it is shown again.
   wake() {
     const awake = document.visibilityState === "visible";
     if (awake === this.awake) return;
@@ -52,7 +52,7 @@ export class Link {
   }
 }
 
-// Whether the server is there and it is the address that is wrong.
+// Whether the server is running, so that the address is wrong.
 async function refused() {
   try {
     return (await fetch("/turtle.svg", { cache: "no-store" })).ok;

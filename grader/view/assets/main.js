@@ -1,4 +1,4 @@
-// The page: what the server tells goes to its parts, what is pressed goes to the server.
+// The page: it passes the server's news to its parts, and the user's keys and buttons to the server.
 
 import { Graph } from "./graph.js";
 import { Keys } from "./keys.js";
@@ -53,9 +53,9 @@ function frame(news) {
   }
   if (news.paused !== paused) {
     paused = news.paused;
-    pause.textContent = paused ? "Go on" : "Pause";
+    pause.textContent = paused ? "Resume" : "Pause";
   }
-  tell(paused ? "Paused: no turtle moves, and none tells its pose." : "");
+  tell(paused ? "Paused: no turtle moves or publishes its pose." : "");
   say(paused ? "Paused" : "Live", paused ? "waits" : "runs");
 }
 
@@ -80,10 +80,10 @@ function hear(news) {
 function lost(refused) {
   if (refused) {
     say("Wrong address", "ends");
-    tell("This address is not that of the simulator that runs. Open the one that it printed.");
+    tell("This is not the address of the running simulator. Open the address that it printed.");
   } else {
     say("Not running", "ends");
-    tell("The simulator has ended. When it is started again with --view, it goes on here.");
+    tell("The simulator has ended. When you start it again with --view, this page continues.");
   }
 }
 

@@ -1,4 +1,4 @@
-// The canvas: the trail in pixels, the turtles above it as shapes that are moved.
+// The canvas: the trail in pixels, and above it the turtles as moving shapes.
 
 import { element } from "./svg.js";
 
@@ -33,7 +33,7 @@ export class Stage {
     this.wiped = 0;
   }
 
-  // Everything anew: the picture of what is old, and the strokes above it.
+  // Draw everything again: the picture of the older trail, and the strokes above it.
   trail({ picture, strokes }) {
     const turn = ++this.wiped;
     this.pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
@@ -42,7 +42,7 @@ export class Stage {
     const below = new Image();
     below.addEventListener("load", () => {
       if (turn !== this.wiped) return;
-      // It comes later than what lies on it.
+      // The picture loads after the strokes, but belongs below them.
       this.pen.globalCompositeOperation = "destination-over";
       this.pen.imageSmoothingEnabled = false;
       this.pen.drawImage(below, 0, 0, this.canvas.width, this.canvas.height);
@@ -81,7 +81,7 @@ export class Stage {
     for (const [name, [x, y, theta]] of Object.entries(all)) {
       let group = this.shown.get(name);
       if (!group) {
-        // turtle1 is green, turtle2 brown, ...; another name has a colour of its own, too, the same one each time.
+        // turtle1 is green, turtle2 brown, ...; any other name always gets the same colour, too.
         const number = Number(/^turtle(\d+)$/.exec(name)?.[1] ?? [...name].reduce((sum, char) => sum + char.codePointAt(0), 0)) - 1;
         const label = element("text", { y: 34, "text-anchor": "middle", class: "turtle-name" }, name);
         group = element("g", { class: "turtle", "data-name": name }, shape(Math.max(number, 0)), label);

@@ -1,4 +1,4 @@
-// A few words of SVG.
+// A helper that creates SVG elements.
 
 const SPACE = "http://www.w3.org/2000/svg";
 

@@ -1,6 +1,6 @@
-// The table of topics: who speaks, who hears, how often.
+// The table of topics: their publishers, subscribers and rates.
 
-// What is not counted any more.
+// Higher rates are not measured.
 const MOST_HZ = 500;
 
 function cell(name, ...parts) {

@@ -1,4 +1,4 @@
-// The last command as two arrows: straight for the linear velocity, bent for the angular one.
+// The last command as two arrows: a straight one for the linear velocity, a bent one for the angular velocity.
 
 import { element } from "./svg.js";
 
@@ -9,7 +9,7 @@ function head(x, y, degrees, kind) {
   return element("path", { d: "M0 0l-19-11v22z", class: kind, transform: `translate(${x} ${y}) rotate(${degrees})` });
 }
 
-// Seen from above, the turtle looks upwards: x is up, y to the left. The length tells the speed, 1 m/s is half of it.
+// Seen from above, the turtle looks up: x is up, y is to the left. The length shows the speed: 1 m/s is half of it.
 function linear(x, y) {
   const speed = Math.hypot(x, y);
   if (!(speed > 0)) return element("circle", { r: 4, class: "linear none" });
@@ -64,7 +64,7 @@ export class Twist {
     this.told = null;
   }
 
-  // `command`: its age (s), linear x, y, z (m/s), angular x, y, z (rad/s); undefined when there was none yet.
+  // `command`: its age (s), linear x, y, z (m/s), angular x, y, z (rad/s); undefined if there was no command yet.
   show(command, topic) {
     const text = JSON.stringify([topic, command?.slice(1)]);
     if (text !== this.told) {
@@ -81,7 +81,7 @@ export class Twist {
           part("Angular", angular(z), [["angular.z", said(z, "rad/s")]]));
       }
     }
-    // turtlesim itself forgets a command after a second.
+    // turtlesim stops the turtle one second after the last command.
     this.place.classList.toggle("old", !command || command[0] > LASTS_S);
   }
 }
