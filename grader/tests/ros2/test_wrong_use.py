@@ -80,7 +80,7 @@ FILES_ONLY = {
     f"{PUB} '{{linear: {{x: 2.0}}'": (1, ["not YAML", "expected ',' or '}'"]),
     f"{PUB} '{{linear: [}}'": (1, ["not YAML"]),
     f"{PUB} 'linear'": (1, ["needs to be a dictionary in YAML format"]),
-    f"{PUB} 'x:2.0'": (1, ["needs to be a dictionary in YAML format", "space is needed after each colon"]),
+    f"{PUB} 'x:2.0'": (1, ["needs to be a dictionary in YAML format", "needs a space after it"]),
     f"{PUB} '{{lineer: {{x: 2.0}}}}'": (1, ["object has no attribute 'lineer'", "Did you mean 'linear'?"]),
     f"{PUB} '{{linear: 2.0}}'": (
         1,
@@ -92,18 +92,21 @@ FILES_ONLY = {
     ),
     f"{PUB} '{{linear: {{x: [1.0]}}}}'": (
         1,
-        ["Failed to populate field: one value", "'x' has the type double."],
+        ["Failed to populate field: expected a single value", "'x' has the type double."],
     ),
     f"{SPAWN} '{{xx: 3}}'": (1, ["object has no attribute 'xx'"]),
-    f"{SPAWN} '{{name: {{a: 1}}}}'": (1, ["Failed to populate field: one value", "'name' has the type string"]),
+    f"{SPAWN} '{{name: {{a: 1}}}}'": (
+        1,
+        ["Failed to populate field: expected a single value", "'name' has the type string"],
+    ),
     f"{SPAWN} 3": (1, ["Failed to populate field: Value '3' is expected to be a dictionary but is a int"]),
     f"{SPAWN} -r 0": (1, ["rate must be greater than zero"]),
     "ros2 topic pub /a std_msgs/msg/UInt8 '{data: 256}'": (
         1,
         ["Failed to populate field: The 'data' field must be an unsigned integer in [0, 255]", "has the type uint8"],
     ),
-    "ros2 topic pub /a std_msgs/msg/UInt8 '{data: 2.5}'": (1, ["a whole number was expected"]),
-    "ros2 topic pub /a std_msgs/msg/Bool '{data: 2}'": (1, ["true or false was expected"]),
+    "ros2 topic pub /a std_msgs/msg/UInt8 '{data: 2.5}'": (1, ["expected a whole number"]),
+    "ros2 topic pub /a std_msgs/msg/Bool '{data: 2}'": (1, ["expected true or false"]),
     "ros2 topic pub '/a b' std_msgs/msg/Bool": (1, ["The topic '/a b' cannot be published on"]),
     "ros2 topic pub -n 'a b' /a std_msgs/msg/Bool": (1, ["The ROS 2 node could not be created"]),
 }

@@ -171,7 +171,7 @@ def test_a_machine_without_a_sandbox_is_good_enough_for_ones_own_code(monkeypatc
     assert [line for line in lines if line.state == "broken"] == []
     (told,) = [line for line in lines if line.subject == "sandbox"]
     assert told.state == "advice"
-    assert "limits on time, memory, processes and file size only" in told.seen
+    assert "limits on time, memory, processes and file size" in told.seen
     assert "install -y bubblewrap" in told.todo
     assert states(lines)["a node"] == "ok"
 

@@ -234,7 +234,7 @@ def test_our_own_wheels_are_not_a_sourced_ros(tmp_path: Path) -> None:
         ("Darwin", "arm64", ("", ""), "This is macOS on arm64."),
         ("Windows", "AMD64", ("", ""), "This is Windows on AMD64."),
         ("Linux", "aarch64", ("glibc", "2.36"), "This is Linux on aarch64."),
-        ("Linux", "x86_64", ("", ""), "another C library than glibc"),
+        ("Linux", "x86_64", ("", ""), "a C library other than glibc"),
         ("Linux", "x86_64", ("glibc", "2.17"), "a Linux with glibc 2.17."),
     ],
 )

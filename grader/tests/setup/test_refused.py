@@ -21,7 +21,7 @@ HERE = Path("/nowhere/course/.venv")
         ("Error: [Errno 30] Read-only file system: '/x'", "/.venv cannot be written to (Read-only file system): copy"),
         ("Error: [Errno 13] Permission denied: '/x'", "/.venv cannot be written to (Permission denied): copy"),
         ("OSError: [Errno 24] Too many open files", "`ulimit -n 4096`"),
-        ("BlockingIOError: [Errno 11] Resource temporarily unavailable", "starts no more processes for you"),
+        ("BlockingIOError: [Errno 11] Resource temporarily unavailable", "cannot start more processes for you"),
     ],
 )
 def test_what_an_installer_printed_is_one_sentence(said: str, told: str) -> None:
