@@ -33,11 +33,14 @@ CONTAINER = """\
 LEFT_TO_ROS = {"numpy": "python3-numpy", "em": "python3-empy", "lark": "python3-lark"}
 """Modules that the set-up leaves to a sourced ROS 2 (lock.SOURCED_BRINGS and its part `ros`), and the Debian packages
 that bring them."""
-_IMPORTS = """
+_OLDEST_NUMPY = "1.25"
+"""What matplotlib, which draws the pictures, takes."""
+_IMPORTS = f"""
 import importlib, json, sys
 def lacks(name):
     try:
-        importlib.import_module(name)
+        module = importlib.import_module(name)
+        return name == "numpy" and module.lib.NumpyVersion(module.__version__) < "{_OLDEST_NUMPY}.0"
     except Exception:
         return True
 print(json.dumps([name for name in sys.argv[1:] if lacks(name)]))
@@ -254,8 +257,11 @@ def missing_of_python(
         needs.append(Need("Python's module venv, which creates the course's environment", name + "-venv"))
     if not python.headers:
         needs.append(Need("Python's headers (Python.h), for turtlesim's messages", name + "-dev"))
-    lacks = [Need(f"the module {name}, which the sourced ROS 2 needs", LEFT_TO_ROS[name]) for name in python.lacks]
-    return needs + lacks
+    which = "which the sourced ROS 2 needs; PYTHON=/path/to/python3 names a Python that has it"
+    for name in python.lacks:
+        version = f" ({_OLDEST_NUMPY} or newer)" if name == "numpy" else ""
+        needs.append(Need(f"the module {name}{version}, {which}", LEFT_TO_ROS[name]))
+    return needs
 
 
 def lack_message(needs: Sequence[Need], manager: Optional[packages.Manager], *, root: bool, why: str = "") -> str:

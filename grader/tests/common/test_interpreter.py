@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from grader.common.interpreter import clean, interpreter
+from grader.tests.both_worlds import SOURCED_ENV
 
 GRADER = Path(__file__).parents[2]
 COMMAND = Path(sys.prefix, "bin")
@@ -79,7 +80,10 @@ COMMANDS = ("grader", "ros2", "rqt_graph")
 def test_our_commands_import_nothing_from_the_current_folder(folder: Path, name: str) -> None:
     (folder.parent / "here" / "grader.py").write_text("print('TRAP grader')\n")
     listed = {"PYTHONPATH": f":{folder}:x y", "PYTHONHOME": "here", "LD_LIBRARY_PATH": ":", "PYTHONIOENCODING": "ascii"}
-    env = {"PATH": ":/usr/bin:/bin", "HOME": str(folder), **listed}
+    env = {**SOURCED_ENV, "PATH": ":/usr/bin:/bin", "HOME": str(folder), **listed}
+    if SOURCED_ENV:
+        env["PYTHONPATH"] += f":{SOURCED_ENV['PYTHONPATH']}"
+        env["LD_LIBRARY_PATH"] += f":{SOURCED_ENV['LD_LIBRARY_PATH']}"
     done = subprocess.run([COMMAND / name, "--help"], env=env, capture_output=True, text=True, check=False)
     assert (done.returncode, "TRAP" in done.stdout + done.stderr) == (0, False)
 

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from grader.errors import MachineError, UsageError
-from grader.ros import installation, shell
+from grader.ros import installation, shell, underlay
+from grader.tests.both_worlds import HERE, PATH, REAL_ROS2, SOURCED_ENV, of_the_wheels
 from grader.tests.lacking import give_up
 
-HERE = installation.find_ros()
 BIN = str(Path(sys.prefix, "bin"))
 
 
@@ -107,7 +107,7 @@ def test_a_workspace_that_was_sourced_stays_in_front(tmp_path: Path) -> None:
     assert users(again) == again
 
 
-@pytest.mark.skipif(HERE.kind == "sourced", reason="here a ROS 2 is sourced")
+@of_the_wheels
 def test_another_ros_2_and_an_older_turtlesim_do_not_mix_with_ours(tmp_path: Path) -> None:
     humble = tmp_path / "opt/ros/humble"
     marker = humble / "share/ament_index/resource_index/packages/rclpy"
@@ -175,22 +175,26 @@ def test_an_error_reaches_whoever_sources_it() -> None:
 def test_what_grader_env_prints_is_understood(tmp_path: Path, name: str) -> None:
     if shutil.which(name) is None:
         give_up(name, name)
-    env = {"PATH": f"{BIN}:/usr/bin:/bin", "HOME": str(tmp_path)}
+    env = {**SOURCED_ENV, "PATH": f"{BIN}:{PATH}", "HOME": str(tmp_path)}
     env["XDG_CACHE_HOME"] = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    underlay.ensure(HERE)  # the build would be told
     what = "source <(grader env --domain 57) && echo $ROS_DISTRO $ROS_DOMAIN_ID"
     done = subprocess.run([name, "-c", what], cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
-    assert (done.stdout, done.stderr) == ("jazzy 57\n", "")
+    used = f"The ROS 2 that is sourced in this terminal is used: {HERE.prefix} (ROS domain 57, "
+    assert done.stdout == "jazzy 57\n"
+    assert done.stderr.startswith(used) if SOURCED_ENV else done.stderr == ""
 
 
 @pytest.mark.parametrize("name", ["bash", "zsh"])
 def test_one_line_from_any_folder_brings_ros_2_and_our_commands(tmp_path: Path, name: str) -> None:
     if shutil.which(name) is None:
         give_up(name, name)
-    env = {"PATH": "/usr/bin:/bin", "HOME": str(tmp_path), "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME", "")}
-    env["XDG_CACHE_HOME"] = env["XDG_CACHE_HOME"] or str(Path.home() / ".cache")
+    env = {**SOURCED_ENV, "PATH": PATH, "HOME": str(tmp_path)}
+    env["XDG_CACHE_HOME"] = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     what = f"source {sys.prefix}/setup.{name} && echo $ROS_DISTRO && command -v ros2 grader"
     done = subprocess.run([name, "-c", what], cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
-    assert done.stdout.splitlines() == ["jazzy", f"{BIN}/ros2", f"{BIN}/grader"], done.stderr
+    ros2 = f"{HERE.prefix}/bin/ros2" if REAL_ROS2 else f"{BIN}/ros2"
+    assert done.stdout.splitlines() == ["jazzy", ros2, f"{BIN}/grader"], done.stderr
 
 
 def test_the_words_of_grader_are_completed() -> None:

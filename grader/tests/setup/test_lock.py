@@ -11,6 +11,7 @@ from packaging.utils import canonicalize_name
 
 from grader.errors import MachineError, UsageError
 from grader.setup import bootstrap, lock
+from grader.tests.both_worlds import of_the_wheels
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -130,7 +131,7 @@ def resolved(wanted: list[Requirement]) -> set[str]:
     return {name for name, _ in found}
 
 
-@pytest.mark.parametrize("sourced", [False, True], ids=["wheels", "sourced"])
+@pytest.mark.parametrize("sourced", [pytest.param(False, marks=of_the_wheels), True], ids=["wheels", "sourced"])
 @pytest.mark.parametrize("parts", bootstrap.PARTS.values(), ids=list(bootstrap.PARTS))
 def test_each_set_up_has_all_that_its_packages_need(parts: list[str], *, sourced: bool) -> None:
     # For this Python; for the others, setup/test_resolved.py asks uv, which needs the network.

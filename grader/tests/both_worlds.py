@@ -1,0 +1,32 @@
+"""The two worlds in which all tests run: with the course's own ROS 2, and in a terminal in which one was sourced."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from grader.ros import installation
+
+HERE = installation.find_ros()
+SET_BY_ROS = (
+    *installation.SEARCHED,
+    *("ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION", "ROS_AUTOMATIC_DISCOVERY_RANGE", "QT_QPA_PLATFORM"),
+)
+SOURCED_ENV: dict[str, str] = {
+    name: os.environ[name] for name in SET_BY_ROS if HERE.kind == "sourced" and name in os.environ
+}
+"""What a terminal has besides, in which nothing but the tests' ROS 2 was sourced; nothing in the other world."""
+PATH = os.pathsep.join([*([str(HERE.prefix / "bin")] if SOURCED_ENV else []), "/usr/bin", "/bin"])
+"""PATH of such a terminal."""
+REAL_ROS2 = bool(SOURCED_ENV) and Path(HERE.prefix, "bin/ros2").is_file()
+REAL_TURTLESIM = installation.has_turtlesim(HERE)
+
+of_the_wheels = pytest.mark.skipif(
+    bool(SOURCED_ENV), reason="this is about the course's own ROS 2, and one is sourced here"
+)
+of_our_ros2 = pytest.mark.skipif(REAL_ROS2, reason="this is about the course's own ros2, and the real one is here")
+of_our_turtlesim = pytest.mark.skipif(
+    REAL_TURTLESIM, reason="this is about the course's own turtlesim, and the real one is here"
+)
