@@ -1,1 +1,1 @@
-"""nbgrader with this course: what is released, kernels in a cell, scores of the grader's own, feedback."""
+"""nbgrader for this course: releases, kernels in cells, scores confirmed by the grader, and feedback."""

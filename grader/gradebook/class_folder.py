@@ -1,4 +1,4 @@
-"""`grader class new DIR`: a course folder for an instructor, in which nbgrader's commands work as its manual says."""
+"""Make a course folder in which nbgrader's commands work as in its manual: `grader class new DIR`."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ _LEFTOVERS = shutil.ignore_patterns("__pycache__", "*.pyc", ".ipynb_checkpoints"
 
 
 def make_class(folder: Path, roster: Path | None) -> int:
-    """Make the folder, with the roster's students in its gradebook; returns how many there are.
+    """Make the folder and add the students of the roster to its gradebook. Return the number of students.
 
     Raises:
-        UsageError: the folder is not empty, the roster is none, or this copy of the course has no solutions.
-        MachineError: it cannot be written, or nbgrader is not installed.
+       UsageError: the folder is not empty, the roster is invalid, or this copy of the course has no solutions.
+       MachineError: the folder cannot be written, or nbgrader is not installed.
     """
     students = read_students(roster) if roster else []
     root = course_folder().parent
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        message = f"{folder} is not an empty folder: name a new one."
+        message = f"{folder} is not an empty folder. Name a new one."
         raise UsageError(message)
     if not (root / "solutions").is_dir():
-        message = "This copy of the course comes without solutions: a class is made from a whole checkout."
+        message = "This copy of the course has no solutions. A class needs a complete checkout of the course."
         raise UsageError(message)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        # colcon, called in this folder, would run the setup.py of every submission outside of the sandbox.
+        # If colcon were called in this folder, it would run the setup.py of every submission outside of the sandbox.
         (folder / IGNORE_MARKER).touch()
         shutil.copytree(root / "course", folder / "course", ignore=_LEFTOVERS)
         for name in catalogue():
@@ -58,12 +58,12 @@ def make_class(folder: Path, roster: Path | None) -> int:
 
 
 def read_students(file: Path) -> list[dict[str, str]]:
-    """The students of a roster, each with COLUMNS. Raises UsageError where the file is none."""
+    """Return the students of a roster, each with COLUMNS. Raises UsageError if the file is not a roster."""
     rows = read_roster(file, COLUMNS[:1], COLUMNS[1:])
     for line, student in rows.items():
-        # nbgrader makes folders of it, and names with a + in the exchange.
+        # nbgrader makes folders of ids, and uses + in names in the exchange.
         if "/" in student["id"] or student["id"].startswith(".") or "+" in student["id"]:
-            why = 'nbgrader makes a folder of it: no "/", no "+", and no "." at its beginning'
+            why = 'nbgrader uses it as a folder name, so it must not contain "/" or "+" or begin with "."'
             message = f'{file}, line {line}: the id is "{shorten(student["id"])}"; {why}.'
             raise UsageError(message)
     return list(rows.values())

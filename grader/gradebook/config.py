@@ -1,4 +1,4 @@
-"""What course/nbgrader_config.py sets: nbgrader's folders onto ours, and our steps among its own."""
+"""The settings in course/nbgrader_config.py: nbgrader uses the course's folders, and additional steps of ours."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from grader.gradebook.folders import CLASS
 
 COURSE_ID = "ros2-topics"
 BUSY_S = 60
-"""How long the database may be somebody else's before nbgrader gives up."""
+"""How long nbgrader waits for a locked database."""
 
 
 def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Config, whose sections appear when named
-    """Set nbgrader up for the course in `root`, the folder that holds solutions/ and exercises/."""
+    """Set nbgrader up for the course in `root`, the folder with solutions/ and exercises/."""
     from nbgrader import preprocessors as steps
 
     from grader.gradebook.confined import CHECK_S, ConfinedExecute
     from grader.gradebook.export import ConfirmedCsv
     from grader.gradebook.feedback import GraderReasons, HideHiddenTests
-    from grader.gradebook.mend import MendCells
+    from grader.gradebook.restore import RestoreCells
     from grader.gradebook.steps import ReleaseFiles, StripSolutions
     from grader.gradebook.unconfirmed import SaveUnconfirmed
 
@@ -39,7 +39,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     (root / CLASS).mkdir(exist_ok=True)
     folders.db_url = f"sqlite:///{root / CLASS / 'gradebook.db'}?timeout={BUSY_S}"
 
-    # exercises/ is there already, in git: made again, not left as it is.
+    # exercises/ already exists in git. nbgrader makes it again.
     config.GenerateAssignment.force = True
     config.GenerateAssignment.preprocessors = [
         steps.LockCells,
@@ -53,11 +53,12 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
         steps.CheckCellMetadata,
         ReleaseFiles,
     ]
-    # `nbgrader validate` runs our notebooks with nbgrader's own limit of 30 s a cell: too little for four trials.
+    # `nbgrader validate` runs our notebooks with nbgrader's own limit of 30 s per cell. This is too short for four
+    # trials.
     config.Execute.timeout = CHECK_S
     config.Autograde.sanitize_preprocessors = [
         steps.ClearOutput,
-        MendCells,
+        RestoreCells,
         steps.DeduplicateIds,
         steps.OverwriteKernelspec,
         steps.OverwriteCells,
@@ -72,7 +73,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
         steps.AssignLatePenalties,
         steps.CheckCellMetadata,
     ]
-    # Whatever a student edits is graded as the student left it, and what is missing is not filled in by the solution.
+    # What a student changed is graded as it is, and solutions do not fill in missing parts.
     config.Autograde.exclude_overwriting = {
         step.name: [path for path in _files(step) if not path.endswith(".ipynb")]
         for step in sorted((root / "solutions").glob("*"))
@@ -88,7 +89,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
 
 
 def _see_own_commands() -> None:
-    """Put this Python's commands on PATH: nbgrader makes its database with one of them, alembic."""
+    """Put the commands of this Python on PATH, because nbgrader runs one of them (alembic) to create its database."""
     path, ours = os.environ.get("PATH", os.defpath), str(Path(sys.prefix, "bin"))
     if ours not in path.split(os.pathsep):
         os.environ["PATH"] = f"{path}{os.pathsep}{ours}"

@@ -1,7 +1,8 @@
-"""Autograde's kernels: each in a cell of its own (grader.sandbox), heard over sockets in a folder that both sides see.
+"""Autograde's kernels: each runs in a cell (grader.sandbox) and is reached over sockets in a shared folder.
 
-A notebook's cells are a student's code. A cell has no network but its own loopback, so the kernel is not reached over
-TCP but over ipc sockets; interrupts go as messages, since a signal would reach bubblewrap and not the kernel.
+The cells of a notebook are student code. A sandbox cell has only its own loopback network, so the kernel is reached
+over
+ipc sockets instead of TCP. Interrupts are sent as messages, because a signal would reach bubblewrap and not the kernel.
 """
 
 from __future__ import annotations
@@ -38,13 +39,13 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 CHECK_S = 300
-"""How long a cell of the instructor's may: it builds and runs a package, at wall time if need be."""
+"""The time limit for an instructor's cell (s). It builds and runs a package, perhaps in wall time."""
 MOST_OUTPUT = 4_000_000
-"""Characters of all outputs together; a notebook that prints more is ended."""
+"""Characters of all outputs together. A notebook that prints more is stopped."""
 
 
 class ConfinedKernelManager(AsyncKernelManager):
-    """Starts a kernel in a cell. `submission` is the folder that the kernel gets a copy of."""
+    """Start a kernel in a cell. The kernel gets a copy of the folder `submission`."""
 
     submission = Unicode("")
     trusted = Bool(default_value=False)
@@ -53,7 +54,7 @@ class ConfinedKernelManager(AsyncKernelManager):
 
     @property
     def kernel_spec(self) -> KernelSpec:
-        """The course's own, whatever the notebook asks for."""
+        """The course's own kernel, whatever the notebook names."""
         argv = interpreter(
             *("-m", "grader.notebook.confined", "{submission}", "-f", "{connection_file}"), searches=True
         ).argv
@@ -63,7 +64,7 @@ class ConfinedKernelManager(AsyncKernelManager):
         self._folder = tempfile.TemporaryDirectory(prefix="kernel-")
         sockets = Path(self._folder.name) / "sockets"
         sockets.mkdir()
-        # Whoever the cell runs as may write there; nobody else gets past the folder around it.
+        # The user of the cell can write there. The folder around it keeps all other users out.
         sockets.chmod(0o777)
         self.transport = "ipc"
         self.connection_file = str(sockets / "kernel.json")
@@ -79,7 +80,7 @@ class ConfinedKernelManager(AsyncKernelManager):
         argv = [word.replace("{submission}", str(copy)) for word in kernel_cmd]
         env, view = _environment(copy, Path(self.connection_file).parent)
         kw.pop("cwd", None)
-        # What a student writes to these would act on the instructor's terminal.
+        # Output of a student on these would control the instructor's terminal.
         kw |= {"env": env, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         limits = Limits()
         with call_filter() as filter_fd:
@@ -102,14 +103,14 @@ class ConfinedKernelManager(AsyncKernelManager):
 
 
 class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
-    """Runs a submitted notebook in a cell, to its end whatever becomes of the kernel: what did not run has an error."""
+    """Run a submitted notebook in a cell, to its end even if the kernel dies. Cells that did not run get an error."""
 
     trust_submissions = Bool(
         default_value=False,
-        help="Run submitted notebooks without a sandbox where there is none: on a machine that you can lose.",
+        help="Run submitted notebooks even without a sandbox, on a machine that you can lose.",
     ).tag(config=True)
 
-    cell_s = Integer(20, help="How long a student's own cell may run, in seconds.").tag(config=True)
+    cell_s = Integer(20, help="Time limit for a student's own cell, in seconds.").tag(config=True)
 
     def __init__(self, *arguments: Any, **keywords: Any) -> None:  # noqa: ANN401 - as the base class
         keywords.setdefault("kernel_manager_class", ConfinedKernelManager)
@@ -126,7 +127,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         try:
             nb, resources = super().preprocess(nb, resources, km)
         except (DeadKernelError, RuntimeError) as error:
-            # Its start was in the way, or its end.
+            # The kernel did not start or did not stop.
             self._ended = self._ended or str(error).partition("\n")[0]
             self.log.warning("The kernel ended: %s", self._ended)
             for cell in nb.cells:
@@ -137,12 +138,12 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         return nb, resources
 
     def create_kernel_manager(self) -> Any:  # noqa: ANN401 - as the base class
-        """The manager of this submission's kernel, whatever the notebook's metadata name."""
+        """Create the manager of this submission's kernel, whatever kernel the notebook's metadata name."""
         self.km = ConfinedKernelManager(submission=self._submission, trusted=self.trust_submissions, config=self.config)
         return self.km
 
     def preprocess_cell(self, cell: NotebookNode, resources: Any, index: int) -> tuple[NotebookNode, Any]:  # noqa: ANN401
-        """Run one cell, if the kernel is still to be had."""
+        """Run one cell, if the kernel is still alive."""
         if self._ended:
             if cell.cell_type == "code":
                 _mark(cell, self._ended)
@@ -158,7 +159,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
             return cell, resources
 
     def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> NotebookNode | None:
-        """Take a message of the kernel's, as long as all of them together are not too long."""
+        """Handle a message of the kernel, unless all of them together are too long."""
         if msg["msg_type"] in {"stream", "display_data", "execute_result", "error", "update_display_data"}:
             self._printed += len(str(msg["content"]))
             if self._printed > MOST_OUTPUT:
@@ -183,7 +184,10 @@ def _mark(cell: NotebookNode, why: str) -> None:
 
 
 def _honest(cell: NotebookNode) -> None:
-    """See that a cell which is to give its points has given a number that is one: silence would be full marks."""
+    """Replace the result of a cell that should give its points by an error if it is not a valid number.
+
+    nbgrader gives full marks to a cell without output.
+    """
     about = cell.get("metadata", {}).get("nbgrader", {})
     if not about.get("grade") or cell.cell_type != "code" or ".points(" not in cell.source:
         return
@@ -198,7 +202,7 @@ def _honest(cell: NotebookNode) -> None:
 
 
 def _copy(folder: Path, copy: Path) -> None:
-    """What of the submission can be read without trusting it; links that lead out of it are left out."""
+    """Copy the files of the submission that are safe to read. Links that lead out of it are left out."""
     found = read(tree.read_folder, folder)
     files = {path: data for path, data in found.files.items() if not path.endswith(".ipynb")}
     write_copy(Submission("", folder, files, (), "", frozenset(found.executable & files.keys())), copy)
@@ -210,7 +214,7 @@ def _environment(*folders: Path) -> tuple[dict[str, str], View]:
     package = Path(__file__).resolve().parent.parent
     exercises = course.parent / "exercises"
     shown = ros_view(ros, *(path for path in (package, course, exercises, folders[0]) if path.exists()))
-    # Solutions stand in the grader's tests too, and beside the course where it is installed.
+    # The grader's tests contain solutions too, and so does the folder next to the course if it is installed.
     hidden = [path for path in shown.hidden if path.name == "solutions"]
     hidden += [path for path in (package / "tests",) if path.is_dir()]
     view = View(shown.read_only, tuple(hidden), (folders[1],))

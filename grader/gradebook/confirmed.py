@@ -1,10 +1,11 @@
-"""What counts in nbgrader's gradebook: scores that the grader has confirmed, and manual grades. Nothing else.
+"""The scores that count in nbgrader's gradebook: those that the grader has confirmed, and manual grades.
 
-The output of an autograded cell comes from a kernel that runs a student's code, so it is provisional. For such a cell,
-`autograde` therefore writes 0 points and "needs manual grade" (unconfirmed.py), and `grader gradebook sync` replaces
-them by what the grader itself has found out. A score in the gradebook that no result of the grader stands behind is
-withheld: it becomes 0 points, and a person has to look at it. Manual grades and extra credit stay as they are.
-Assignments that are not exercises of this course are nbgrader's business.
+The output of an autograded cell comes from a kernel that runs student code, so its score is provisional. For such a
+cell, `autograde` writes 0 points and "needs manual grade" (unconfirmed.py). `grader gradebook sync` then replaces them
+by
+the grader's own score. A score without a result of the grader is withheld: it becomes 0 points, and a person has to
+look
+at it. Manual grades and extra credit stay unchanged. Other assignments than the exercises of this course do, too.
 """
 
 from __future__ import annotations
@@ -24,15 +25,15 @@ if TYPE_CHECKING:
 
 NOT_SYNCED = "not confirmed by `grader gradebook sync`"
 NOT_JUDGED = "the grader could not judge it"
-NO_CHECK = "no check of the grader stands for it"
+NO_CHECK = "no check of the grader belongs to it"
 
 Name = tuple[str, str]
-"""Student and exercise."""
+"""A student and an exercise."""
 
 
 @dataclass(frozen=True)
 class Unconfirmed:
-    """Cells of one submission that count 0 points until a person grades them, and why."""
+    """Cells of one submission that count 0 points until a person grades them, and the reason."""
 
     student: str
     step: str
@@ -41,7 +42,10 @@ class Unconfirmed:
 
 
 def withhold(grade: Any) -> None:  # noqa: ANN401 - nbgrader's Grade
-    """Let a cell count 0 points until it is confirmed or graded by hand. A manual grade and extra credit stand."""
+    """Set a cell to 0 points until it is confirmed or graded by hand.
+
+    A manual grade and extra credit stay unchanged.
+    """
     grade.auto_score = 0.0
     grade.needs_manual_grade = True
 
@@ -52,7 +56,7 @@ def withhold_unconfirmed(
     steps: Collection[str] = (),
     unread: Collection[Name] = (),
 ) -> list[Unconfirmed]:
-    """Withhold every score that is not confirmed; returns what counts 0 points now, as `unconfirmed` does."""
+    """Withhold every score that is not confirmed. Return the cells that count 0 points now, as `unconfirmed` does."""
     for _, _, grade, _ in _doubts(gradebook, results, steps, unread):
         if grade.auto_score != 0.0 or grade.manual_score is None:
             withhold(grade)
@@ -66,10 +70,11 @@ def unconfirmed(
     steps: Collection[str] = (),
     unread: Collection[Name] = (),
 ) -> list[Unconfirmed]:
-    """What no result of the grader stands behind, by exercise and student; manual grades are not among it.
+    """Return the cells that no result of the grader confirms, by exercise and student, without manual grades.
 
-    `steps`: these exercises, all when none is named. `unread`: submissions of which the stored results say nothing,
-    since they could not be read this time.
+    `steps` limits the exercises; all are used if it is empty. `unread` are submissions that could not be read this
+    time,
+    so their stored results do not count.
     """
     names: dict[tuple[str, str, str], list[str]] = {}
     for student, step, grade, why in _doubts(gradebook, results, steps, unread):
@@ -84,7 +89,7 @@ def _doubts(
     steps: Collection[str],
     unread: Collection[Name],
 ) -> Iterator[tuple[str, str, Any, str]]:
-    """(student, exercise, nbgrader's grade, why it is not confirmed)."""
+    """Yield (student, exercise, nbgrader's grade, why it is not confirmed)."""
     for student, step, submission in submissions_of(gradebook, steps):
         kept = None if (student, step) in unread else results.load(student, step)
         for grade in provisional_grades(submission):
@@ -94,7 +99,7 @@ def _doubts(
 
 
 def submissions_of(gradebook: Any, steps: Collection[str]) -> Iterator[tuple[str, str, Any]]:  # noqa: ANN401
-    """(student, exercise, nbgrader's submission) of all submissions to our exercises in the gradebook."""
+    """Yield (student, exercise, nbgrader's submission) for all submissions to our exercises in the gradebook."""
     wanted = [step for step in catalogue() if not steps or step in steps]
     assignments = {assignment.name: assignment for assignment in gradebook.assignments}
     for step in wanted:
@@ -104,7 +109,7 @@ def submissions_of(gradebook: Any, steps: Collection[str]) -> Iterator[tuple[str
 
 
 def provisional_grades(submission: Any) -> list[Any]:  # noqa: ANN401 - nbgrader's SubmittedAssignment
-    """The grades whose score autograde reads from a kernel's output: of code cells that are not solutions.
+    """Return the grades that autograde reads from a kernel's output: those of code cells that are not solutions.
 
     Those of the exercise's own notebook come first.
     """
@@ -117,7 +122,7 @@ def provisional_grades(submission: Any) -> list[Any]:  # noqa: ANN401 - nbgrader
 
 
 def _doubt(grade: Any, report: Report | None) -> str:  # noqa: ANN401 - nbgrader's Grade
-    """Why a score is not confirmed; empty where it is."""
+    """Return why a score is not confirmed, or an empty string."""
     if report is None:
         return NOT_SYNCED
     outcome = outcome_of(grade, report)
@@ -130,7 +135,7 @@ def _doubt(grade: Any, report: Report | None) -> str:  # noqa: ANN401 - nbgrader
 
 
 def outcome_of(grade: Any, report: Report) -> Outcome | None:  # noqa: ANN401 - nbgrader's Grade
-    """The outcome that a cell of the exercise's own notebook stands for; None for any other cell."""
+    """Return the outcome for a cell of the exercise's own notebook, or None for any other cell."""
     if grade.notebook.name != report.exercise:
         return None
     return next((outcome for outcome in report.outcomes if outcome.id == grade.name), None)

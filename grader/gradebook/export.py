@@ -1,4 +1,4 @@
-"""`nbgrader export`: only confirmed scores leave the gradebook, and whoever exports hears what is missing."""
+"""`nbgrader export`: only confirmed scores leave the gradebook, and the missing ones are reported."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from grader.gradebook.folders import CLASS, RESULTS
 
 
 class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
-    """nbgrader's table, of a gradebook in which everything provisional counts 0 points."""
+    """Export nbgrader's table. Every provisional score counts 0 points in it."""
 
     def export(self, gradebook: Any) -> None:  # noqa: ANN401 - as the base class
-        """Withhold what is not confirmed, tell it, and write the table."""
+        """Withhold scores that are not confirmed, report them, and write the table."""
         course = self.parent.coursedir
         results = Results(Path(course.root) / CLASS / RESULTS)
         unconfirmed = withhold_unconfirmed(gradebook, results)

@@ -1,4 +1,4 @@
-"""Our steps of `nbgrader generate_feedback`: the grader's own reasons, and nothing of what is hidden."""
+"""Our steps of `nbgrader generate_feedback`: they add the grader's reasons and remove hidden tests."""
 
 from __future__ import annotations
 
@@ -23,15 +23,17 @@ Resources = dict[str, Any]
 
 
 class HideHiddenTests(ClearHiddenTests):  # type: ignore[misc, unused-ignore]
-    """Takes hidden tests out of the feedback: their lines, and all that a kernel that has seen them has said.
+    """Remove hidden tests from the feedback: their lines, and all output of a kernel that has seen them.
 
-    A kernel runs a student's code. It can keep the source of a hidden test, and print it below any cell: a later one,
-    an instructor's by a hook, an earlier one by an update of its display, or in a widget. So where a notebook has
-    hidden tests, no output of its kernel is shown.
+    A kernel runs student code. This code can store the source of a hidden test and print it below any cell: below a
+    later
+    one, below an instructor's cell by a hook, below an earlier one by updating its display, or in a widget. So if a
+    notebook
+    has hidden tests, no output of its kernel is shown.
     """
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
-        """Hide what is hidden in the notebook."""
+        """Remove hidden tests from the notebook."""
         if any(self._is_hidden(cell) for cell in nb.cells):
             nb.metadata.pop("widgets", None)
             for cell in nb.cells:
@@ -43,9 +45,9 @@ class HideHiddenTests(ClearHiddenTests):  # type: ignore[misc, unused-ignore]
     def preprocess_cell(
         self, cell: NotebookNode, resources: Resources, cell_index: int
     ) -> tuple[NotebookNode, Resources]:
-        """Hide what is hidden in one cell."""
+        """Remove hidden tests from one cell."""
         if not self._is_hidden(cell):
-            return cell, resources  # a student's own words may be whatever they are
+            return cell, resources  # a student's own cell may contain anything
         cell, resources = super().preprocess_cell(cell, resources, cell_index)
         if cell.cell_type == "code":
             cell.outputs = [_text(f"Hidden check: {_points(cell)}")]
@@ -66,10 +68,10 @@ def _points(cell: NotebookNode) -> str:
 
 
 class GraderReasons(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """Puts the grader's own reasons below the cells of checks, in place of what the kernel said; after sync."""
+    """Replace the kernel's output below the cells of checks by the grader's own reasons, after sync."""
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
-        """Replace these outputs, if the submission was synced."""
+        """Replace these outputs if the submission was synced."""
         about = resources["nbgrader"]
         folder = Path(self.parent.parent.coursedir.root) / CLASS / RESULTS
         result = Results(folder).load(about["student"], about["assignment"])

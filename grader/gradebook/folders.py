@@ -1,4 +1,4 @@
-"""The folders of a class, as the nbgrader_config.py of a course names them."""
+"""The folders of a class, as the nbgrader_config.py of a course sets them."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
 
 CONFIG = "nbgrader_config.py"
 CLASS = "class"
-"""The folder of a class, which git ignores: submitted/, autograded/, feedback/, reports/, gradebook.db."""
+"""The folder of a class, which git ignores: submitted/, autograded/, feedback/, reports/ and gradebook.db."""
 RESULTS = "results"
-"""What the grader itself found out, below the folder of the class: see grader/classroom/results.py."""
+"""The folder of the grader's own results, below the folder of the class. See grader/classroom/results.py."""
 HANDED_IN = "handed-in"
-"""Submissions whose package is partly in their notebook, put together; below the folder of the class."""
+"""The folder of submissions that were completed with files from their notebooks, below the folder of the class."""
 
 
 @dataclass(frozen=True)
 class ClassFolders:
-    """A class: nbgrader's course directory, with our folders beside its own."""
+    """The folders of a class: nbgrader's course directory, and those of the grader next to it."""
 
     course: Any
     config: Any
@@ -35,19 +35,19 @@ class ClassFolders:
         return Path(self.course.root) / CLASS / RESULTS
 
     def submitted(self, student: str, step: str) -> Path:
-        """What a student handed in for a step."""
+        """Return the folder that a student handed in for a step."""
         return Path(self.course.format_path(self.course.submitted_directory, student, step))
 
     def handed_in(self, student: str, step: str) -> Path:
-        """The same, put together with what its notebook writes."""
+        """Return the folder of the same submission, completed with the files that its notebook writes."""
         return Path(self.course.root) / CLASS / HANDED_IN / student / step
 
     def autograded(self, student: str, step: str) -> Path:
-        """The notebook that autograde has run; it may not be there."""
+        """Return the path of the notebook that autograde ran. It may not exist."""
         return Path(self.course.format_path(self.course.autograded_directory, student, step)) / f"{step}.ipynb"
 
     def submissions(self, steps: Sequence[str]) -> list[tuple[str, str]]:
-        """(student, step) of all that was collected. Raises UsageError for a step that there is not."""
+        """Return (student, step) for everything that was collected. Raises UsageError for an unknown step."""
         wanted = [find_exercise(step).id for step in steps] or list(catalogue())
         root = Path(self.course.root) / self.course.submitted_directory
         students = sorted(
@@ -60,21 +60,21 @@ def _is_folder(path: Path) -> bool:
     try:
         return path.is_dir()
     except OSError:
-        return True  # It may not be looked at: whoever reads it says so.
+        return True  # The folder is not readable. The error is reported when it is read.
 
 
 def open_class(folder: Path | None) -> ClassFolders:
-    """The class whose nbgrader_config.py is in `folder` (this one when None) or its course/.
+    """Open the class whose nbgrader_config.py is in `folder` or its course/. None means the current folder.
 
     Raises:
-        UsageError: there is no nbgrader_config.py.
-        MachineError: nbgrader is not installed.
+       UsageError: there is no nbgrader_config.py.
+       MachineError: nbgrader is not installed.
     """
     tried = [folder or Path(), (folder or Path()) / "course"]
     found = next((each for each in tried if (each / CONFIG).is_file()), None)
     if found is None:
         message = (
-            f"There is no {CONFIG} in {folder or Path.cwd()}: go to the course's folder, or name it with --course. "
+            f"There is no {CONFIG} in {folder or Path.cwd()}. Go to the course's folder, or name it with --course. "
             "`grader class new DIR` makes one."
         )
         raise UsageError(message)
@@ -82,7 +82,7 @@ def open_class(folder: Path | None) -> ClassFolders:
         from nbgrader.coursedir import CourseDirectory
         from traitlets.config.loader import PyFileConfigLoader
     except ImportError as error:
-        message = "nbgrader is not installed here. `make notebooks` brings it."
+        message = "nbgrader is not installed. Run `make notebooks` to install it."
         raise MachineError(message) from error
     config = PyFileConfigLoader(CONFIG, path=str(found.resolve())).load_config()
     return ClassFolders(CourseDirectory(config=config), config)

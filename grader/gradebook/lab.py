@@ -1,6 +1,6 @@
-"""nbgrader's tools in JupyterLab are an instructor's: an extension of its server hides them from learners.
+"""An extension of JupyterLab's server that hides nbgrader's tools for instructors from learners.
 
-Jupyter finds it by jupyter_server.json, which the set-up puts below etc/jupyter.
+Jupyter finds it by jupyter_server.json, which the set-up copies below etc/jupyter.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ def _jupyter_server_extension_points() -> list[dict[str, str]]:
 
 
 def _load_jupyter_server_extension(app: Any) -> None:  # noqa: ANN401 - Jupyter's ServerApp, which has no types
-    """Hide them, unless JupyterLab starts in the folder of a class, where nbgrader reads its configuration."""
+    """Hide the tools, unless JupyterLab starts in the folder of a class, where nbgrader reads its configuration."""
     if not Path(CONFIG).is_file():
         app.web_app.settings["page_config_hook"] = _hidden
 
 
 def _hidden(_handler: object, page_config: dict[str, Any]) -> dict[str, Any]:
-    """JupyterLab's settings of a page, with nbgrader's extension disabled."""
+    """Return JupyterLab's page settings with nbgrader's extension disabled."""
     return {**page_config, "disabledExtensions": [*page_config.get("disabledExtensions", []), EXTENSION]}

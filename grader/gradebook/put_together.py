@@ -1,8 +1,8 @@
-"""What is graded of a submission: its package as it was handed in, with what only the notebook holds put in.
+"""Complete a submitted package with the files that only its notebook contains.
 
-A student may have written a node in a cell and never run it, or have handed in nothing but the notebook. The cell's
-text then counts, where the file beside it is missing or still the starting point's. Nothing is run for that, and
-nothing that a kernel wrote under autograde is looked at.
+A student may have written a node in a cell and never run it, or may have handed in only the notebook. The text of the
+cell then counts if the file next to the notebook is missing or still the starting point. Nothing is run for this, and
+files that a kernel wrote under autograde do not count.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 
 def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:
-    """The folder to grade: the submission's own, or `together`, where it is written when its notebook says more.
+    """Return the folder to grade: `submitted`, or `together`, to which the completed package is written.
 
     Raises:
-        UnreadableError: it cannot be read.
-        MachineError: it cannot be written.
+        UnreadableError: the submission cannot be read.
+        MachineError: `together` cannot be written.
     """
     if together.exists():
         shutil.rmtree(together)
@@ -43,7 +43,7 @@ def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:
 
 
 def _together(exercise: Exercise, submitted: Path) -> Submission | None:
-    """The submission with what its notebook says; None where the notebook says nothing more."""
+    """Return the submission completed by its notebook, or None if the notebook adds nothing."""
     found = tree.read_folder(submitted)
     notebook = found.files.get(f"{exercise.id}.ipynb")
     parts = _worked_on(exercise, notebook) if notebook else []
@@ -54,7 +54,7 @@ def _together(exercise: Exercise, submitted: Path) -> Submission | None:
 
 
 def _worked_on(exercise: Exercise, notebook: bytes) -> list[Part]:
-    """The files that the notebook's cells write, but those that still hold the starting point."""
+    """Return the files that the notebook's cells write, without those that are still the starting point."""
     try:
         cells = json.loads(notebook)["cells"]
         sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
@@ -69,7 +69,7 @@ def _start(exercise: Exercise, path: str) -> str | None:
 
 
 def _with(exercise: Exercise, files: Mapping[str, bytes], parts: list[Part]) -> dict[str, bytes] | None:
-    """The files with those parts that count; None where the submission is whole without them."""
+    """Return the files with the parts that count, or None if no part counts."""
     whole = {path: data for path, data in files.items() if not path.endswith(".ipynb")}
     if parts and exercise.package and not any(path.rpartition("/")[2] in PACKAGE_FILES for path in whole):
         start = tree.read_folder(starting_point(exercise)).files

@@ -1,8 +1,9 @@
-"""`grader gradebook sync` and `compare`: the scores that count, and where a kernel said otherwise.
+"""`grader gradebook sync` and `compare`: the scores that count, and where the kernel's scores differ.
 
-What a kernel says of itself is provisional. These scores come from the submitted package itself, graded in the sandbox,
-and go into nbgrader's gradebook through its API. What the grader cannot judge counts 0 points and needs a manual grade
-(confirmed.py). A manual grade is never touched.
+Scores from a kernel are provisional. The scores here come from the submitted package, graded in the sandbox, and are
+written into nbgrader's gradebook through its API. A check that the grader cannot judge counts 0 points and needs a
+manual
+grade (confirmed.py). A manual grade is never changed.
 """
 
 from __future__ import annotations
@@ -40,24 +41,26 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Synced:
-    """What sync did: `changed` scores of so many submissions; `unjudged` ones the machine could not grade."""
+    """The result of sync: how many scores changed, how many submissions there are, and what was not judged."""
 
     submissions: int
     changed: int
     kept: int
-    """Manual grades, which stand."""
+    """Manual grades, which were not changed."""
     unjudged: tuple[str, ...]
     elsewhere: tuple[str, ...]
-    """Checks that no cell of the notebook stands for: in the results, and not in the gradebook."""
+    """Checks that have a result but no cell in the notebook, so they are not in the gradebook."""
     unconfirmed: tuple[Unconfirmed, ...]
-    """What counts 0 points until somebody grades it by hand."""
+    """The cells that count 0 points until a person grades them."""
 
 
 @dataclass(frozen=True)
 class Difference:
-    """A check on which kernel and grader disagree; `kernel` is None where the notebook was not run to its end.
+    """A check on which kernel and grader disagree.
 
-    `grader` is None where the grader has confirmed nothing: the check counts 0 points, for the reason `why`.
+    `kernel` is None if the notebook was not run to its end. `grader` is None if the grader has confirmed nothing. The
+    check
+    then counts 0 points, for the reason `why`.
     """
 
     student: str
@@ -78,11 +81,11 @@ def sync(
     say: Callable[[str], None],
     tell: Callable[[str], None],
 ) -> Synced:
-    """Grade what was collected and not graded yet, and write every score into the gradebook.
+    """Grade collected submissions that have no valid result, and write every score into the gradebook.
 
     Raises:
-        UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
-        MachineError: nothing can be graded or written; what is not confirmed counts 0 points all the same.
+       UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
+       MachineError: nothing can be graded or written. Scores that are not confirmed still count 0 points.
     """
     from nbgrader.api import Gradebook
     from sqlalchemy.exc import SQLAlchemyError
@@ -92,11 +95,12 @@ def sync(
     results = Results(folders.results)
     with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
         _require_assignments(gradebook, {step for _, step in submissions})
-        # Now, so that nothing provisional is left where grading is interrupted.
+        # This is done first, so that no provisional score stays if grading is interrupted.
         withhold_unconfirmed(gradebook, results, wanted)
     if not submissions:
         message = (
-            f"Nothing was collected into {folders.course.submitted_directory} yet: `nbgrader collect STEP`, or copy."
+            f"Nothing was collected into {folders.course.submitted_directory} yet. Run `nbgrader collect STEP`, or "
+            "copy submissions."
         )
         raise UsageError(message)
     found, why = _put_together(folders, submissions)
@@ -111,7 +115,7 @@ def sync(
             try:
                 elsewhere.update(dict.fromkeys(_write(gradebook, folders, result, tally)))
             except (SQLAlchemyError, ValueError) as error:
-                # A name that the database cannot hold, as one that is not UTF-8.
+                # The database cannot store a name that is not UTF-8.
                 gradebook.db.rollback()
                 why.setdefault(name, f"its scores could not be written: {_in_words(error)}")
         withheld = withhold_unconfirmed(gradebook, results, wanted, why)
@@ -124,7 +128,7 @@ def sync(
 
 
 def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
-    """Where the kernel that autograde ran and the grader disagree, and what the grader has not confirmed."""
+    """Return where autograde's kernel and the grader disagree, and scores that the grader has not confirmed."""
     from nbgrader.api import Gradebook
 
     kept = Results(folders.results)
@@ -150,7 +154,7 @@ def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
 def _put_together(
     folders: ClassFolders, submissions: Sequence[tuple[str, str]]
 ) -> tuple[tuple[Found, ...], dict[tuple[str, str], str]]:
-    """What is graded of each submission, and why those that could not be read are not."""
+    """Return the submissions to grade, and why some of them could not be read."""
     found: list[Found] = []
     why: dict[tuple[str, str], str] = {}
     for student, step in submissions:
@@ -159,7 +163,7 @@ def _put_together(
             graded = graded_folder(exercise, submitted, folders.handed_in(student, step))
             found.append(Found(student, step, graded))
         except Exception as error:
-            # What a student wrote stops nobody else's submission, whatever it does to our reading.
+            # An error in a student's files must not stop the grading of others.
             if _of_the_machine(error):
                 raise
             why[student, step] = f"it could not be read ({_in_words(error)})"
@@ -168,7 +172,7 @@ def _put_together(
 
 
 def _of_the_machine(error: BaseException | None) -> bool:
-    """Whether the disk or the system failed, and not what a student handed in."""
+    """Return whether the disk or the system failed, and not the student's files."""
     while error is not None:
         if isinstance(error, OSError) and error.errno in OF_THE_DISK:
             return True
@@ -177,7 +181,7 @@ def _of_the_machine(error: BaseException | None) -> bool:
 
 
 def _in_words(error: BaseException) -> str:
-    """The error on one line; the cause where it was wrapped."""
+    """Return the error on one line, with its cause if it was wrapped."""
     cause = error.__cause__ or error
     text = (cause.strerror if isinstance(cause, OSError) else str(cause)) or type(cause).__name__
     return shorten(text.rstrip("."), 120)
@@ -192,7 +196,7 @@ def _require_assignments(gradebook: Any, steps: set[str]) -> None:  # noqa: ANN4
 
 
 def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter[str]) -> list[str]:  # noqa: ANN401
-    """Write one submission's scores; returns the checks that have no cell."""
+    """Write the scores of one submission. Return the checks that have no cell."""
     student, step = result.student, result.report.exercise
     gradebook.update_or_create_student(student)
     timestamp = folders.course.get_existing_timestamp(str(folders.submitted(student, step)))
@@ -217,7 +221,7 @@ def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter
             grade.needs_manual_grade = outcome.status is Status.ERROR
         else:
             tally["kept"] += 1
-            # Whoever graded by hand should look again where there is something new to see.
+            # If there is something new, the person who graded by hand should look again.
             grade.needs_manual_grade = grade.needs_manual_grade or changed
     gradebook.db.commit()
     _late(folders, student, step)
@@ -225,7 +229,7 @@ def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter
 
 
 def _late(folders: ClassFolders, student: str, step: str) -> None:
-    """Let nbgrader work out the penalty for a late submission anew, from these scores."""
+    """Let nbgrader calculate the penalty for a late submission again, from these scores."""
     from nbformat.v4 import new_notebook
     from nbgrader.preprocessors import AssignLatePenalties
 
@@ -234,7 +238,7 @@ def _late(folders: ClassFolders, student: str, step: str) -> None:
 
 
 def _kernel_scores(notebook: Path) -> dict[str, float | None] | None:
-    """What each grade cell of an autograded notebook is worth by its own output; None without the notebook."""
+    """Return the points of each grade cell according to its own output; None if there is no autograded notebook."""
     try:
         return read(_scores_in, notebook)
     except UnreadableError:
@@ -255,5 +259,5 @@ def _kernel_score(cell: Any) -> float | None:  # noqa: ANN401 - nbformat's Noteb
     try:
         score: float | None = determine_grade(cell)[0]
     except (ValueError, AttributeError, KeyError, TypeError):
-        return None  # an output of the kernel's that nbgrader makes nothing of
+        return None  # nbgrader does not understand this output of the kernel
     return score

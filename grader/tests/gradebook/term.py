@@ -1,4 +1,4 @@
-"""A class that is played with the real nbgrader: an instructor's commands, and what students hand in."""
+"""A class with the real nbgrader: an instructor's commands, and the submissions of students."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Notebook = dict[str, Any]
 
 
 class Term:
-    """One class in a folder of its own, with an exchange of its own."""
+    """A class in a folder of its own, with an exchange of its own."""
 
     def __init__(self, folder: Path) -> None:
         self.root = folder / "course-of-2027"
@@ -43,7 +43,7 @@ class Term:
             )
 
     def run(self, *command: str, fails: bool = False, cwd: Path | None = None) -> str:
-        """Run a command of nbgrader, or of ours with "grader" first; its output, both streams."""
+        """Run a command of nbgrader, or of the grader if the first word is "grader". Return both output streams."""
         module = command[1:] if command[0] == "grader" else ("nbgrader", *command)
         argv = [sys.executable, "-m", "grader.cli" if command[0] == "grader" else module[0]]
         argv += module if command[0] == "grader" else module[1:]
@@ -56,19 +56,19 @@ class Term:
         return said
 
     def generate(self) -> None:
-        """Make the assignment, and release it into the exchange."""
+        """Make the assignment and release it into the exchange."""
         self.run("generate_assignment", STEP)
         self.run("release_assignment", STEP)
 
     def hand_in(self, student: str, change: Callable[[Path], None], at: str = FIRST) -> None:
-        """Put a submission into the exchange as `nbgrader submit` lays it: the released folder, after `change`."""
+        """Put a submission into the exchange like `nbgrader submit`: the released folder after `change`."""
         folder = self.exchange / "ros2-topics" / "inbound" / f"{student}+{STEP}+{at}"
         shutil.copytree(self.root / "exercises" / STEP, folder)
         change(folder)
         (folder / "timestamp.txt").write_text(at)
 
     def grade(self) -> str:
-        """Collect, autograde, sync, feedback; returns what sync said."""
+        """Collect, autograde, sync and make feedback. Return the output of sync."""
         self.run("collect", STEP, "--update")
         self.run("autograde", STEP)
         said = self.run("grader", "gradebook", "sync", STEP)
@@ -76,7 +76,7 @@ class Term:
         return said
 
     def exported(self) -> dict[str, tuple[float, float, float]]:
-        """Student -> raw score, penalty, score, as `nbgrader export` writes them."""
+        """Return student -> (raw score, penalty, score), as `nbgrader export` writes them."""
         file = self.root / "grades.csv"
         self.run("export", "--to", str(file))
         with file.open(newline="") as opened:
@@ -92,7 +92,7 @@ class Term:
         return Gradebook(f"sqlite:///{self.root}/class/gradebook.db", "ros2-topics")
 
     def feedback(self, student: str) -> str:
-        """The feedback's HTML."""
+        """Return the HTML of the feedback."""
         return (self.root / "class" / "feedback" / student / STEP / f"{STEP}.html").read_text("utf-8")
 
 
@@ -102,7 +102,7 @@ def solve(folder: Path) -> None:
 
 
 def too_slow(folder: Path) -> None:
-    """Our node, with half the speed: 55 of 100 points."""
+    """Write our node with half the speed: 55 of 100 points."""
     text = (SOLUTION / NODE).read_text().replace("linear.x = 2.0", "linear.x = 1.0")
     (folder / NODE).write_text(text)
 
@@ -120,7 +120,7 @@ def edit(folder: Path, change: Callable[[list[Notebook]], list[Notebook]]) -> No
 
 
 def with_cell(folder: Path, source: str) -> None:
-    """Put a cell right behind the one that loads everything."""
+    """Insert a cell after the one that loads everything."""
     cell: Notebook = {
         "cell_type": "code",
         "id": "mine",

@@ -18,7 +18,7 @@ def roster(folder: Path, text: str) -> Path:
     return file
 
 
-def test_a_class_has_its_students_and_nothing_of_others(tmp_path: Path) -> None:
+def test_a_class_has_its_students_and_no_other_data(tmp_path: Path) -> None:
     file = roster(tmp_path, "id,last_name,first_name,room\nada,Lovelace,Ada,12\nbob,,,\n")
     assert make_class(tmp_path / "new", file) == 2
     folders = open_class(tmp_path / "new")  # its course/ is found
@@ -46,15 +46,15 @@ def test_a_class_has_its_students_and_nothing_of_others(tmp_path: Path) -> None:
     [
         ("name\nada\n", 'name the columns "id"'),
         ("id\nada\n\nb/c\n", 'line 4: the id is "b/c"'),
-        ("id\n../ada\n", "nbgrader makes a folder of it"),
-        ("id\na+b\n", "nbgrader makes a folder of it"),
+        ("id\n../ada\n", "nbgrader uses it as a folder name"),
+        ("id\na+b\n", "nbgrader uses it as a folder name"),
     ],
 )
-def test_a_roster_that_is_none_is_told(tmp_path: Path, text: str, why: str) -> None:
+def test_an_invalid_roster_is_a_usage_error(tmp_path: Path, text: str, why: str) -> None:
     with pytest.raises(UsageError, match=why):
         read_students(roster(tmp_path, text))
 
 
-def test_a_folder_without_a_course_is_told(tmp_path: Path) -> None:
+def test_a_folder_without_a_course_is_a_usage_error(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"There is no nbgrader_config\.py"):
         open_class(tmp_path)

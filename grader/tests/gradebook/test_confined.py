@@ -1,4 +1,4 @@
-"""Autograde's kernels see their submission, the course and ROS 2, and nothing else of the machine."""
+"""Autograde's kernels see their submission, the course and ROS 2, and no other part of the machine."""
 
 from __future__ import annotations
 
@@ -41,15 +41,15 @@ def notebook(submission: Path) -> Iterator[Notebook]:
 
 def test_a_kernel_in_a_cell(notebook: Notebook, submission: Path, tmp_path: Path) -> None:
     assert notebook.run("print(open('package/node.py').read())") == "mine\n\n"
-    # What leads out of the submission was not even copied.
+    # A link that leads out of the submission was not even copied.
     assert notebook.run("import os; print(sorted(os.listdir()))") == "['ipykernel.py', 'package']\n"
     assert notebook.run(f"print(os.path.exists({str(tmp_path / 'secret')!r}))") == "False\n"
     solutions = course_folder().parent / "solutions"
     assert notebook.run(f"print(os.path.exists({str(solutions)!r}), os.path.exists('/root'))").startswith("False ")
-    # What it writes stays with it.
+    # Changes stay in the cell.
     assert notebook.run("open('package/node.py', 'w').write('changed')") == "7"
     assert (submission / "package" / "node.py").read_text() == "mine\n"
-    # There is no network but its own.
+    # The cell has no network except its own.
     said = notebook.run("import socket; socket.create_connection(('192.0.2.1', 80), 5)")
     assert "unreachable" in said
     assert "4" in notebook.run("import rclpy; print(2 + 2)")

@@ -1,4 +1,4 @@
-"""Nothing of a hidden test reaches feedback, wherever a kernel that has run it prints what it says."""
+"""Hidden tests do not reach the feedback, wherever a kernel that ran them prints them."""
 
 from __future__ import annotations
 
@@ -49,14 +49,14 @@ def fed_back(*cells: Any, **metadata: Any) -> str:  # noqa: ANN401
     ],
     ids=["its own", "a later cell", "an earlier cell", "an instructor's cell", "another check", "html"],
 )
-def test_no_output_of_a_kernel_that_has_seen_a_hidden_test_is_shown(cells: tuple[Any, ...]) -> None:
+def test_no_output_of_a_kernel_that_ran_a_hidden_test_is_shown(cells: tuple[Any, ...]) -> None:
     said = fed_back(*cells)
     assert SECRET not in said
     assert "4711" not in said
     assert "Hidden check:" in said
 
 
-def test_neither_widgets_nor_counters_tell_it() -> None:
+def test_widgets_and_counters_do_not_reveal_a_hidden_test() -> None:
     counts = cell("my = 1")
     counts.execution_count = 4711
     widgets = {"application/vnd.jupyter.widget-state+json": {"state": {"x": {"state": {"value": SECRET}}}}}
@@ -65,7 +65,7 @@ def test_neither_widgets_nor_counters_tell_it() -> None:
     assert "4711" not in said
 
 
-def test_points_are_told_in_the_place_of_outputs() -> None:
+def test_points_replace_the_outputs() -> None:
     said = fed_back(cell(HIDDEN, printed(), grade=True, score=0.5), cell("shown", printed(), grade=True, score=2.0))
     assert "Hidden check: 0.5 of 2 points" in said
     assert "2 of 2 points" in said
@@ -75,6 +75,6 @@ def test_without_hidden_tests_a_students_outputs_stay() -> None:
     assert "my words" in fed_back(cell("my = 1", printed("my words")), cell("shown", grade=True, score=2.0))
 
 
-def test_a_students_own_cell_that_looks_hidden_hides_nothing_and_stops_nothing() -> None:
+def test_marks_of_hidden_tests_in_a_students_cell_have_no_effect() -> None:
     said = fed_back(cell("### BEGIN HIDDEN TESTS", printed("my words")), cell("x ### END HIDDEN TESTS"))
     assert "my words" in said

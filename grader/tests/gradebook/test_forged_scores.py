@@ -1,4 +1,4 @@
-"""A score that the grader has not confirmed counts nothing: real nbgrader, its real database, notebooks that forge."""
+"""A score that the grader has not confirmed does not count: the real nbgrader and database, with forging notebooks."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ class Verdict:
 def check(step):
     return Verdict()
 """
-"""Points that autograde believes: each is at most what its cell is worth."""
+"""Points that autograde believes, because each is at most what its cell is worth."""
 ANOTHERS = "homework"
-"""An assignment in the same gradebook that is no exercise of this course."""
+"""An assignment in the same gradebook that is not an exercise of this course."""
 
 
 def forge(folder: Path) -> None:
@@ -46,7 +46,7 @@ def forge(folder: Path) -> None:
 
 
 def unreadable(folder: Path) -> None:
-    """Forged too, and with a cell whose file lies below another file."""
+    """A forging notebook with an additional cell whose file would lie below another file."""
     forge(folder)
     edit(
         folder,
@@ -84,7 +84,7 @@ def submit(term: Term, student: str, change: Callable[[Path], None]) -> None:
 
 
 def grades(term: Term, student: str) -> dict[str, tuple[float | None, float | None, bool]]:
-    """Check -> automatic score, manual score, whether a person has to look at it, as nbgrader's database has them."""
+    """Return check -> (automatic score, manual score, needs manual grade) from nbgrader's database."""
     with term.gradebook() as gradebook:
         submission = gradebook.find_submission(STEP, student)
         return {
@@ -99,7 +99,7 @@ def withheld(term: Term, student: str) -> bool:
 
 
 def points_of(term: Term, assignment: str = STEP) -> dict[str, float]:
-    """What the exported table says."""
+    """Return the exported table."""
     import csv
 
     file = term.root / "grades.csv"
@@ -111,7 +111,7 @@ def points_of(term: Term, assignment: str = STEP) -> dict[str, float]:
 
 
 def sync_with_an_error_for(student: str, term: Term, monkeypatch: pytest.MonkeyPatch) -> Synced:
-    """Sync, where the machine fails while this student's submission is graded."""
+    """Sync while the machine fails for this student's submission."""
 
     def failing(asked: Asked, found: tuple[Found, ...], say: Any, tell: Any) -> list[Result]:  # noqa: ANN401
         graded = grade_found(asked, tuple(each for each in found if each.student != student), say, tell)
@@ -135,20 +135,20 @@ def term(tmp_path: Path) -> Term:
     return term
 
 
-def test_a_forged_score_counts_nothing_at_any_time(term: Term, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_forged_score_never_counts(term: Term, monkeypatch: pytest.MonkeyPatch) -> None:
     submit(term, "honest", too_slow)
     for student, change in (("forger", forge), ("gone", forge), ("unreadable", unreadable)):
         submit(term, student, change)
     with_another_assignment(term)
     term.run("autograde", STEP)
 
-    # Before sync: the kernels' words are nowhere, and the gradebook asks for a person.
+    # Before sync, no score of a kernel is stored, and the gradebook needs manual grades.
     assert all(withheld(term, student) for student in ("honest", "forger", "gone", "unreadable"))
     assert points_of(term) == {"honest": 0, "forger": 0, "gone": 0, "unreadable": 0}
     said = term.run("grader", "gradebook", "compare")
     assert f"forger {STEP} circle: kernel 25, grader 0, needs manual grading (not confirmed" in said
 
-    # Sync: the machine fails for one, another's folder is gone, a third cannot be read.
+    # In this sync, the machine fails for one student, a second one's folder is gone, and a third one's cannot be read.
     shutil.rmtree(term.root / "class" / "submitted" / "gone")
     done = sync_with_an_error_for("forger", term, monkeypatch)
     assert done.unjudged == ("forger",)
@@ -165,7 +165,7 @@ def test_a_forged_score_counts_nothing_at_any_time(term: Term, monkeypatch: pyte
     assert f"gone {STEP} circle: kernel 25, grader 0, needs manual grading" in said
     assert "honest" not in said
 
-    # A person's grade stands, and is not withheld.
+    # A manual grade counts and is not withheld.
     with term.gradebook() as gradebook:
         for student, manual in (("forger", 7.0), ("honest", 20.0)):
             grade = gradebook.find_grade("circle", STEP, STEP, student)
@@ -177,18 +177,18 @@ def test_a_forged_score_counts_nothing_at_any_time(term: Term, monkeypatch: pyte
     assert points_of(term) == with_manual
     assert grades(term, "forger")["circle"] == (0, 7, False)
 
-    # A new autograde after a sync: the kernel's word is provisional again; what a person gave stands.
+    # After a new autograde, the kernel's score is provisional again, and the manual grade stays.
     term.run("autograde", STEP, "--student", "honest", "--force")
     term.run("autograde", STEP, "--student", "forger", "--force")
     again = points_of(term)
     assert (again["forger"], again["honest"]) == (7, 20)
     assert grades(term, "forger")["start"] == (0, None, True)
 
-    # What is none of ours is as nbgrader left it.
+    # Assignments of others stay as nbgrader left them.
     assert points_of(term, ANOTHERS) == {"honest": 3, "forger": 0, "gone": 0, "unreadable": 0}
 
 
-def test_a_gradebook_of_before_is_put_right_by_an_export_alone(term: Term) -> None:
+def test_an_export_alone_corrects_an_older_gradebook(term: Term) -> None:
     submit(term, "forger", unchanged)
     with term.gradebook() as gradebook:
         gradebook.add_student("forger")

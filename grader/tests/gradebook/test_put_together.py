@@ -34,9 +34,9 @@ def start(path: str) -> str:
 @pytest.mark.parametrize(
     ("cell", "node", "graded"),
     [
-        ("mine\n", start(NODE), "mine\n"),  # written in the cell, and never run
-        ("mine\n", "edited later\n", "edited later\n"),  # the file as the student left it
-        (start(NODE), "mine\n", "mine\n"),  # the cell was never touched
+        ("mine\n", start(NODE), "mine\n"),  # written in the cell but never run
+        ("mine\n", "edited later\n", "edited later\n"),  # the file with the student's changes
+        (start(NODE), "mine\n", "mine\n"),  # the cell was never changed
     ],
 )
 def test_which_text_is_graded(tmp_path: Path, cell: str, node: str, graded: str) -> None:
@@ -48,18 +48,18 @@ def test_which_text_is_graded(tmp_path: Path, cell: str, node: str, graded: str)
     assert not (folder == tmp_path / "out" and (folder / f"{CIRCLE.id}.ipynb").exists())
 
 
-def test_a_notebook_alone_is_put_on_the_starting_point(tmp_path: Path) -> None:
+def test_a_notebook_alone_is_completed_with_the_starting_point(tmp_path: Path) -> None:
     folder = graded_folder(CIRCLE, handed_in(tmp_path / "in", "mine", {}), tmp_path / "out")
     assert (folder / NODE).read_text() == "mine\n"
     assert (folder / "my_robot_controller/setup.py").read_text() == start("my_robot_controller/setup.py")
 
 
-def test_a_notebook_that_nobody_touched_is_no_package(tmp_path: Path) -> None:
+def test_an_unchanged_notebook_is_not_a_package(tmp_path: Path) -> None:
     submitted = handed_in(tmp_path / "in", start(NODE), {})
     assert graded_folder(CIRCLE, submitted, tmp_path / "out") == submitted
 
 
-def test_what_was_put_together_before_does_not_stay(tmp_path: Path) -> None:
+def test_an_earlier_completed_folder_is_replaced(tmp_path: Path) -> None:
     submitted = handed_in(tmp_path / "in", "mine", {})
     assert graded_folder(CIRCLE, submitted, tmp_path / "out") == tmp_path / "out"
     (submitted / f"{CIRCLE.id}.ipynb").unlink()
@@ -67,7 +67,7 @@ def test_what_was_put_together_before_does_not_stay(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-def test_nothing_is_written_where_a_link_leads_away(tmp_path: Path) -> None:
+def test_nothing_is_written_through_a_link_that_leads_away(tmp_path: Path) -> None:
     submitted = handed_in(tmp_path / "in", "mine", {"my_robot_controller/package.xml": "x"})
     (submitted / "my_robot_controller" / "my_robot_controller").symlink_to(tmp_path)
     assert graded_folder(CIRCLE, submitted, tmp_path / "out") == submitted
@@ -75,7 +75,7 @@ def test_nothing_is_written_where_a_link_leads_away(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["no json", "[]", '{"cells": 7}', '{"cells": [{"cell_type": "code"}]}'])
-def test_a_broken_notebook_is_no_reason_to_stop(tmp_path: Path, text: str) -> None:
+def test_a_broken_notebook_does_not_stop_the_grading(tmp_path: Path, text: str) -> None:
     submitted = handed_in(tmp_path / "in", "", {"my_robot_controller/package.xml": "x"})
     (submitted / f"{CIRCLE.id}.ipynb").write_text(text)
     assert graded_folder(CIRCLE, submitted, tmp_path / "out") == submitted

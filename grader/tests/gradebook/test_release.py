@@ -1,4 +1,4 @@
-"""nbgrader's own commands on our notebooks: generate_assignment makes what we release, validate knows what is right."""
+"""nbgrader's own commands with our notebooks: generate_assignment makes what we release, and validate accepts it."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def same(one: Path, other: Path) -> bool:
 
 
 def generated(term: Term, step: str) -> None:
-    """Generate the assignment, and compare it with what `grader release` makes."""
+    """Generate the assignment and compare it with the result of `grader release`."""
     exercise = term.root / "exercises" / step
     kept = term.root / "kept" / step
     shutil.copytree(exercise, kept)
@@ -73,7 +73,7 @@ def test_generate_assignment_makes_what_grader_release_makes_of_every_step(tmp_p
         generated(term, step)
 
 
-def test_a_solution_that_would_slip_through_stops_generate_assignment(tmp_path: Path) -> None:
+def test_a_solution_that_would_be_released_stops_generate_assignment(tmp_path: Path) -> None:
     term = Term(tmp_path)
     node = term.root / "solutions" / STEP / "my_robot_controller/my_robot_controller/draw_circle.py"
     node.write_text(node.read_text().replace("# END SOLUTION", "# THE END", 1))
@@ -83,7 +83,7 @@ def test_a_solution_that_would_slip_through_stops_generate_assignment(tmp_path: 
 
 
 @pytest.mark.exhaustive
-def test_hidden_tests_are_neither_released_nor_told_in_feedback(tmp_path: Path) -> None:
+def test_hidden_tests_are_neither_released_nor_in_the_feedback(tmp_path: Path) -> None:
     term = Term(tmp_path)
     source = term.root / "solutions" / STEP / f"{STEP}.ipynb"
     notebook = json.loads(source.read_text())
@@ -103,7 +103,7 @@ def test_hidden_tests_are_neither_released_nor_told_in_feedback(tmp_path: Path) 
 
 
 def validated(step: str, root: str, home: Path) -> str:
-    """What `nbgrader validate` says; in a copy, since it runs the notebook where it lies."""
+    """Return the output of `nbgrader validate`. It works on a copy, because it runs the notebook in place."""
     folder = home / root / step
     shutil.copytree(ROOT / root / step, folder)
     env = {**os.environ, "JUPYTER_DATA_DIR": str(home / "jupyter"), "PYTHONWARNINGS": "ignore"}
@@ -119,13 +119,13 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_validate_tells_right_from_unfinished(home: Path) -> None:
+def test_validate_accepts_only_a_finished_notebook(home: Path) -> None:
     assert "Success! Your notebook passes all the tests." in validated("02-discover-topics", "solutions", home)
     assert "VALIDATION FAILED" in validated("02-discover-topics", "exercises", home)
 
 
 @pytest.mark.exhaustive
 @pytest.mark.parametrize("step", list(catalogue()))
-def test_every_source_notebook_is_valid_and_no_released_one(step: str, home: Path) -> None:
+def test_source_notebooks_are_valid_and_released_ones_are_not(step: str, home: Path) -> None:
     assert "Success! Your notebook passes all the tests." in validated(step, "solutions", home)
     assert "VALIDATION FAILED" in validated(step, "exercises", home)

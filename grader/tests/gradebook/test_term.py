@@ -1,4 +1,4 @@
-"""A term with the real nbgrader and its real database: what the CSV says in the end is what was earned."""
+"""A term with the real nbgrader and its real database: the exported CSV has exactly the scores that were earned."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def forge(folder: Path, promised: str) -> None:
 
 
 def notebook_alone(folder: Path) -> None:
-    """The node in its cell, which was never run, and nothing else handed in."""
+    """Hand in only a notebook, with the node in a cell that was never run."""
     shutil.rmtree(folder / "my_robot_controller")
 
     def solved(cells: list[Notebook]) -> list[Notebook]:
@@ -129,20 +129,20 @@ def test_a_short_term(term: Term) -> None:
     term.grade()
     assert term.exported() == {"slow": (55, 0, 55), "forger": (15, 0, 15), "late-typist": (100, 0, 100)}
 
-    # What its kernel claimed is found out, and the feedback tells the grader's reasons, not the kernel's.
+    # The false score of the kernel is found, and the feedback has the grader's reasons.
     said = term.run("grader", "gradebook", "compare")
     assert "forger 03-circle-publisher circle: kernel 5, grader 0" in said
     assert not {"slow", "late-typist"} & {line.split()[0] for line in said.splitlines()}
     assert "create_publisher is never called" in term.feedback("forger")
 
-    # What somebody graded by hand stands.
+    # A manual grade stays.
     with term.gradebook() as gradebook:
         grade = gradebook.find_grade("circle", STEP, STEP, "slow")
         grade.manual_score = 12.5
         gradebook.db.commit()
     before = term.exported()
     assert before["slow"] == (67.5, 0, 67.5)
-    assert "0 scores of 3 submissions changed. 1 manual grade stand" in term.grade()
+    assert "0 scores of 3 submissions changed. 1 manual grade kept" in term.grade()
     assert term.exported() == before
 
 
@@ -181,7 +181,7 @@ def test_a_whole_term(term: Term) -> None:
     term.run("grader", "gradebook", "sync")
     exported = term.exported()
     assert exported.pop("late") == (100, 100, 0)
-    submitted_late = exported.pop(getpass.getuser())  # by the clock of this machine, which is no matter here
+    submitted_late = exported.pop(getpass.getuser())  # the time on this machine does not matter
     assert submitted_late[0] == 100
     assert exported == {name: (points, 0, points) for name, points in earned.items() if name in exported}
     assert len(exported) == 11

@@ -1,8 +1,8 @@
-"""Mend a submitted notebook before it is graded: the instructor's cells as they were, all of them, each with its id.
+"""Restore the instructor's cells of a submitted notebook before it is graded.
 
-nbgrader trusts a submission's metadata where it is valid, and gives up where it is not. Here nothing of it counts but
-the id: what a cell is worth and whether it is locked is what the gradebook says, and locked cells that are missing
-come back.
+nbgrader trusts the metadata of a submission, and stops if they are invalid. Here only the id of a cell counts. Its
+points
+and whether it is locked come from the gradebook, and missing locked cells are added again.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 
-class MendCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
+class RestoreCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
     """The first step after the outputs were cleared."""
 
     def preprocess(self, nb: NotebookNode, resources: dict[str, Any]) -> tuple[NotebookNode, dict[str, Any]]:
-        """Mend the notebook, by what generate_assignment has put into the gradebook."""
+        """Restore the cells that generate_assignment stored in the gradebook."""
         about = resources["nbgrader"]
         with Gradebook(about["db_url"]) as gradebook:
             notebook = gradebook.find_notebook(about["notebook"], about["assignment"])
@@ -47,7 +47,7 @@ class MendCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
             for name, (metadata, source) in known.items()
             if name not in seen and metadata["nbgrader"]["locked"]
         ]
-        # What loads the magics comes first, what counts points last.
+        # The cell that loads the magics comes first, and cells with points come last.
         nb.cells = [
             *(cell for cell in missing if not cell.metadata.nbgrader.grade),
             *cells,
