@@ -37,6 +37,14 @@ def packages() -> dict[str, Path]:
     return _resources("packages")
 
 
+def contents(kind: str) -> dict[str, list[str]]:
+    """The lines of each package's entry in one part of the index, as "rclcpp_components"; sorted by package."""
+    return {
+        name: (prefix / _INDEX / kind / name).read_text("utf-8", "replace").splitlines()
+        for name, prefix in _resources(kind).items()
+    }
+
+
 def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
     """Return the prefix of a package.
 

@@ -39,6 +39,16 @@ GROUPS = {
             "reindex": "Reconstruct metadata file for a bag",
         },
     ),
+    "component": Group(
+        "Various component related sub-commands",
+        {
+            "list": "Output a list of running containers and components",
+            "load": "Load a component into a container node",
+            "standalone": "Run a component into its own standalone container node",
+            "types": "Output a list of components registered in the ament index",
+            "unload": "Unload a component from a container node",
+        },
+    ),
     "daemon": Group(
         "Various daemon related sub-commands",
         {
@@ -47,6 +57,7 @@ GROUPS = {
             "stop": "Stop the daemon if it is running",
         },
     ),
+    "doctor": Group("Check ROS setup and other potential issues"),
     "interface": Group(
         "Show information about ROS interfaces",
         {
@@ -55,6 +66,23 @@ GROUPS = {
             "packages": "Output a list of packages that provide interfaces",
             "proto": "Output an interface prototype",
             "show": "Output the interface definition",
+        },
+    ),
+    "launch": Group("Run a launch file"),
+    "lifecycle": Group(
+        "Various lifecycle related sub-commands",
+        {
+            "get": "Get lifecycle state for one or more nodes",
+            "list": "Output a list of available transitions",
+            "nodes": "Output a list of nodes with lifecycle",
+            "set": "Trigger lifecycle state transition",
+        },
+    ),
+    "multicast": Group(
+        "Various multicast related sub-commands",
+        {
+            "receive": "Receive a single UDP multicast packet",
+            "send": "Send a single UDP multicast packet",
         },
     ),
     "node": Group(
@@ -87,6 +115,7 @@ GROUPS = {
         },
     ),
     "run": Group("Run a package specific executable"),
+    "security": Group("Various security related sub-commands"),
     "service": Group(
         "Various service related sub-commands",
         {
@@ -114,4 +143,5 @@ GROUPS = {
         },
         {"--include-hidden-topics": "include hidden topics, those with a name that starts with _"},
     ),
+    "wtf": Group("Use `wtf` as alias to `doctor`"),
 }

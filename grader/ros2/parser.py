@@ -16,8 +16,13 @@ from grader.ros2.groups import GROUPS
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-MODULES = {"pkg.xml": "pkg.manifest"}
-"""Verbs whose module has another name: xml is a module of Python."""
+MODULES = {
+    # xml is a module of Python.
+    "pkg.xml": "pkg.manifest",
+    "wtf": "doctor",
+    **dict.fromkeys(("launch", "security", "component.load", "component.standalone", "component.unload"), "whole"),
+}
+"""Groups and verbs whose module has another name than they have."""
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _SELECTS = ("all", "all_topics", "topic_types", "regex")
 _PROFILES = {"none": "none", "fastwrite": "none", "zstd_fast": "storage", "zstd_small": "storage"}
 """The preset profiles of the MCAP storage, and what each compresses."""
-_NOT_HERE = (
+NOT_HERE = (
     "services",
     "all_services",
     "exclude_services",
@@ -64,7 +64,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--compression-format", default="", choices=("", "zstd"), help="Choose the compression format/algorithm."
     )
-    for name in _NOT_HERE:
+    for name in NOT_HERE:
         parser.add_argument(f"--{name.replace('_', '-')}", nargs="*", help=argparse.SUPPRESS)
 
 
@@ -190,7 +190,7 @@ def _compiled(pattern: str) -> re.Pattern[str] | None:
 def _validate(args: argparse.Namespace, folder: Path) -> None:
     """Raise what the real one prints for options that do not go together."""
     selects = any(getattr(args, name) for name in _SELECTS)
-    unknown = " ".join(f"--{name.replace('_', '-')}" for name in _NOT_HERE if getattr(args, name) is not None)
+    unknown = " ".join(f"--{name.replace('_', '-')}" for name in NOT_HERE if getattr(args, name) is not None)
     rules: dict[str, object] = {
         f"{unknown} needs a whole ROS 2; this is the course's own ros2 bag": unknown,
         "Need to specify at least one option out of --all, --all-topics, --all-services, --services, --topics, "

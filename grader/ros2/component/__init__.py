@@ -1,0 +1,1 @@
+"""The verbs of `ros2 component` that only look, one module each."""

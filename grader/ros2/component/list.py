@@ -1,0 +1,43 @@
+"""The verb `component list`: the containers that run. What is in them can be told by a whole ROS 2 only."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.graph.look import types_of
+from grader.ros.failure import Ros2Error, did_you_mean
+from grader.ros2.looking import look
+from grader.ros2.options import add_look
+
+if TYPE_CHECKING:
+    import argparse
+
+_LIST_NODES = "composition_interfaces/srv/ListNodes"
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    add_look(parser)
+    parser.add_argument("container_node_name", nargs="?", help="Name of the container node to list components from")
+    parser.add_argument("--containers-only", action="store_true", help="List found containers nodes only")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print them.
+
+    Raises:
+        Ros2Error: there is no such container, or its components were asked for.
+    """
+    graph = look(args)
+    names = sorted(set(graph.node_names()))
+    found = [name for name in names if _LIST_NODES in types_of(graph.services, f"{name}/_container/list_nodes")]
+    if args.container_node_name is None:
+        print("".join(f"{name}\n" for name in found), end="")
+        return 0
+    if args.container_node_name not in found:
+        text = f"Unable to find container node '{args.container_node_name}'"
+        raise Ros2Error(did_you_mean(args.container_node_name, found, text))
+    if not args.containers_only:
+        message = "The components of a container can be listed by a whole ROS 2 only"
+        raise Ros2Error(message)
+    return 0

@@ -1,0 +1,41 @@
+"""The verb `lifecycle get`: the state of a node, or of all nodes with a lifecycle."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from grader.ros.failure import Ros2Error
+from grader.ros2.lifecycle import client
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    text = "Name of the ROS node. If no name is provided, then get the state for all nodes."
+    client.add_node(parser, "?", text)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print it.
+
+    Raises:
+        Ros2Error: there is no such node, or it does not answer.
+    """
+    from grader.graph.discovery import cli_node
+
+    named = [client.chosen(args)] if args.node_name else []
+    names = named or client.lifecycle_nodes(args, hidden=args.include_hidden_nodes)
+    with cli_node(use_sim_time=args.use_sim_time) as node:
+        for name in names:
+            try:
+                state = client.call(node, "GetState", f"{name}/get_state").current_state
+            except Ros2Error as error:
+                if named:
+                    raise
+                print(error, file=sys.stderr)
+                continue
+            print(f"{'' if named else f'{name}: '}{state.label} [{state.id}]")
+    return 0

@@ -1,0 +1,34 @@
+"""The verb `lifecycle list`: the transitions that a node can make."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.ros2.lifecycle import client
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    client.add_node(parser)
+    parser.add_argument("-a", "--all", action="store_true", help="Display all existing transitions")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print them.
+
+    Raises:
+        Ros2Error: there is no such node, or it does not answer.
+    """
+    from grader.graph.discovery import cli_node
+
+    name = client.chosen(args)
+    service = "get_transition_graph" if args.all else "get_available_transitions"
+    with cli_node(use_sim_time=args.use_sim_time) as node:
+        answer = client.call(node, "GetAvailableTransitions", f"{name}/{service}")
+    for found in answer.available_transitions:
+        print(f"- {found.transition.label} [{found.transition.id}]")
+        print(f"\tStart: {found.start_state.label}\n\tGoal: {found.goal_state.label}")
+    return 0

@@ -1,0 +1,28 @@
+"""The verb `lifecycle nodes`: the names of the nodes that have a lifecycle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.ros2.lifecycle.client import lifecycle_nodes
+from grader.ros2.options import add_look
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    add_look(parser)
+    parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
+    parser.add_argument("-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Print them, sorted."""
+    found = lifecycle_nodes(args, hidden=args.all)
+    if args.count_nodes:
+        print(len(found))
+    elif found:
+        print(*found, sep="\n")
+    return 0

@@ -1,0 +1,43 @@
+"""The verb `lifecycle set`: let a node make a transition."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from grader.ros.failure import Ros2Error
+from grader.ros2.lifecycle import client
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    client.add_node(parser)
+    parser.add_argument("transition", help="The lifecycle transition")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Ask for it, and print whether it was made.
+
+    Raises:
+        Ros2Error: there is no such node, it does not answer, or it cannot make the transition now.
+    """
+    from grader.graph.discovery import cli_node
+
+    name = client.chosen(args)
+    with cli_node(use_sim_time=args.use_sim_time) as node:
+        answer = client.call(node, "GetAvailableTransitions", f"{name}/get_available_transitions")
+        known = [one.transition for one in answer.available_transitions]
+        wanted = next((one for one in known if args.transition in (one.label, str(one.id))), None)
+        if wanted is None:
+            lines = "".join(f"\n- {one.label} [{one.id}]" for one in known)
+            message = f"Unknown transition requested, available ones are:{lines}"
+            raise Ros2Error(message)
+        import lifecycle_msgs.srv
+
+        request = lifecycle_msgs.srv.ChangeState.Request(transition=wanted)
+        done = client.call(node, "ChangeState", f"{name}/change_state", request).success
+    print("Transitioning successful" if done else "Transitioning failed", file=sys.stdout if done else sys.stderr)
+    return 0

@@ -1,0 +1,34 @@
+"""The group and the port that both verbs of `ros2 multicast` use."""
+
+from __future__ import annotations
+
+import argparse
+import ipaddress
+
+_GROUP, _PORT = "225.0.0.1", 49150
+
+
+def add_address(parser: argparse.ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument(
+        "-g", "--group", type=_group, default=_GROUP, help=f"The multicast group to use (default: {_GROUP})"
+    )
+    parser.add_argument("-p", "--port", type=_port, default=_PORT, help=f"The port to use (default: {_PORT})")
+
+
+def _group(text: str) -> str:
+    try:
+        right = ipaddress.IPv4Address(text).is_multicast
+    except ValueError:
+        right = False
+    if not right:
+        message = "value must be a valid IPv4 multicast address"
+        raise argparse.ArgumentTypeError(message)
+    return text
+
+
+def _port(text: str) -> int:
+    if not text.isdecimal() or not 0 < int(text) < 2**16:
+        message = "value must be a port: an integer from 1 to 65535"
+        raise argparse.ArgumentTypeError(message)
+    return int(text)

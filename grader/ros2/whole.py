@@ -1,0 +1,36 @@
+"""Words of `ros2` that need a whole ROS 2: each says so, and what to use here."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from grader.ros.failure import Ros2Error
+
+if TYPE_CHECKING:
+    from typing import NoReturn
+
+INSTEAD = {
+    "launch": "Start each node in a terminal of its own with: ros2 run PACKAGE EXECUTABLE",
+    "security": "The nodes of this course talk on this machine only, so they need no keys.",
+    "load": "Start a node by itself with: ros2 run PACKAGE EXECUTABLE",
+    "unload": "End a node with Ctrl-C in its terminal.",
+    "standalone": "Start a node by itself with: ros2 run PACKAGE EXECUTABLE",
+}
+"""What to do instead of each of them."""
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Take whatever is typed."""
+    parser.add_argument("argv", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
+    parser.set_defaults(words=parser.prog)
+
+
+def run(args: argparse.Namespace) -> NoReturn:
+    """Say it.
+
+    Raises:
+        Ros2Error: always.
+    """
+    message = f"`{args.words}` needs a whole ROS 2: docs.ros.org/en/jazzy/Installation.html\n"
+    raise Ros2Error(message + INSTEAD[args.words.split()[-1]])
