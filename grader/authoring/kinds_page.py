@@ -164,9 +164,9 @@ def main(arguments: list[str] | None = None) -> int:
             return 0 if fresh else 1
         file.write_text(page(), encoding="utf-8")
     except OSError as error:
-        told = MachineError(f"{file} could not be written: {error.strerror}.")
-        print(told, file=sys.stderr)
-        return told.exit_code
+        failure = MachineError(f"{file} could not be written: {error.strerror}.")
+        print(failure, file=sys.stderr)
+        return failure.exit_code
     return 0
 
 

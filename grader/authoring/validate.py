@@ -114,13 +114,13 @@ def _judged(
 def _solution(exercise: Exercise, report: Report) -> Iterator[str]:
     for outcome in report.outcomes:
         if outcome.status is not Status.PASSED and not outcome.advice:
-            yield f"solutions/{exercise.id} does not pass: {_told(outcome)}"
+            yield f"solutions/{exercise.id} does not pass: {_in_words(outcome)}"
 
 
 def _starting_point(exercise: Exercise, report: Report) -> Iterator[str]:
     failed = {outcome.id: outcome for outcome in report.with_status(Status.FAILED)}
     for outcome in report.with_status(Status.ERROR):
-        yield f"exercises/{exercise.id} could not be judged: {_told(outcome)}"
+        yield f"exercises/{exercise.id} could not be judged: {_in_words(outcome)}"
     if not exercise.unsolved:
         yield (
             f"course/{exercise.id}/exercise.toml does not say which checks the starting point fails. Now these do: "
@@ -129,7 +129,7 @@ def _starting_point(exercise: Exercise, report: Report) -> Iterator[str]:
         return
     for name, outcome in failed.items():
         if name not in exercise.unsolved:
-            yield f"exercises/{exercise.id} fails for a reason that was not intended: {_told(outcome)}"
+            yield f"exercises/{exercise.id} fails for a reason that was not intended: {_in_words(outcome)}"
     for name in exercise.unsolved:
         if name not in failed:
             yield f"exercises/{exercise.id} should fail the check {name!r} but does not."
@@ -152,6 +152,6 @@ def _lesson(file: Path) -> Iterator[str]:
             yield f"{file} links to {target}, which does not exist."
 
 
-def _told(outcome: Outcome) -> str:
+def _in_words(outcome: Outcome) -> str:
     finding = outcome.finding
     return f"{outcome.title}: {outcome.status.value}. {finding.observed} {finding.cause}".strip()

@@ -26,12 +26,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions/03-circle-publisher")
-    asked = parser.parse_args()
+    arguments = parser.parse_args()
     costs: dict[str, list[Cost]] = {}
     stages: dict[str, list[float]] = {}
-    for _ in range(asked.times):
+    for _ in range(arguments.times):
         with tempfile.TemporaryDirectory() as folder:
-            for name, measured in _round(asked.submission, Path(folder), stages).items():
+            for name, measured in _round(arguments.submission, Path(folder), stages).items():
                 costs.setdefault(name, []).append(measured)
     _print(costs, stages)
 

@@ -64,20 +64,22 @@ def main() -> None:
         "--mix", choices=("all", "right"), default="all", help="which kinds of submissions are in the class"
     )
     parser.add_argument("--times", type=int, default=3, help="repetitions of F before, and after (3)")
-    asked = parser.parse_args()
-    sizes = [int(size) for size in asked.sizes.split(",") if size]
-    workers = [int(amount) for amount in asked.workers.split(",") if amount]
+    arguments = parser.parse_args()
+    sizes = [int(size) for size in arguments.sizes.split(",") if size]
+    workers = [int(amount) for amount in arguments.workers.split(",") if amount]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        bare = _bare(folder, asked.times)
+        bare = _bare(folder, arguments.times)
         rows = []
         for size in sizes:
-            rows.append((f"{size} here", _local(folder, size, asked.jobs, asked.mix)))
+            rows.append((f"{size} here", _local(folder, size, arguments.jobs, arguments.mix)))
             _say(rows[-1])
         for amount in workers:
-            rows.append((f"{asked.dask_size}, {amount} Dask", _dask(folder, asked.dask_size, amount, asked.mix)))
+            rows.append(
+                (f"{arguments.dask_size}, {amount} Dask", _dask(folder, arguments.dask_size, amount, arguments.mix))
+            )
             _say(rows[-1])
-        bare += _bare(folder, asked.times)
+        bare += _bare(folder, arguments.times)
     _print(statistics.median(bare), len(bare), rows)
 
 
@@ -195,18 +197,18 @@ def _wait_for_workers(address: str, workers: int) -> None:
 @contextmanager
 def _watched(also: list[int]) -> Iterator[list[float]]:
     """Sample the memory of this process's descendants and of `also` with their descendants (MB)."""
-    seen: list[float] = []
+    samples: list[float] = []
     stopped = Event()
 
     def look() -> None:
         while not stopped.wait(_LOOK_S):
             own = [pid for pid in _family([os.getpid(), *also]) if pid != os.getpid()]
-            seen.append(sum(_own_mb(pid) for pid in own))
+            samples.append(sum(_own_mb(pid) for pid in own))
 
     thread = Thread(target=look, daemon=True)
     thread.start()
     try:
-        yield seen
+        yield samples
     finally:
         stopped.set()
         thread.join()

@@ -55,10 +55,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions/03-circle-publisher")
-    asked = parser.parse_args()
+    arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        _making(asked.submission, Path(folder), asked.times)
-        _showing(Path(folder), asked.times)
+        _making(arguments.submission, Path(folder), arguments.times)
+        _showing(Path(folder), arguments.times)
 
 
 def _making(submission: Path, folder: Path, times: int) -> None:
@@ -99,8 +99,8 @@ def _showing(folder: Path, times: int) -> None:
     with launched(browser) as chromium:
         for name in ("page.html", "class.html"):
             tab = chromium.new_page()
-            seen = [_opening(tab, (folder / name).as_uri()) for _ in range(times + 1)][1:]
-            scripts, shown = (1000 * statistics.median(each) for each in zip(*seen, strict=True))
+            samples = [_opening(tab, (folder / name).as_uri()) for _ in range(times + 1)][1:]
+            scripts, shown = (1000 * statistics.median(each) for each in zip(*samples, strict=True))
             print(f"showing {name:12} {shown:6.0f} ms until loaded, {scripts:.0f} ms of it in scripts")
             tab.close()
 

@@ -44,12 +44,12 @@ def cost(argv: Sequence[str], *, env: Mapping[str, str] | None = None, cwd: Path
             time.sleep(0.02)
         wall_s = time.monotonic() - begun
         assert child.stdout is not None
-        said = child.stdout.read()
+        output = child.stdout.read()
     with suppress(ChildProcessError):
         while True:
             os.waitpid(-1, 0)
     if child.returncode != 0:
-        message = f"{' '.join(argv)} ended with {child.returncode}:\n{said}"
+        message = f"{' '.join(argv)} ended with {child.returncode}:\n{output}"
         raise RuntimeError(message)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     cpu_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

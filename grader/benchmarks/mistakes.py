@@ -44,9 +44,9 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--only", nargs="*", default=[], help="numbers of cases (default: all)")
-    asked = parser.parse_args()
+    arguments = parser.parse_args()
     cases = [case for case in read_cases(MISTAKES) if case.result != "usage"]
-    cases = [case for case in cases if not asked.only or case.name.startswith(tuple(asked.only))]
+    cases = [case for case in cases if not arguments.only or case.name.startswith(tuple(arguments.only))]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         start_s = median(lambda: cost([str(GRADER), "check", "--help"]), 5).wall_s

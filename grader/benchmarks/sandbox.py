@@ -40,26 +40,26 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _EXERCISE)
-    asked = parser.parse_args()
+    arguments = parser.parse_args()
     bubblewrap.require()
     costs: dict[str, list[Cost]] = {}
-    for _ in range(asked.times):
+    for _ in range(arguments.times):
         with tempfile.TemporaryDirectory() as folder:
-            measured = dict(bare_costs(asked.submission, Path(folder)))
+            measured = dict(bare_costs(arguments.submission, Path(folder)))
         for how in ("cell", "bare"):
-            command = interpreter("-c", _GRADE, _EXERCISE, str(asked.submission), how).argv
+            command = interpreter("-c", _GRADE, _EXERCISE, str(arguments.submission), how).argv
             measured[f"graded, {'confined' if how == 'cell' else 'not confined'}"] = cost(command)
         for name, one in measured.items():
             costs.setdefault(name, []).append(one)
     wall = {name: statistics.median(one.wall_s for one in of) for name, of in costs.items()}
     cpu = {name: statistics.median(one.cpu_s for one in of) for name, of in costs.items()}
     f_s = wall["colcon build"] + wall["rclpy node"]
-    print(f"F = {f_s:.2f} s wall (medians of {asked.times})\n")
+    print(f"F = {f_s:.2f} s wall (medians of {arguments.times})\n")
     for name, seconds in wall.items():
         print(f"{name:24}{seconds:8.2f} s{seconds / f_s:8.2f} F{cpu[name]:8.2f} s CPU")
-    extra = wall["graded, confined"] - wall["graded, not confined"]
-    print(f"\nconfinement: {extra:+.2f} s, {extra / f_s:+.2f} F (at most {_MOST} F)")
-    if extra > _MOST * f_s:
+    difference = wall["graded, confined"] - wall["graded, not confined"]
+    print(f"\nconfinement: {difference:+.2f} s, {difference / f_s:+.2f} F (at most {_MOST} F)")
+    if difference > _MOST * f_s:
         raise MachineError("The sandbox costs more than allowed. Was the machine busy?")  # noqa: EM101
 
 

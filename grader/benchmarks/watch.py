@@ -37,12 +37,12 @@ def main() -> None:
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _STEP / "my_robot_controller")
     parser.add_argument("--exercise", default=_STEP)
     parser.add_argument("--file", default=_FILE, help="the file to save, relative to the submission")
-    asked = parser.parse_args()
+    arguments = parser.parse_args()
     bare, saves = [], []
-    for _ in range(asked.times):
+    for _ in range(arguments.times):
         with tempfile.TemporaryDirectory() as folder:
-            package = Path(shutil.copytree(asked.submission, Path(folder) / "home" / asked.submission.name))
-            saves.append(_save_s(package, asked.exercise, package / asked.file))
+            package = Path(shutil.copytree(arguments.submission, Path(folder) / "home" / arguments.submission.name))
+            saves.append(_save_s(package, arguments.exercise, package / arguments.file))
             # Only now: that measurement waits for all children of this process.
             scratch = Path(folder) / "bare"
             scratch.mkdir()

@@ -77,8 +77,8 @@ def unpacked(archive: Path) -> Iterator[Path]:
 def _why(done: subprocess.CompletedProcess[bytes] | None) -> str | None:
     if done is None or done.returncode < 0 or not done.stdout.endswith(b"\n"):
         return f"could not be unpacked within {_CPU_S} s and 1 GiB of memory"
-    said: str | None = json.loads(done.stdout)["why"]
+    answer: str | None = json.loads(done.stdout)["why"]
     if done.returncode != 0:
-        message = f"A submission could not be unpacked: {said}. Make room in {tempfile.gettempdir()} and try again."
+        message = f"A submission could not be unpacked: {answer}. Make room in {tempfile.gettempdir()} and try again."
         raise DiskError(message)
-    return said
+    return answer

@@ -101,9 +101,9 @@ def grade(
     ] = "",
 ) -> None:
     """Grade a class, several submissions at once. If you stop it, the same command continues where it was."""
-    from grader.classroom.grade_class import Asked, exit_code, grade_class
+    from grader.classroom.grade_class import Request, exit_code, grade_class
 
-    asked = Asked(
+    request = Request(
         submissions,
         out,
         exercise,
@@ -117,7 +117,7 @@ def grade(
         repository_folder=repository_folder,
     )
     try:
-        graded = grade_class(asked, typer.echo, lambda text: typer.echo(f"{text} ...", err=True))
+        graded = grade_class(request, typer.echo, lambda text: typer.echo(f"{text} ...", err=True))
     except KeyboardInterrupt:
         typer.echo(f"\nStopped. The results so far are in {out}. The same command continues from there.", err=True)
         raise

@@ -58,8 +58,8 @@ def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused
     except MachineError as error:
         return Refused(str(error), of_the_machine=True)
     except (OSError, ValueError) as error:
-        told = error.strerror if isinstance(error, OSError) else str(error)
-        return Refused(f"{shown(found.path.name)} could not be read ({told}).")
+        detail = error.strerror if isinstance(error, OSError) else str(error)
+        return Refused(f"{shown(found.path.name)} could not be read ({detail}).")
     return replace(opened, name=found.name, student=student)
 
 

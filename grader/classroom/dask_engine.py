@@ -46,15 +46,15 @@ def perform_here(packed: bytes) -> tuple[str, object]:
         worker = _idle.pop() if _idle else Worker()
     worker.send(task)
     while True:
-        said = worker.receive()
-        if said is None:
+        answer = worker.receive()
+        if answer is None:
             why = worker.last_words()
             worker.close()
             return "died", why
-        if said[0] in ("done", "fails"):
+        if answer[0] in ("done", "fails"):
             with _lock:
                 _idle.append(worker)
-            return said
+            return answer
 
 
 @dataclass

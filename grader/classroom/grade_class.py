@@ -33,7 +33,7 @@ DASK = "dask://"
 
 
 @dataclass(frozen=True)
-class Asked:
+class Request:
     """The options of the command line."""
 
     submissions: Sequence[Path]
@@ -49,38 +49,38 @@ class Asked:
     repository_folder: str = ""
 
 
-def grade_class(asked: Asked, say: Callable[[str], None], tell: Callable[[str], None]) -> list[Result]:
+def grade_class(request: Request, say: Callable[[str], None], tell: Callable[[str], None]) -> list[Result]:
     """Grade everything that has no valid result yet, write all files, and return every result, sorted by student.
 
     Raises:
        UsageError: the command is wrong.
        MachineError: nothing more can be graded or written. Results that were written stay, and the next run continues.
     """
-    _engine_is_known(asked)
-    return grade_found(asked, find_submissions(asked.submissions, asked.exercise, asked.out), say, tell)
+    _engine_is_known(request)
+    return grade_found(request, find_submissions(request.submissions, request.exercise, request.out), say, tell)
 
 
 def grade_found(
-    asked: Asked, found: tuple[Found, ...], say: Callable[[str], None], tell: Callable[[str], None]
+    request: Request, found: tuple[Found, ...], say: Callable[[str], None], tell: Callable[[str], None]
 ) -> list[Result]:
     """Grade submissions that were found before; raises as `grade_class`."""
-    local = _engine_is_known(asked)
-    roster = read_owners(asked.roster) if asked.roster else {}
-    beside = passed_over(asked.submissions, asked.out)
-    sources = sources_for(found, asked.checks)
+    local = _engine_is_known(request)
+    roster = read_owners(request.roster) if request.roster else {}
+    beside = passed_over(request.submissions, request.out)
+    sources = sources_for(found, request.checks)
     order = Order(
         found=found,
         roster=roster,
         sources=sources,
         ros=_ros(local=local, tell=tell),
-        clock=asked.clock,
-        seed=asked.seed,
+        clock=request.clock,
+        seed=request.seed,
         # Each Dask worker tests its own machine.
-        in_cell=bubblewrap.require(trusted=asked.trusted) if local else not asked.trusted,
-        trusted=asked.trusted,
+        in_cell=bubblewrap.require(trusted=request.trusted) if local else not request.trusted,
+        trusted=request.trusted,
     )
     assert order.exercises  # a mistake in private checks must be reported before anything is graded
-    with results.opened(asked.out) as folder:
+    with results.opened(request.out) as folder:
         tell(f"Reading {count(len(found), 'submission')}")
         kept, todo = sort_out(order, folder)
         say(_told(kept, todo))
@@ -88,24 +88,24 @@ def grade_found(
             say(f"Ignored, because these are neither folders nor archives: {a_list(beside)}.")
         graded: list[Result] = []
         if todo:
-            engine = _engine(asked, local=local)
+            engine = _engine(request, local=local)
             with screen(len(todo), several=len(sources) > 1) as shown:
                 graded = run(order, todo, engine, folder, shown)
         every = {(result.student, result.report.exercise): result for result in (*kept, *graded)}
         ordered = [every[each.student, each.exercise] for each in found]
-        outputs.write_all(folder, ordered, asked.repository_folder)
+        outputs.write_all(folder, ordered, request.repository_folder)
         left = folder.others({result.page for result in ordered})
     say(summary(ordered))
     if left:
-        say(f"{count(left, 'result')} in {asked.out}/{results.REPORTS} of other submissions stay unchanged.")
+        say(f"{count(left, 'result')} in {request.out}/{results.REPORTS} of other submissions stay unchanged.")
     return ordered
 
 
-def _engine_is_known(asked: Asked) -> bool:
+def _engine_is_known(request: Request) -> bool:
     """Return whether the engine is this machine. Raises UsageError for an unknown engine."""
-    local = asked.engine == "local"
-    if not local and not asked.engine.startswith(DASK):
-        message = f'--engine is "{asked.engine}". It must be local or {DASK}HOST:PORT.'
+    local = request.engine == "local"
+    if not local and not request.engine.startswith(DASK):
+        message = f'--engine is "{request.engine}". It must be local or {DASK}HOST:PORT.'
         raise UsageError(message)
     return local
 
@@ -132,14 +132,14 @@ def _ros(*, local: bool, tell: Callable[[str], None]) -> str:
     return ros.name
 
 
-def _engine(asked: Asked, *, local: bool) -> Engine:
+def _engine(request: Request, *, local: bool) -> Engine:
     if local:
         from grader.classroom.local import LocalEngine, default_jobs
 
-        return LocalEngine(asked.jobs or default_jobs())
+        return LocalEngine(request.jobs or default_jobs())
     from grader.classroom.dask_engine import DaskEngine
 
-    return DaskEngine(asked.engine.removeprefix(DASK), asked.jobs)
+    return DaskEngine(request.engine.removeprefix(DASK), request.jobs)
 
 
 def _told(kept: Sequence[Result], todo: Sequence[Todo]) -> str:

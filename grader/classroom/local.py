@@ -94,7 +94,7 @@ class LocalEngine:
         happened: list[Event] = []
         by_connection = {worker.connection: worker for worker in self._busy}
         for ready in wait(list(by_connection), timeout_s):
-            event = self._heard(by_connection[ready])  # type: ignore[index]
+            event = self._receive(by_connection[ready])  # type: ignore[index]
             if event is not None:
                 happened.append(event)
         now = time.monotonic()
@@ -104,12 +104,12 @@ class LocalEngine:
             *(self._lost(worker, f"it was still busy after {TASK_S / 60:.0f} minutes") for worker in hung),
         ]
 
-    def _heard(self, worker: Worker) -> Event | None:
+    def _receive(self, worker: Worker) -> Event | None:
         busy = self._busy[worker]
-        said = worker.receive()
-        if said is None:
+        answer = worker.receive()
+        if answer is None:
             return self._lost(worker, worker.last_words())
-        kind, what = said
+        kind, what = answer
         if kind == "done":
             self._idle.append(worker)
             del self._busy[worker]

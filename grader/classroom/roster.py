@@ -35,8 +35,8 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
     columns = [name.lower() for name in names]
     if any(columns.count(name) != 1 for name in needed):
         wanted = a_list([f'"{name}"' for name in needed]) + (f", and perhaps {a_list(also)}" if also else "")
-        seen = shorten(",".join(names))
-        message = f'{file} is not a roster: its first line must name the columns {wanted}, but it is "{seen}".'
+        header = shorten(",".join(names))
+        message = f'{file} is not a roster: its first line must name the columns {wanted}, but it is "{header}".'
         raise UsageError(message)
     if not lines:
         message = f"{file} is not a roster: there is nothing below its first line."

@@ -88,7 +88,7 @@ class _Run:
             self.screen.tells(name, "Its worker was lost. It will be tried again later")
             self.waiting.append(self.running.pop(name))
         else:
-            self._keep(name, set_aside(event.task, _told(event.why)))
+            self._keep(name, set_aside(event.task, _in_words(event.why)))
 
     def _keep(self, name: Name, done: Done) -> None:
         one = self.running.pop(name)
@@ -104,7 +104,7 @@ class _Run:
             self.screen.finished(result)
 
 
-def _told(why: str) -> str:
+def _in_words(why: str) -> str:
     return (
         f"The grader's own process was lost twice while it had this submission ({why}). It is reported as an error, "
         "which says nothing about its quality. Grade it alone with `grader check`, or run the same command again."

@@ -127,8 +127,8 @@ class Table:
         done = len(self._tones)
         bar = Grid.grid(padding=(0, 1))
         counted = [f"{self._tones.count(kind)} {word}" for kind, word in _WORDS if kind in self._tones]
-        told = [f"{done} of {self._amount}", *counted, estimate(done, self._amount, now - self._begun)]
-        bar.add_row(ProgressBar(total=self._amount, completed=done, width=30), Text(" · ".join(filter(None, told))))
+        parts = [f"{done} of {self._amount}", *counted, estimate(done, self._amount, now - self._begun)]
+        bar.add_row(ProgressBar(total=self._amount, completed=done, width=30), Text(" · ".join(filter(None, parts))))
         return Group(rows, bar)
 
 
@@ -147,11 +147,11 @@ def summary(results: list[Result]) -> str:
     judged = [each.report for each, kind in zip(results, tones, strict=True) if kind != "error" and each.report.max]
     shares = [report.points / report.max for report in judged]
     mean = f", {100 * sum(shares) / len(shares):.0f} % of the points on average" if shares else ""
-    told = [f"{count(len(results), 'submission')}: {', '.join(counted)}{mean}."]
+    parts = [f"{count(len(results), 'submission')}: {', '.join(counted)}{mean}."]
     attention = suspicions([(result.report, result.errors) for result in results])
-    told += [
+    parts += [
         plain(f"Look at {result.student} ({result.report.exercise}): {why}.")
         for result, why in zip(results, attention, strict=True)
         if why
     ]
-    return "\n".join(told)
+    return "\n".join(parts)

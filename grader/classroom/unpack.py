@@ -166,11 +166,11 @@ def main(archive: str, folder: str) -> int:
     except MemoryError:
         why = "needs more memory to unpack than a submission may take"
     except OSError as error:
-        said = _shown(str(error.strerror or error))[:200]
+        detail = _shown(str(error.strerror or error))[:200]
         if error.errno in OF_THE_DISK and error.filename != archive:
-            print(json.dumps({"why": said}))
+            print(json.dumps({"why": detail}))
             return DISK_FAILED
-        why = f"is damaged, or contains a name that no disk accepts ({said})"
+        why = f"is damaged, or contains a name that no disk accepts ({detail})"
     except Exception as error:
         # A damaged archive can make the modules raise other errors too.
         why = f"is not a .zip or .tar.gz, or is damaged ({type(error).__name__}: {_shown(str(error))[:200]})"

@@ -60,18 +60,18 @@ class Worker:
     def receive(self) -> tuple[str, object] | None:
         """Return the next message, or None if the process has ended."""
         try:
-            said: tuple[str, object] = self.connection.recv()
+            answer: tuple[str, object] = self.connection.recv()
         except (EOFError, OSError):
             return None
-        return said
+        return answer
 
     def last_words(self) -> str:
         """Return how the process ended and the last line that it wrote, for the instructor."""
         code = self.process.wait()
         self._errors.seek(0)
-        said = self._errors.read()[-_LAST_WORDS:].decode("utf-8", "replace").strip()
+        answer = self._errors.read()[-_LAST_WORDS:].decode("utf-8", "replace").strip()
         how = f"it was killed ({signal.Signals(-code).name})" if code < 0 else f"it ended with exit code {code}"
-        return f"{how}: {said}" if said else how
+        return f"{how}: {answer}" if answer else how
 
     def close(self) -> None:
         """End the process and everything that it started."""

@@ -146,11 +146,11 @@ def _pack(submission: Submission) -> bytes:
 
 def _read(done: process.Finished) -> Built:
     if not done.stderr.startswith(_READY):
-        said = done.stderr.removeprefix(_CELL).decode("utf-8", "replace").strip()
-        if "No module named 'colcon_core'" in said:
+        errors = done.stderr.removeprefix(_CELL).decode("utf-8", "replace").strip()
+        if "No module named 'colcon_core'" in errors:
             message = "colcon is not installed in this Python: `make demo` in the course's folder installs it."
         else:
-            why = said.splitlines()[-1].rstrip(".") if said else "no message"
+            why = errors.splitlines()[-1].rstrip(".") if errors else "no message"
             message = f"The build could not be started: {why}. `grader doctor` tells what is missing."
         raise MachineError(message)
     built, cut = read(_described, done)

@@ -126,8 +126,8 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
             if trial.id in about["runs"]
         }
     except (OSError, KeyError, TypeError, ValueError) as error:
-        told = f"{type(error).__name__}: {error}"
-        message = f"{folder} cannot be read as a recording, as `grader check --recording {folder}` writes one ({told})."
+        why = f"{type(error).__name__}: {error}"
+        message = f"{folder} cannot be read as a recording, as `grader check --recording {folder}` writes one ({why})."
         raise UsageError(message) from error
     return Archived(Evidence(kept, submission, build, runs, fault), about["ros"])
 

@@ -99,8 +99,8 @@ def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> d
         raise UsageError(message)
     unknown = [key for key in private if key not in ALLOWED]
     if unknown or private.get("schema") != SCHEMA:
-        seen = f'unknown key "{unknown[0]}"' if unknown else f"schema is {private.get('schema')!r}, not {SCHEMA}"
-        message = f"{name}: {seen}. A file of private checks may hold {a_list(ALLOWED)}."
+        mistake = f'unknown key "{unknown[0]}"' if unknown else f"schema is {private.get('schema')!r}, not {SCHEMA}"
+        message = f"{name}: {mistake}. A file of private checks may hold {a_list(ALLOWED)}."
         raise UsageError(message)
     trials = _laid_over(list(public.get("trial", [])), _tables(private, "trial", name))
     own = expand(_tables(private, "check", name), trials)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
 from grader.classroom.found import Found
-from grader.classroom.grade_class import Asked, grade_found
+from grader.classroom.grade_class import Request, grade_found
 from grader.classroom.results import Results
 from grader.common.refusal import OF_THE_DISK
 from grader.common.words import shorten
@@ -105,8 +105,8 @@ def sync(
         raise UsageError(message)
     found, why = _put_together(folders, submissions)
     folders.results.parent.mkdir(exist_ok=True)
-    asked = Asked((), folders.results, jobs=jobs, checks=checks, trusted=trusted)
-    graded = grade_found(asked, found, say, tell)
+    request = Request((), folders.results, jobs=jobs, checks=checks, trusted=trusted)
+    graded = grade_found(request, found, say, tell)
     tally: Counter[str] = Counter()
     elsewhere: dict[str, None] = {}
     with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
@@ -119,12 +119,12 @@ def sync(
                 gradebook.db.rollback()
                 why.setdefault(name, f"its scores could not be written: {_in_words(error)}")
         withheld = withhold_unconfirmed(gradebook, results, wanted, why)
-    told = [
+    problems = [
         *(each for each in withheld if (each.student, each.step) not in why),
         *(Unconfirmed(student, step, (), reason) for (student, step), reason in why.items()),
     ]
     unjudged = tuple(result.student for result in graded if result.report.with_status(Status.ERROR))
-    return Synced(len(graded), tally["changed"], tally["kept"], unjudged, tuple(elsewhere), tuple(told))
+    return Synced(len(graded), tally["changed"], tally["kept"], unjudged, tuple(elsewhere), tuple(problems))
 
 
 def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
@@ -140,14 +140,14 @@ def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
     doubts = {(each.student, each.step, check): each.why for each in doubted for check in each.checks}
     for student, step in names:
         result = kept.load(student, step)
-        said = _kernel_scores(folders.autograded(student, step)) or {}
+        by_kernel = _kernel_scores(folders.autograded(student, step)) or {}
         points = {outcome.id: outcome.points for outcome in result.report.outcomes} if result else {}
-        for check in dict.fromkeys([*points, *said, *(name for *of, name in doubts if of == [student, step])]):
+        for check in dict.fromkeys([*points, *by_kernel, *(name for *of, name in doubts if of == [student, step])]):
             why = doubts.get((student, step, check), "")
             if why:
-                differences.append(Difference(student, step, check, said.get(check), None, why))
-            elif check in said and check in points and said[check] != points[check]:
-                differences.append(Difference(student, step, check, said[check], points[check]))
+                differences.append(Difference(student, step, check, by_kernel.get(check), None, why))
+            elif check in by_kernel and check in points and by_kernel[check] != points[check]:
+                differences.append(Difference(student, step, check, by_kernel[check], points[check]))
     return differences
 
 

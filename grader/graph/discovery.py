@@ -73,8 +73,8 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
         )
     except Exception as error:
         rclpy.try_shutdown()
-        told = str(error).strip().splitlines() or [type(error).__name__]
-        message = f"The ROS 2 node could not be created: {told[0]}"
+        lines = str(error).strip().splitlines() or [type(error).__name__]
+        message = f"The ROS 2 node could not be created: {lines[0]}"
         raise Ros2Error(message) from error
     try:
         yield node
@@ -196,12 +196,12 @@ def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool
     for name, _ in node.get_topic_names_and_types():
         endpoints += node.get_publishers_info_by_topic(name)
         endpoints += node.get_subscriptions_info_by_topic(name)
-    heard = {bytes(endpoint.endpoint_gid[:12]) for endpoint in endpoints}
+    ids = {bytes(endpoint.endpoint_gid[:12]) for endpoint in endpoints}
     if any(endpoint.node_name == _UNKNOWN for endpoint in endpoints):
         return False
     if expected is None or not _this_machine_only():
-        return waited_s >= (NOTHING_THERE_S if named_s is None else named_s) and len(heard) >= (expected or 0)
-    return len(heard) >= expected
+        return waited_s >= (NOTHING_THERE_S if named_s is None else named_s) and len(ids) >= (expected or 0)
+    return len(ids) >= expected
 
 
 def _participants(domain: int) -> int | None:

@@ -20,14 +20,14 @@ class End:
 
 
 @dataclass(frozen=True)
-class Heard:
+class Observed:
     """The full names of all other nodes, one entry per node, and their publishers and subscriptions; sorted."""
 
     nodes: tuple[str, ...]
     ends: tuple[End, ...]
 
 
-def heard(node: Node) -> Heard:
+def observe(node: Node) -> Observed:
     """Return what `node` has discovered so far; call `discovery.settle` first to get the whole graph."""
     own = node.get_fully_qualified_name()
     names = [_full(name, namespace) for name, namespace in node.get_node_names_and_namespaces()]
@@ -38,7 +38,7 @@ def heard(node: Node) -> Heard:
             ("subscription", node.get_subscriptions_info_by_topic(topic)),
         ):
             ends += [End(kind, _full(i.node_name, i.node_namespace), topic, i.topic_type) for i in infos]
-    return Heard(
+    return Observed(
         tuple(sorted(name for name in names if name != own)),
         tuple(sorted((end for end in ends if end.node != own), key=lambda end: (end.topic, end.kind, end.node))),
     )

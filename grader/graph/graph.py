@@ -193,13 +193,13 @@ def _node(name: str, counts: dict[str, int]) -> str:
 def _rows(topic: Topic, counts: dict[str, int], strokes: _Strokes, left: int, middle: int) -> Iterator[str]:
     into = list(_branches(len(topic.publishers), strokes.one, strokes.into))
     out = list(_branches(len(topic.subscribers), strokes.one, strokes.out))
-    blank = " " * len(strokes.one)
+    space = " " * len(strokes.one)
     for row in range(max(len(into), len(out))):
         publisher = _node(topic.publishers[row], counts) if row < len(into) else ""
         subscriber = _node(topic.subscribers[row], counts) if row < len(out) else ""
         box = f"[{topic.name}]" if row == 0 else ""
-        enter = into[row] if row < len(into) else blank
-        leave = out[row] if row < len(out) else blank
+        enter = into[row] if row < len(into) else space
+        leave = out[row] if row < len(out) else space
         # The line to the right begins at the box's edge, so that it does not look cut off.
         gap = strokes.one[0] if row == 0 and out else " "
         yield f"{publisher:>{left}} {enter} {f'{box} '.ljust(middle + 1, gap)}{leave} {subscriber}".rstrip()

@@ -96,12 +96,12 @@ def _graded(exercise: Exercise, folder: Path) -> Verdict:
             stderr=subprocess.PIPE,
             start_new_session=True,
         )
-        said = []
+        lines = []
         try:
             assert worker.stderr is not None
             for line in worker.stderr:
-                said.append(line.decode("utf-8", "replace").strip())
-                progress.tell(said[-1])
+                lines.append(line.decode("utf-8", "replace").strip())
+                progress.tell(lines[-1])
             worker.wait()
         finally:
             _end(worker)
@@ -109,7 +109,7 @@ def _graded(exercise: Exercise, folder: Path) -> Verdict:
         try:
             data = json.loads(answer.read())
         except ValueError as error:
-            message = f"The grader ended without a verdict: {(said or ['it printed nothing'])[-1]}"
+            message = f"The grader ended without a verdict: {(lines or ['it printed nothing'])[-1]}"
             raise MachineError(message) from error
     if "error" in data:
         raise UsageError(data["error"])

@@ -64,8 +64,8 @@ class Simulator:
         self._reader.start()
         self._changed.wait(START_S)
         if not self._picture:
-            said = self._end()
-            message = f"turtlesim did not start: {(said.strip().splitlines() or ['it printed nothing'])[-1]}"
+            output = self._end()
+            message = f"turtlesim did not start: {(output.strip().splitlines() or ['it printed nothing'])[-1]}"
             raise MachineError(message)
         self._handle = display(Image(self._picture), display_id=True)  # type: ignore[no-untyped-call]
         threading.Thread(target=self._show, daemon=True).start()
@@ -134,11 +134,11 @@ class Simulator:
             self._reader.join(2.0)
         if self._picture and hasattr(self, "_handle"):
             self._update()
-        said = process.stderr.read().decode("utf-8", "replace")
+        output = process.stderr.read().decode("utf-8", "replace")
         process.stderr.close()
         self._process = None
         self._changed.set()
-        return said
+        return output
 
     def _read(self) -> None:
         assert self._process is not None

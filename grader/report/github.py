@@ -105,8 +105,8 @@ def _command(kind: str, student: str, outcome: Outcome, folder: str) -> str:
     message = shorten(
         " ".join(text for text in (finding.observed, finding.expected, finding.cause) if text), 3 * LONGEST
     )
-    told = ",".join(f"{name}={_property(value)}" for name, value in properties.items())
-    return f"::{kind} {told}::{_data(message)}"
+    joined = ",".join(f"{name}={_property(value)}" for name, value in properties.items())
+    return f"::{kind} {joined}::{_data(message)}"
 
 
 def _data(text: str) -> str:

@@ -27,13 +27,13 @@ def for_students(report: Report) -> Report:
 def _covered(outcome: Outcome, number: int) -> Outcome:
     # A hidden check that was not judged counts as not passed, and the reason stays hidden too.
     status = Status.FAILED if outcome.status is Status.SKIPPED else outcome.status
-    said = "passed" if status is Status.PASSED else "could not be judged" if status is Status.ERROR else "failed"
+    verdict = "passed" if status is Status.PASSED else "could not be judged" if status is Status.ERROR else "failed"
     return replace(
         outcome,
         id=f"hidden-{number}",
         kind="hidden",
         title="Hidden check",
-        finding=Finding(status, f"Hidden check: {said}."),
+        finding=Finding(status, f"Hidden check: {verdict}."),
     )
 
 

@@ -210,7 +210,7 @@ def class_page(reports: ClassReports) -> str:
         "mean": sum(shares) / len(shares) if shares else 0.0,
         "middle": sorted(shares)[len(shares) // 2] if shares else 0.0,
         "distribution": Markup(distribution(shares)) if shares else "",
-        "caption": _said(shares),
+        "caption": _in_words(shares),
     }
     return make_page("class.html", "class.js", {}, values)
 
@@ -231,9 +231,9 @@ def counts(shares: Iterable[float]) -> list[int]:
     return found
 
 
-def _said(shares: Iterable[float]) -> str:
-    told = [f"{amount} got {name} %" for name, amount in zip(BINS, counts(shares), strict=True) if amount]
-    return f"Share of the points: {'; '.join(told)}."
+def _in_words(shares: Iterable[float]) -> str:
+    groups = [f"{amount} got {name} %" for name, amount in zip(BINS, counts(shares), strict=True) if amount]
+    return f"Share of the points: {'; '.join(groups)}."
 
 
 def distribution(shares: Iterable[float]) -> str:

@@ -115,8 +115,8 @@ def _end(evidence: Evidence) -> str:
     code = end.exit_code if end.exit_code >= 0 else 128 - end.exit_code
     if end.by == "itself":
         return f"The node ended by itself after {end.t_s:.1f} s, with exit code {code}."
-    told = {"SIGINT": "on Ctrl-C", "SIGTERM": "only on SIGTERM", "SIGKILL": "only when it was killed (SIGKILL)"}[end.by]
-    return f"The node stopped {told}, with exit code {code}."
+    when = {"SIGINT": "on Ctrl-C", "SIGTERM": "only on SIGTERM", "SIGKILL": "only when it was killed (SIGKILL)"}[end.by]
+    return f"The node stopped {when}, with exit code {code}."
 
 
 def _rows(evidence: Evidence) -> list[tuple[str, ...]]:

@@ -65,11 +65,11 @@ def _case(suite: ET.Element, student: str, report: Report, outcome: Outcome) -> 
     if tag is None:
         return
     finding = outcome.finding
-    told = ET.SubElement(case, tag, message=_text(finding.observed))
+    element = ET.SubElement(case, tag, message=_text(finding.observed))
     if tag != "skipped":
-        told.set("type", _text(finding.diagnosis or tag))
+        element.set("type", _text(finding.diagnosis or tag))
     rows = (("expected", finding.expected), ("why", finding.cause), ("where", str(finding.where or "")))
-    told.text = "\n".join(_text(f"{label}: {text}") for label, text in rows if text) or None
+    element.text = "\n".join(_text(f"{label}: {text}") for label, text in rows if text) or None
 
 
 def _text(text: str) -> str:

@@ -36,11 +36,11 @@ def render(report: Report, console: Console, *, brief: bool = False, verbose: bo
     With `brief`, only checks that did not pass are printed. With `verbose`, the clock is always printed.
     """
     _line(console, Text(printable(f"{report.exercise_title}: {report.submission}"), style="bold"))
-    told = ""
+    shown = ""
     for outcome in report.outcomes:
         if not (brief and _look(outcome) in ("passed", "skipped")):
-            _check(outcome, console, told)
-        told = outcome.finding.observed
+            _check(outcome, console, shown)
+        shown = outcome.finding.observed
     console.print()
     if brief:
         amount = count(len(report.with_status(Status.PASSED)), "check")
@@ -52,10 +52,10 @@ def render(report: Report, console: Console, *, brief: bool = False, verbose: bo
 
 def early(outcomes: Sequence[Outcome]) -> list[str]:
     """Return lines about what is already wrong in the files, to be read while the package is built and run."""
-    told = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
+    shown = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
     lines = [
         f"{outcome.title}: {finding.observed}" + (f" ({finding.where})" if finding.where else "")
-        for outcome, finding in told
+        for outcome, finding in shown
     ]
     return [printable(f"Already wrong in the files: {line}") for line in lines]
 
@@ -67,8 +67,8 @@ def _look(outcome: Outcome) -> str:
     return outcome.status.value
 
 
-def _check(outcome: Outcome, console: Console, told: str) -> None:
-    """Print one check. If it has the same message as the check before (`told`), the message is not repeated."""
+def _check(outcome: Outcome, console: Console, shown: str) -> None:
+    """Print one check. If it has the same message as the check before (`shown`), the message is not repeated."""
     look = _look(outcome)
     signs = SIGNS if console.encoding.lower().startswith("utf") else ASCII_SIGNS
     head = Text(f"{signs[look]} ", style=STYLES[look])
@@ -77,7 +77,7 @@ def _check(outcome: Outcome, console: Console, told: str) -> None:
         points = f"{_points(outcome.points)}/{_points(outcome.max)}" + (" so far" if look == "error" else "")
         head.append(f"  {points}", style="dim" if look == "passed" else STYLES[look])
     _line(console, head)
-    if look == "passed" or outcome.hidden or outcome.finding.observed == told:
+    if look == "passed" or outcome.hidden or outcome.finding.observed == shown:
         return
     finding = outcome.finding
     if look == "skipped":

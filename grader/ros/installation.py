@@ -91,8 +91,8 @@ def _why_none(env: Mapping[str, str]) -> str:
             f"This course was set up for the ROS 2 in {made_for}, which is not sourced in this terminal. "
             f"Type: source {made_for}/setup.bash"
         )
-    seen = env.get("ROS_DISTRO")
-    found = f"ROS 2 {seen.capitalize()} is sourced, and no" if seen and seen != DISTRO else "No"
+    distro = env.get("ROS_DISTRO")
+    found = f"ROS 2 {distro.capitalize()} is sourced, and no" if distro and distro != DISTRO else "No"
     return (
         f"{found} ROS 2 Jazzy was found. Run `make demo` in the course's folder, which installs it into .venv, "
         "and `source .venv/setup.bash`; or source your own: `source /opt/ros/jazzy/setup.bash`."

@@ -64,7 +64,7 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
 def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> None:
     """Replace this process by the user's shell, which sets up ROS 2 as in `wanted` after its start-up files."""
     shell = env.get("SHELL") or "/bin/bash"
-    argv, extra = [shell, "-i"], {}
+    argv, variables = [shell, "-i"], {}
     # After the start-up files, because they may set PATH or source a ROS 2.
     ours = f'eval "$({shlex.quote(str(Path(sys.prefix, "bin/grader")))} env --domain {wanted["ROS_DOMAIN_ID"]})"\n'
     if Path(shell).name == "bash":
@@ -72,9 +72,9 @@ def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -
     elif Path(shell).name == "zsh":
         own = env.get("ZDOTDIR", env.get("HOME", "/"))
         text = f'ZDOTDIR={shlex.quote(own)}\n[ -f "$ZDOTDIR/.zshrc" ] && . "$ZDOTDIR/.zshrc"\n{ours}'
-        extra = {"ZDOTDIR": str(Path(_start_up(text, ".zshrc")).parent)}
+        variables = {"ZDOTDIR": str(Path(_start_up(text, ".zshrc")).parent)}
     try:
-        os.execvpe(shell, argv, {**wanted, **extra})
+        os.execvpe(shell, argv, {**wanted, **variables})
     except OSError as error:
         message = f"Your shell could not be started: {shell}: {error.strerror}. The variable SHELL names it."
         raise MachineError(message) from error

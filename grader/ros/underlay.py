@@ -185,7 +185,7 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
 
 def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -> None:
     lines: list[str] = []
-    told = 0
+    reported = 0
     with subprocess.Popen(
         command,
         # CMake and make start Python themselves, so they run in a folder without modules of others.
@@ -202,8 +202,8 @@ def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -
         for line in process.stdout:
             lines.append(line.rstrip())
             percent = _percent(line)
-            if percent is not None and percent >= told + 20:
-                told = percent
+            if percent is not None and percent >= reported + 20:
+                reported = percent
                 tell(f"Building the turtlesim interfaces: {percent} %")
     if process.returncode != 0:
         end = "\n".join(line for line in lines[-_LOG_LINES:] if line)

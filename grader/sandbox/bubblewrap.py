@@ -210,9 +210,9 @@ def why_unavailable() -> str | None:
         )
     if done.returncode == 0:
         return None
-    said = done.stderr.strip().splitlines()[-1:] or ["no message"]
+    lines = done.stderr.strip().splitlines()[-1:] or ["no message"]
     return (
-        f"bubblewrap cannot create its namespaces ({said[0]}). On Ubuntu 24.04, AppArmor forbids them to "
+        f"bubblewrap cannot create its namespaces ({lines[0]}). On Ubuntu 24.04, AppArmor forbids them to "
         "ordinary users; `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows them until the next "
         "start. "
         'docs/security.md, "Without a sandbox", has a permanent rule, and the options that a container needs'

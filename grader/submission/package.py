@@ -101,8 +101,8 @@ def _answers(name: str) -> Submission:
         raise UsageError(message) from error
     if ANSWERS not in found.files:
         why = found.rejected.get(ANSWERS)
-        seen = f"{shown(name)}/{ANSWERS} {why}." if why else f"There is no {ANSWERS} in {shown(name)}."
-        message = f"{seen} Give the folder that holds your {ANSWERS}."
+        problem = f"{shown(name)}/{ANSWERS} {why}." if why else f"There is no {ANSWERS} in {shown(name)}."
+        message = f"{problem} Give the folder that holds your {ANSWERS}."
         raise UsageError(message)
     files = {ANSWERS: found.files[ANSWERS]}
     return Submission(name, Path(name).resolve(), files, (), digest(files))

@@ -109,24 +109,24 @@ def _several(packages: list[str], name: str) -> str:
 
 
 def _none(search: _Search, root: int, name: str) -> str:
-    seen = f"There is no package in {shown(name)}: no folder in it has a package.xml or a setup.py."
+    none = f"There is no package in {shown(name)}: no folder in it has a package.xml or a setup.py."
     if search.nearly:
-        return f"{seen} {shown(search.nearly[0])} is nearly one: the name must be exactly package.xml or setup.py."
+        return f"{none} {shown(search.nearly[0])} is nearly one: the name must be exactly package.xml or setup.py."
     if search.linked:
         return (
-            f"{seen} {shown(search.linked[0])} is a link, and links are not followed: give the folder that it leads to."
+            f"{none} {shown(search.linked[0])} is a link, and links are not followed: give the folder that it leads to."
         )
     if search.ignored:
         return (
-            f"{seen} {shown(search.ignored[0])} was passed over, as by colcon, since it holds a file {IGNORE_MARKER}."
+            f"{none} {shown(search.ignored[0])} was passed over, as by colcon, since it holds a file {IGNORE_MARKER}."
         )
     for above in list(Path(name).resolve().parents)[:2]:
         if any((above / file).is_file() for file in PACKAGE_FILES):
-            return f"{seen} The folder around it, {shown(str(above))}, is one: give that."
+            return f"{none} The folder around it, {shown(str(above))}, is one: give that."
     names = [shown(entry.name) + ("/" if entry.is_folder else "") for entry in tree.entries(root) or []]
     if not names:
-        return f"{seen} The folder is empty. Give the folder of your package."
-    return f"{seen} It holds {_listed(names)}. {GIVE}"
+        return f"{none} The folder is empty. Give the folder of your package."
+    return f"{none} It holds {_listed(names)}. {GIVE}"
 
 
 def _listed(names: list[str]) -> str:

@@ -134,12 +134,12 @@ class NodeProcess:
         """
         assert self._process.stdout is not None
         assert self._process.stderr is not None
-        said = b""
-        while not said.endswith(READY):
+        received = b""
+        while not received.endswith(READY):
             byte = os.read(self._process.stdout.fileno(), 1)
             if not byte:
-                raise LaunchError((said + self._process.stderr.read()).decode("utf-8", "replace").strip())
-            said += byte
+                raise LaunchError((received + self._process.stderr.read()).decode("utf-8", "replace").strip())
+            received += byte
         self.pid = self._find_pid()
         self._guard = Guard(self._process.pid, self._limits, self._over)
         for stream in self._streams:

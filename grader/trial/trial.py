@@ -56,8 +56,8 @@ class Plan:
 
 def last_words(stderr: bytes) -> str:
     """What a program of ours said before it ended, without the frames of a traceback."""
-    said = stderr.decode("utf-8", "replace").strip()
-    return said.splitlines()[-1] if "Traceback (most recent call last)" in said else said
+    output = stderr.decode("utf-8", "replace").strip()
+    return output.splitlines()[-1] if "Traceback (most recent call last)" in output else output
 
 
 class WallTimeNeeded(Exception):  # noqa: N818 - not an error
@@ -243,8 +243,8 @@ class Trial:
             raise self._how_it_ended()
         self._kill()
         self._errors.seek(0)
-        said = answer.get("fault") or last_words(self._errors.read()[-2000:])
-        message = f"The simulator failed: {said or 'it said nothing'}. `grader doctor` tells what is missing."
+        output = answer.get("fault") or last_words(self._errors.read()[-2000:])
+        message = f"The simulator failed: {output or 'it output nothing'}. `grader doctor` tells what is missing."
         raise MachineError(message)
 
     def _how_it_ended(self) -> OverwhelmedError:

@@ -93,10 +93,10 @@ class _Screen:
 
     def _show(self) -> None:
         state = [(name, turtle.x, turtle.y, turtle.theta) for name, turtle in self._world.turtles.items()]
-        seen = (state, self._world.canvas.background)
-        if seen == self._shown:
+        shown = (state, self._world.canvas.background)
+        if shown == self._shown:
             return
-        self._shown = seen
+        self._shown = shown
         picture = self._world.canvas.image()
         draw = ImageDraw.Draw(picture)
         for _, x, y, theta in state:

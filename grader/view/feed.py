@@ -55,7 +55,7 @@ class WatchedCanvas(Canvas):
 
 
 @dataclass
-class Heard:
+class Received:
     """The messages on a topic since the last message to the view: their number, the last one and its time (s)."""
 
     count: int = 0
@@ -71,7 +71,7 @@ class Feed:
     namespace: str = "/"
     """The namespace of the node: turtle1's commands arrive on /turtle1/cmd_vel."""
     canvas: WatchedCanvas = field(default_factory=WatchedCanvas)
-    heard: dict[str, Heard] = field(default_factory=dict)
+    received: dict[str, Received] = field(default_factory=dict)
     sent: dict[str, int] = field(default_factory=dict)
     _frames: int = 0
     _shown: object = None
@@ -83,11 +83,11 @@ class Feed:
 
     def on_command(self, topic: str, _: bytes, twist: Any) -> None:  # noqa: ANN401 - a message of rclpy's
         """Note a command as it arrives."""
-        heard = self.heard.setdefault(topic, Heard())
-        heard.count += 1
-        heard.last_s = time.monotonic()
+        received = self.received.setdefault(topic, Received())
+        received.count += 1
+        received.last_s = time.monotonic()
         linear, angular = twist.linear, twist.angular
-        heard.twist = (linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
+        received.twist = (linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
 
     def on_publish(self, topic: str, _: str, __: bytes) -> None:
         """Count a message that is sent."""
@@ -105,7 +105,7 @@ class Feed:
             "background": self.canvas.background,
             "turtles": {name: _told(turtle) for name, turtle in turtles.items()},
         }
-        changed = bool(self.canvas.lines) or self.canvas.cleared or bool(self.heard) or state != self._shown
+        changed = bool(self.canvas.lines) or self.canvas.cleared or bool(self.received) or state != self._shown
         if (changed or now - self._told_s >= TOLD_EVERY_S) and self._view_listens():
             self._tell(state, now)
 
@@ -124,7 +124,7 @@ class Feed:
             "cleared": canvas.cleared,
             "lines": canvas.lines,
             "picture": _picture(canvas) if self._too_long else None,
-            "heard": {topic: (heard.count, heard.last_s, heard.twist) for topic, heard in self.heard.items()},
+            "received": {topic: (each.count, each.last_s, each.twist) for topic, each in self.received.items()},
             "sent": self.sent,
         }
         try:
@@ -134,9 +134,9 @@ class Feed:
             return
         self._shown, self._told_s = state, now
         canvas.lines, canvas.cleared, self._too_long = [], False, False
-        self.heard, self.sent = {}, {}
+        self.received, self.sent = {}, {}
 
-    def asked(self) -> list[str]:
+    def requests(self) -> list[str]:
         """Return the requests of the view: "pause", "resume", "clear", "reset".
 
         Raises:

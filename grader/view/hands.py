@@ -79,7 +79,7 @@ class Hands:
         if topic is not None and isinstance(key, Turn | Cancel):
             self._ears.drive(topic, key)
 
-    def asked(self, what: str) -> None:
+    def request(self, what: str) -> None:
         """Pause, resume, clear or reset."""
         if what in BUTTONS and self._simulator is not None:
             # A simulator that is ending does not read any more.

@@ -43,7 +43,7 @@ class View:
         """Send the state to the view, and handle its requests."""
         self.feed.show(node.world.turtles, paused=self.paused)
         try:
-            for wanted in self.feed.asked():
+            for wanted in self.feed.requests():
                 self._do(wanted, node)
         except ConnectionError:
             self.open = False

@@ -133,7 +133,7 @@ class Page:
             self._drawing = asyncio.create_task(self._draw(system))
 
     async def _draw(self, system: System) -> None:
-        drawn = picture(system.heard.nodes, system.heard.ends, self._show)
+        drawn = picture(system.observed.nodes, system.observed.ends, self._show)
         if drawn == self._drawn:
             return
         try:

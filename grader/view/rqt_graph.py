@@ -105,17 +105,17 @@ def _run(options: argparse.Namespace) -> int:
         return 0
     # Import it here: the environment has rclpy only now.
     from grader.graph.discovery import cli_node, settle
-    from grader.graph.endpoints import heard
+    from grader.graph.endpoints import observe
 
     with cli_node(f"_rqt_graph_{os.getpid()}") as node:
         complete = settle(node)
-        seen = heard(node)
-    if not seen.nodes:
+        observed = observe(node)
+    if not observed.nodes:
         print(_NOTHING.format(domain=os.environ.get("ROS_DOMAIN_ID", "0")), file=sys.stderr)
         return 1
     if not complete:
         print(_MISSING, file=sys.stderr)
-    drawn = picture(seen.nodes, seen.ends, show)
+    drawn = picture(observed.nodes, observed.ends, show)
     if options.output is not None:
         _write(options.output, drawn)
     else:

@@ -89,8 +89,8 @@ class Screen:
 
     def _title(self) -> Text:
         state = self._shown.state
-        told = ("● paused ", "bold yellow") if state.paused else ("● live ", "bold green")
-        return Text.assemble(("turtlesim ", "bold"), told, no_wrap=True)
+        status = ("● paused ", "bold yellow") if state.paused else ("● live ", "bold green")
+        return Text.assemble(("turtlesim ", "bold"), status, no_wrap=True)
 
     def _beside(self, height: int) -> Group:
         shown = self._shown

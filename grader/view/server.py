@@ -40,7 +40,7 @@ class Pressed(Protocol):
     def pressed(self, turtle: str, key: str) -> None:
         """Handle a key that acts once."""
 
-    def asked(self, what: str) -> None:
+    def request(self, what: str) -> None:
         """Handle a button."""
 
     def let_go(self, page: object) -> None:
@@ -141,7 +141,7 @@ class _Page:
         elif "press" in said:
             self._hands.pressed(str(said["turtle"]), str(said["press"]))
         elif "do" in said:
-            self._hands.asked(str(said["do"]))
+            self._hands.request(str(said["do"]))
         elif "awake" in said:
             await (self._wake() if said["awake"] else self._sleep())
 

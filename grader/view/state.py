@@ -64,7 +64,7 @@ class State:
         if message["picture"] is not None:
             self.trail.take_picture(base64.b64decode(message["picture"]))
         self.pieces = self.trail.draw(message["lines"])
-        for topic, (count, last_s, twist) in message["heard"].items():
+        for topic, (count, last_s, twist) in message["received"].items():
             self.commands[topic] = Command(last_s, tuple(twist))
             self.rates.setdefault(topic, Arrivals()).add(last_s, count)
         for topic, count in message["sent"].items():

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 
-from grader.graph.endpoints import Heard, heard
+from grader.graph.endpoints import Observed, observe
 from grader.graph.graph import DEBUG_TOPICS
 from grader.graph.names import hidden
 from grader.ros import values
@@ -48,7 +48,7 @@ _COUNTING = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 class System:
     """The graph, and the rates (Hz) of the measured topics; None: no messages arrive."""
 
-    heard: Heard
+    observed: Observed
     rates: dict[str, float | None]
 
 
@@ -93,24 +93,24 @@ class Ears:
     # --- the graph and the rates --------------------------------------------------------------------------------
 
     def _look(self) -> None:
-        seen = heard(self._node)
+        observed = observe(self._node)
         now = time.monotonic()
         if now >= self._leave_s:
             self._leave()
-        wanted = self._wanted(seen) if self.looking else {}
+        wanted = self._wanted(observed) if self.looking else {}
         for topic in [topic for topic in self._counters if topic not in wanted]:
             self._counters.pop(topic).close(self._node)
         for topic, type_name in wanted.items():
             if topic not in self._counters:
                 self._counters[topic] = _Counter(topic, type_name)
             self._counters[topic].look(self._node, now)
-        self._tell(System(seen, {topic: counter.hertz(now) for topic, counter in self._counters.items()}))
+        self._tell(System(observed, {topic: counter.hertz(now) for topic, counter in self._counters.items()}))
 
-    def _wanted(self, seen: Heard) -> dict[str, str]:
+    def _wanted(self, observed: Observed) -> dict[str, str]:
         known = self._known()
         return {
             end.topic: end.type
-            for end in seen.ends
+            for end in observed.ends
             if end.kind == "publisher"
             and not hidden(end.topic)
             and end.topic not in DEBUG_TOPICS

@@ -161,7 +161,7 @@ def _do(shown: Terminal, data: bytes, hands: Hands) -> bool:
     text = data.decode("latin-1")
     for char, what in ((" ", "resume" if shown.state.paused else "pause"), ("x", "clear"), ("z", "reset")):
         if char in text.lower():
-            hands.asked(what)
+            hands.request(what)
     if "\t" in text:
         shown.next_turtle()
     typed, shown.typed = keys(shown.typed + text)

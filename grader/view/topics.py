@@ -24,7 +24,7 @@ def rows(system: System, state: State, show: Show) -> list[dict[str, object]]:
     """
     types: dict[str, list[str]] = {}
     ends: dict[tuple[str, str], list[str]] = {}
-    for end in system.heard.ends:
+    for end in system.observed.ends:
         if end.node.startswith(VIEWS):
             continue
         for seen, value in (
@@ -33,7 +33,7 @@ def rows(system: System, state: State, show: Show) -> list[dict[str, object]]:
         ):
             if value not in seen:
                 seen.append(value)
-    drawn = picture(system.heard.nodes, system.heard.ends, show)
+    drawn = picture(system.observed.nodes, system.observed.ends, show)
     rates = {**system.rates, **{topic: arrivals.hertz(time.monotonic()) for topic, arrivals in state.rates.items()}}
     return [
         {

@@ -91,7 +91,7 @@ def answer_list(evidence: Evidence, params: AllOf) -> Finding:
 class GraphQuestion:
     """A question about the ROS graph: the topics, types or nodes of the endpoints that match all these parameters.
 
-    With `heard_by`, only topics count on which that node has the opposite endpoint.
+    With `connected_to`, only topics count on which that node has the opposite endpoint.
     """
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
@@ -102,7 +102,7 @@ class GraphQuestion:
         "the beginning of a type name", default="", about="Only types that start with this string count."
     )
     type_ends: str = string("the end of a type name", default="", about="Only types that end with this string count.")
-    heard_by: str = string(
+    connected_to: str = string(
         "a node's full name", start="/", default="", about="Only topics on which this node has the other end count."
     )
     form: str = choice("text", "list", about="Whether the answer is a single string or a list of all that fit.")
@@ -127,8 +127,8 @@ def answer_graph(evidence: Evidence, params: GraphQuestion) -> Finding:
 
 def _right_answers(recording: Recording, params: GraphQuestion) -> tuple[str, ...]:
     endpoints = [end for graph in recording.graphs for end in graph.endpoints if _counts(end, params)]
-    if params.heard_by:
-        both = [end for graph in recording.graphs for end in graph.endpoints if end.node == params.heard_by]
+    if params.connected_to:
+        both = [end for graph in recording.graphs for end in graph.endpoints if end.node == params.connected_to]
         other = {(end.topic, end.type) for end in both if end.kind != params.among}
         endpoints = [end for end in endpoints if (end.topic, end.type) in other]
     return tuple(sorted({getattr(end, params.find) for end in endpoints}))
@@ -221,12 +221,12 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
     answers_, right = {_plain(each) for each in given}, {_plain(each) for each in truth}
     if answers_ == right:
         return passed(f"Right: {a_list(sorted(given))}.")
-    extra, missing = len(answers_ - right), len(right - answers_)
-    parts = [f"{extra} too many" if extra else "", f"{missing} missing" if missing else ""]
+    surplus, missing = len(answers_ - right), len(right - answers_)
+    parts = [f"{surplus} too many" if surplus else "", f"{missing} missing" if missing else ""]
     difference = " and ".join(part for part in parts if part)
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
     observed = f"{name} is {_shown(given)}: {difference}."
-    diagnosis: Diagnosis = "wrong-list" if extra and missing else "list-too-long" if extra else "list-incomplete"
+    diagnosis: Diagnosis = "wrong-list" if surplus and missing else "list-too-long" if surplus else "list-incomplete"
     return failed(observed, "The list has every right item and no others.", Cause(diagnosis, cause.strip(), where))
 
 

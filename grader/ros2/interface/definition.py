@@ -30,7 +30,7 @@ def lines(name: str, *, comments: bool = True, nested_comments: bool = False, de
         message = f"Could not find the interface '{name}': {file} could not be read"
         raise Ros2Error(message) from error
     for raw in text.splitlines():
-        line = raw.rstrip() if comments else _told_without_comment(raw)
+        line = raw.rstrip() if comments else _strip_comment(raw)
         if line or comments:
             yield "\t" * depth + line if line else ""
         nested = _type_of(_without_comment(raw), name.split("/")[0])
@@ -38,7 +38,7 @@ def lines(name: str, *, comments: bool = True, nested_comments: bool = False, de
             yield from lines(nested, comments=nested_comments, nested_comments=nested_comments, depth=depth + 1)
 
 
-def _told_without_comment(line: str) -> str:
+def _strip_comment(line: str) -> str:
     """Return the line as `--no-comments` prints it. Like the real `ros2`, it keeps a # with a space after it."""
     before = _without_comment(line)
     behind = line[len(before) :]

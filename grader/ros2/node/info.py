@@ -34,8 +34,8 @@ def run(args: argparse.Namespace) -> int:
     if name not in names:
         raise Ros2Error(did_you_mean(name, names, f"Unable to find node '{name}'"))
     if names.count(name) > 1:
-        told = f'There are {names.count(name)} nodes in the graph with the exact name "{name}".'
-        print(f"{told} You are seeing information about only one of them.", file=sys.stderr)
+        text = f'There are {names.count(name)} nodes in the graph with the exact name "{name}".'
+        print(f"{text} You are seeing information about only one of them.", file=sys.stderr)
     node = next(node for node in graph.nodes if node.name == name)
     print(name)
     for title, found in (

@@ -163,9 +163,9 @@ def _tell(wanted: NewPackage, destination: str) -> None:
 
 def _email() -> str:
     try:
-        asked = subprocess.run(
+        answer = subprocess.run(
             ["git", "config", "user.email"], capture_output=True, text=True, check=False, errors="replace"
         )
     except OSError:
         return ""
-    return asked.stdout.strip()
+    return answer.stdout.strip()

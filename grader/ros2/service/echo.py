@@ -49,8 +49,8 @@ def run(args: argparse.Namespace) -> int:
 
         node.create_subscription(made.Event, topic, show, QoSPresetProfiles.SERVICES_DEFAULT.value)
         if node.count_publishers(topic) < 1:
-            told = f"No publishers on topic '{args.service_name}/_service_event'; "
-            print(f"{told}is service introspection on the client or server enabled?", flush=True)
+            warning = f"No publishers on topic '{args.service_name}/_service_event'; "
+            print(f"{warning}is service introspection on the client or server enabled?", flush=True)
         spin_until(node, lambda: False)
     return 0
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.classroom.found import Found
-    from grader.classroom.grade_class import Asked
+    from grader.classroom.grade_class import Request
     from grader.classroom.results import Result
     from grader.gradebook.scores import Synced
 
@@ -113,13 +113,13 @@ def points_of(term: Term, assignment: str = STEP) -> dict[str, float]:
 def sync_with_an_error_for(student: str, term: Term, monkeypatch: pytest.MonkeyPatch) -> Synced:
     """Sync while the machine fails for this student's submission."""
 
-    def failing(asked: Asked, found: tuple[Found, ...], say: Any, tell: Any) -> list[Result]:  # noqa: ANN401
-        graded = grade_found(asked, tuple(each for each in found if each.student != student), say, tell)
+    def failing(request: Request, found: tuple[Found, ...], say: Any, tell: Any) -> list[Result]:  # noqa: ANN401
+        graded = grade_found(request, tuple(each for each in found if each.student != student), say, tell)
         order = Order(found, {}, sources_for(found, None), "none")
         for each in found:
             if each.student == student:
                 done = set_aside(order.task(each), "The machine was out of memory.")
-                graded.append(Results(asked.out).save(student, done.report, order.key(each), done.page))
+                graded.append(Results(request.out).save(student, done.report, order.key(each), done.page))
         return graded
 
     monkeypatch.setattr(scores, "grade_found", failing)

@@ -140,10 +140,10 @@ def test_a_position_that_is_no_number_is_told_as_none(simulator: Simulator) -> N
 def test_commands_are_heard_by_the_view_until_it_is_gone(simulator: Simulator) -> None:
     simulator.view.send(b'"pause"')
     simulator.view.send(b'"clear"')
-    assert simulator.feed.asked() == ["pause", "clear"]
+    assert simulator.feed.requests() == ["pause", "clear"]
     simulator.view.close()
     with pytest.raises(ConnectionError):
-        simulator.feed.asked()
+        simulator.feed.requests()
     # And what is told to nobody is no error.
     simulator.run(4)
 
