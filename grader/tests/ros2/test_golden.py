@@ -6,8 +6,6 @@ What may differ is named where the comparison is made, with the reason.
 from __future__ import annotations
 
 import re
-import stat
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -16,6 +14,7 @@ from grader.tests.ros2.world import World, all_golden, build, environment, golde
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+    from pathlib import Path
 
 NOTHING_RUNNING = ["topic_list_nothing_running"]
 FILES_ONLY = [
@@ -249,110 +248,3 @@ def test_set_a_parameter_within_its_range_and_beyond(touched: World) -> None:
 def test_send_a_goal(touched: World) -> None:
     # The goal's id is drawn.
     same("action_send_goal", touched, lambda text: re.sub(r"ID: [\da-f]{32}\n", "ID:\n", text))
-
-
-# --- nodes ------------------------------------------------------------------------------------------------------------
-
-LINE = re.compile(r"\[(\w+)\] \[\d+\.\d+\] (\[\w+\]: .*)")
-
-
-def said(lines: list[str]) -> list[str]:
-    """Level, node and text of each line of a log; the stamps differ."""
-    return [f"{match[1]} {match[2]}" for line in lines if (match := LINE.fullmatch(line))]
-
-
-def test_what_turtlesim_says(tmp_path: Path) -> None:
-    expected = said((Path(__file__).parents[1] / "golden/ros2/node-turtlesim_node.stderr.txt").read_text().splitlines())
-    # The real one says what rclcpp's handler of Ctrl-C says; ours has no rclcpp.
-    assert expected.pop() == "INFO [rclcpp]: signal_handler(signum=2)"
-    for where in world(tmp_path):
-        turtlesim = where.turtlesim()
-        spawn = "ros2 service call /spawn turtlesim/srv/Spawn"
-        goal = "ros2 action send_goal /turtle1/rotate_absolute turtlesim/action/RotateAbsolute"
-        for command in (
-            f"{spawn} '{{x: 2, y: 2, theta: 0.2, name: t2}}'",
-            f"{spawn} '{{x: 2, y: 2, theta: 0.2, name: t2}}'",
-            f"{spawn} '{{x: 3, y: 3}}'",
-            "ros2 service call /kill turtlesim/srv/Kill '{name: nope}'",
-            "ros2 service call /clear std_srvs/srv/Empty",
-            "ros2 service call /reset std_srvs/srv/Empty",
-            f"{goal} '{{theta: 0.1}}'",
-            f"{goal} '{{theta: 0.2}}'",
-        ):
-            assert where.run(command).code == 0, command
-        assert turtlesim.stop() == 0
-        assert said(turtlesim.lines) == expected
-
-
-def test_ctrl_c_in_a_node_that_does_not_expect_it(tmp_path: Path) -> None:
-    # The frames of the traceback are those of rclpy and of the installed script, at their places here.
-    real = (Path(__file__).parents[1] / "golden/ros2/node-draw_circle.stderr.txt").read_text().splitlines()
-    for where in world(tmp_path):
-        install = build(tmp_path, where.env)
-        module = next((install / "my_robot_controller").rglob("my_robot_controller/draw_circle.py"))
-        as_many_write_it = module.read_text().replace("except (KeyboardInterrupt, ", "except (ZeroDivisionError, ")
-        module.write_text(as_many_write_it)
-        node = where.draw_circle(install)
-        # It says that it has started before it spins; once it has published, it spins.
-        assert where.run("ros2 topic echo --once /turtle1/cmd_vel").code == 0
-        assert node.stop() != 0
-        started = [line for line in said(node.lines) if "started" in line]
-        assert started == said(real)
-        assert "Traceback (most recent call last):" in node.lines
-        assert any(line.strip() == "rclpy.spin(node)" for line in node.lines)
-        assert node.lines[-2] == real[-1] == "KeyboardInterrupt"
-        # Of the recording only standard error was kept.
-        assert node.lines[-1] == "[ros2run]: Interrupt"
-
-
-# --- a new package ----------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def src(tmp_path: Path) -> Path:
-    """The folder in which the real packages were made, as whom."""
-    (tmp_path / ".gitconfig").write_text("[user]\nemail = student@example.com\n")
-    folder = tmp_path / "ros2_ws/src"
-    folder.mkdir(parents=True)
-    return folder
-
-
-def create(src: Path, command: str) -> tuple[str, str, int]:
-    env = environment(src.parents[1])
-    done = World(src, env).run(f"umask 022; {command}")
-    return done.stdout.replace(str(src), "/home/student/ros2_ws/src"), done.stderr, done.code
-
-
-def test_create_a_package_and_again(src: Path) -> None:
-    expected = golden("pkg_create_ament_python")
-    assert create(src, expected.command) == (expected.stdout, expected.stderr, expected.code)
-    again = golden("pkg_create_again")
-    assert create(src, again.command) == (again.stdout, again.stderr, again.code)
-
-
-def tree(folder: Path) -> set[str]:
-    """Kind, mode and name; the size where it is 0. The texts are ours, and so are the sizes of the others."""
-    lines = set()
-    for path in [folder, *folder.rglob("*")]:
-        mode = path.stat().st_mode
-        size = "-" if path.is_dir() or path.stat().st_size else "0"
-        lines.add(f"{'d' if path.is_dir() else 'f'} {stat.S_IMODE(mode):o} {size} {path.relative_to(folder.parent)}")
-    return lines
-
-
-def test_what_is_in_new_packages(src: Path) -> None:
-    recorded = (Path(__file__).parents[1] / "golden/ros2/pkg_create_tree_and_files.txt").read_text()
-    parts = re.split(r"^##### (.*)\n", recorded, flags=re.MULTILINE)[1:]
-    expected = dict(zip(parts[::2], parts[1::2], strict=True))
-    assert create(src, golden("pkg_create_ament_python").command)[2] == 0
-    # The command of ROS 2's own tutorial, which is where the other tree comes from.
-    book = "ros2 pkg create --build-type ament_python --license Apache-2.0 --node-name my_node my_package"
-    assert create(src, book)[2] == 0
-    for title, text in expected.items():
-        if title.startswith("tree "):
-            listed = re.sub(
-                r"^([df] \d+) (\d+) ", lambda m: f"{m[1]} {'-' if int(m[2]) else 0} ", text, flags=re.MULTILINE
-            )
-            assert tree(src / title.removeprefix("tree ")) == set(listed.splitlines())
-        else:
-            assert (src / title).read_text() == text, title

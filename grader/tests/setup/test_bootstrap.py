@@ -5,95 +5,16 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from grader.common.packages import Need
 from grader.setup import bootstrap, machine
 from grader.setup.bootstrap import Stamp
-from grader.setup.machine import Python, SourcedRos
+from grader.setup.machine import SourcedRos
 from grader.setup.refused import MACHINE_BROKEN
+from grader.tests.setup.course import LEARNER, SYSTEMS, TESTS, Course
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-SYSTEMS = Python("/usr/bin/python3.11", (3, 11, 2), cpython=True, venv=True, headers=True)
 ROOT = Path(bootstrap.__file__).parents[2]
-LEARNER, TESTS = bootstrap.PARTS["learner"], bootstrap.PARTS["tests"]
-
-
-class Course:
-    """A folder to set up, with the commands that were run instead of being carried out."""
-
-    def __init__(self, root: Path) -> None:
-        self.root = root
-        self.stamp = root / ".venv/course-setup.json"
-        self.commands: list[list[str]] = []
-        self.python = SYSTEMS
-        self.needs: list[Need] = []
-        self.of_tests: list[Need] = []
-        self.asked: list[list[str]] = []
-        self.offline = False
-        self.granted: set[str] = set()
-        """The packages that can be had."""
-
-    def call(self, command: list[str], **_options: object) -> int:
-        self.commands.append(list(map(str, command)))
-        if "venv" in command:
-            assert not self.stamp.exists()
-            self.stamp.parent.mkdir(exist_ok=True)
-        if "grader.setup.install" in command:
-            assert not self.stamp.exists()
-            bootstrap.write_stamp(Stamp(**json.loads(command[-1])), self.stamp)
-        return 0
-
-    def provide(self, needs: list[Need], *_: object) -> str:
-        """Stands in for the package manager."""
-        self.asked.append([need.package for need in needs])
-        self.needs = [need for need in self.needs if need.package not in self.granted]
-        self.of_tests = [need for need in self.of_tests if need.package not in self.granted]
-        return "" if {need.package for need in needs} <= self.granted else "nobody may"
-
-    @property
-    def programs(self) -> list[str]:
-        """What was run: venv or grader.setup.install."""
-        known = ("venv", "grader.setup.install")
-        return [next(word for word in command if word in known) for command in self.commands]
-
-    def set_up(self, parts: list[str] = LEARNER, ros: SourcedRos | None = None) -> int:
-        self.commands, self.asked = [], []
-        return bootstrap.set_up(parts, ros, None)
-
-
-@pytest.fixture
-def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Course:
-    course = Course(tmp_path)
-    (tmp_path / "requirements.lock").write_text("one")
-    (tmp_path / "pyproject.toml").write_text("two")
-    for name, value in {
-        "ROOT": tmp_path,
-        "VENV": tmp_path / ".venv",
-        "PYTHON": tmp_path / ".venv/bin/python3",
-        "STAMP": course.stamp,
-    }.items():
-        monkeypatch.setattr(bootstrap, name, value)
-    monkeypatch.setattr(bootstrap, "read_stamp", _bind(bootstrap.read_stamp, course.stamp))
-    monkeypatch.setattr(subprocess, "call", course.call)
-    monkeypatch.setattr(subprocess, "check_output", course.call)
-    monkeypatch.setattr(os, "getuid", lambda: 1000)
-    monkeypatch.setattr(bootstrap, "provide", course.provide)
-    monkeypatch.setattr(machine, "probe", lambda _path: course.python)
-    monkeypatch.setattr(machine, "find_pythons", lambda _path: iter([course.python]))
-    monkeypatch.setattr(machine, "for_ros", lambda python, _ros: python)
-    monkeypatch.setattr(machine, "missing_tools", lambda _path, _ros: list(course.needs))
-    monkeypatch.setattr(machine, "is_offline", lambda _env: course.offline)
-    monkeypatch.setattr(machine, "missing_of_tests", lambda _path: list(course.of_tests))
-    return course
-
-
-def _bind(function: Callable[[Path], Any], path: Path) -> Callable[[], Any]:
-    return lambda: function(path)
 
 
 def test_first_set_up_makes_the_environment_and_fills_it(course: Course) -> None:
@@ -233,85 +154,6 @@ def test_a_prefix_by_another_name_is_the_same_ros(course: Course, tmp_path: Path
     course.set_up(ros=JAZZY._replace(prefix=str(tmp_path / "jazzy")))
     course.set_up(ros=JAZZY._replace(prefix=str(tmp_path / "link")))
     assert course.commands == []
-
-
-def test_what_is_missing_is_told_and_nothing_is_done(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
-    course.needs = [Need("cmake", "cmake")]
-    course.python = SYSTEMS._replace(headers=False)
-    assert course.set_up() == MACHINE_BROKEN
-    assert course.commands == []
-    message = capsys.readouterr().err
-    assert "Python.h" in message
-    assert message.count("apt-get install") == 1
-
-
-BUBBLEWRAP = Need("bubblewrap, the sandbox", "bubblewrap", "no marks")
-CMAKE = Need("cmake", "cmake")
-BROWSER, SHELLCHECK = Need("a browser", "chromium", "no pages"), Need("shellcheck", "shellcheck", "no scripts")
-
-
-def test_what_is_missing_is_installed_and_the_set_up_goes_on(course: Course) -> None:
-    course.needs = [CMAKE, BUBBLEWRAP]
-    course.granted = {"cmake", "bubblewrap"}
-    assert course.set_up() == 0
-    assert course.asked == [["cmake", "bubblewrap"]]
-    assert course.programs == ["venv", "grader.setup.install"]
-
-
-def test_a_learner_goes_on_without_a_sandbox_and_is_told(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
-    course.needs = [BUBBLEWRAP]
-    assert course.set_up() == 0
-    assert course.programs == ["venv", "grader.setup.install"]
-    (told,) = [line for line in capsys.readouterr().out.splitlines() if "bubblewrap" in line]
-    assert told.startswith("Without bubblewrap: no marks. It was not installed: nobody may. It comes with: ")
-
-
-def test_what_can_be_done_without_is_tried_for_once_and_told_each_time(
-    course: Course, capsys: pytest.CaptureFixture[str]
-) -> None:
-    course.needs = [BUBBLEWRAP]
-    course.set_up()
-    capsys.readouterr()
-    assert course.set_up() == 0
-    assert course.asked == []
-    assert capsys.readouterr().out.count("Without bubblewrap: no marks.") == 1
-    course.set_up(TESTS)
-    assert course.asked == [["bubblewrap"]]
-
-
-def test_what_cannot_be_done_without_is_tried_for_each_time(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
-    course.set_up()
-    course.needs = [CMAKE, BUBBLEWRAP]
-    assert course.set_up() == MACHINE_BROKEN
-    assert course.asked == [["cmake", "bubblewrap"]]
-    assert course.commands == []
-    message = capsys.readouterr().err
-    assert "  - cmake\n" in message
-    assert "They were not installed: nobody may.\n" in message
-
-
-def test_the_tests_need_a_sandbox(course: Course) -> None:
-    course.needs = [BUBBLEWRAP]
-    assert course.set_up(TESTS) == MACHINE_BROKEN
-    assert course.commands == []
-
-
-@pytest.mark.parametrize("granted", [set(), {"chromium", "shellcheck"}])
-def test_the_tests_go_on_without_a_browser(
-    course: Course, capsys: pytest.CaptureFixture[str], granted: set[str]
-) -> None:
-    course.of_tests, course.granted = [BROWSER, SHELLCHECK], granted
-    assert course.set_up(TESTS) == 0
-    assert course.asked == [["chromium", "shellcheck"]]
-    told = [line[: line.index(".")] for line in capsys.readouterr().out.splitlines() if line.startswith("Without")]
-    assert told == ([] if granted else ["Without a browser: no pages", "Without shellcheck: no scripts"])
-
-
-def test_a_learner_needs_nothing_that_only_tests_need(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
-    course.of_tests = [BROWSER]
-    assert course.set_up(LEARNER) == 0
-    assert course.asked == []
-    assert "browser" not in capsys.readouterr().out
 
 
 def test_a_python_that_cannot_make_an_environment_is_told(

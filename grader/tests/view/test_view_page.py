@@ -2,97 +2,24 @@
 
 from __future__ import annotations
 
-import io
 import re
-import socket
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
-from PIL import Image
-from websockets.exceptions import InvalidStatus
-from websockets.sync.client import connect
-from websockets.typing import Origin
 
-from grader.tests.browser import browser_or_reason, launched, violations
-from grader.tests.ros2.world import SOLUTION, World, world
-from grader.tests.waiting import HANG_S, until
+from grader.tests.browser import violations
+from grader.tests.ros2.world import SOLUTION
+from grader.tests.view.tab import VIEW, address, drawn, live, opened, turtle, url
+from grader.tests.waiting import until
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from playwright.sync_api import Browser, Page
 
-    from grader.tests.ros2.world import Running
+    from grader.tests.ros2.world import World
 
-VIEW = "ros2 run turtlesim turtlesim_node --view"
-PEN = (179, 184, 255)
 FEW = 60
 """Pixels at the turtle's edge are of nearly that colour."""
 DRAW_CIRCLE = f"python3 {SOLUTION}/my_robot_controller/draw_circle.py"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with launched(browser_or_reason()) as browser:
-        yield browser
-
-
-@pytest.fixture(scope="module")
-def system(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """A world with nothing in it but turtlesim and its view."""
-    for made in world(tmp_path_factory.mktemp("view")):
-        made.start(VIEW, "Spawning turtle")
-        yield made
-
-
-@pytest.fixture
-def fresh(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """A world with nothing in it yet."""
-    yield from world(tmp_path_factory.mktemp("fresh"))
-
-
-def address(of: World) -> str:
-    """What the last turtlesim that was started has printed."""
-    started = of.running[-1] if len(of.running) == 1 else next(each for each in reversed(of.running) if url(each))
-    return url(started)
-
-
-def url(running: Running) -> str:
-    found = re.search(r"http://\S+", "\n".join(running.lines))
-    return found[0] if found else ""
-
-
-@pytest.fixture
-def page(browser: Browser, system: World) -> Iterator[Page]:
-    """The page of a canvas that is clean."""
-    tab = opened(browser, address(system))
-    tab.get_by_role("button", name="Reset").click()
-    tab.get_by_text("turtle1: x 5.54 m, y 5.54 m, heading 0.00 rad").wait_for()
-    yield tab
-    tab.close()
-
-
-def opened(browser: Browser, url: str) -> Page:
-    tab = browser.new_page(viewport={"width": 1000, "height": 700})
-    tab.set_default_timeout(HANG_S * 1000)
-    tab.goto(url)
-    tab.get_by_role("status").get_by_text("Live").wait_for()
-    return tab
-
-
-def drawn(page: Page) -> int:
-    """How many pixels of the canvas have the pen's colour, as they are seen."""
-    picture = Image.open(io.BytesIO(page.locator("#sea").screenshot())).convert("RGB")
-    return sum(
-        count
-        for count, color in picture.getcolors(maxcolors=1 << 24) or []
-        if isinstance(color, tuple) and all(abs(a - b) < 12 for a, b in zip(color, PEN, strict=True))
-    )
-
-
-def turtle(page: Page, name: str = "turtle1") -> str:
-    """Where it is drawn."""
-    return page.locator(f'.turtle[data-name="{name}"]').get_attribute("transform") or ""
 
 
 # --- what is seen -----------------------------------------------------------------------------------------------------
@@ -269,95 +196,6 @@ def test_a_simulator_that_was_started_again_is_found_by_the_same_tab(browser: Br
     moved = fresh.run("ros2 service call /turtle1/teleport_absolute turtlesim/srv/TeleportAbsolute '{x: 1.0, y: 9.0}'")
     assert moved.code == 0
     tab.get_by_text("turtle1: x 1.00 m, y 9.00 m").wait_for()
-    tab.close()
-
-
-# --- who may not come in ----------------------------------------------------------------------------------------------
-
-
-def live(of: World) -> tuple[str, str, str]:
-    """The server's host and port, the token, and the address of the connection that reads and drives."""
-    host, _, token = address(of).removeprefix("http://").partition("/#")
-    return host, token, f"ws://{host}/live?token={token}"
-
-
-def test_with_the_right_host_origin_and_token_one_comes_in(system: World) -> None:
-    host, _, way = live(system)
-    with connect(way, origin=Origin(f"http://{host}")) as link:
-        assert '"kind":"all"' in str(link.recv())
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"origin": "http://evil.example"},
-        {"origin": "http://localhost:1"},
-        {"origin": None},
-        {"name": "evil.example"},
-        {"token": "x" * 22},
-        {"token": ""},
-    ],
-    ids=["foreign origin", "other port", "no origin", "rebound name", "wrong token", "no token"],
-)
-def test_who_has_not_all_three_is_refused(system: World, wrong: dict[str, Any]) -> None:
-    wrong = dict(wrong)
-    host, token, way = live(system)
-    port = host.partition(":")[2]
-    # As after DNS rebinding: a foreign name that leads to this machine.
-    name = f"{wrong.pop('name')}:{port}" if "name" in wrong else host
-    asked = {"origin": f"http://{name}", "sock": socket.create_connection(("127.0.0.1", int(port))), **wrong}
-    way = way.replace(host, name).replace(token, str(asked.pop("token", token)))
-    with pytest.raises(InvalidStatus) as refused, connect(way, **asked):
-        pass
-    assert refused.value.response.status_code == 403
-
-
-def test_a_foreign_page_can_neither_read_nor_drive(browser: Browser, system: World) -> None:
-    host, _, way = live(system)
-    tab = browser.new_page()
-    tab.route("http://evil.example/", lambda route: route.fulfill(body="<p>evil</p>", content_type="text/html"))
-    tab.goto("http://evil.example/")
-    opens = """way => new Promise(resolve => {
-        const link = new WebSocket(way);
-        link.onopen = () => resolve("open");
-        link.onerror = () => resolve("refused");
-    })"""
-    assert tab.evaluate(opens, way) == "refused"
-    reads = "address => fetch(address).then(answer => answer.text(), () => 'refused')"
-    assert tab.evaluate(reads, f"http://{host}/") == "refused"
-    framed = """address => new Promise(resolve => {
-        const frame = document.createElement("iframe");
-        frame.onload = () => resolve(frame.contentDocument === null ? "sealed" : "open");
-        frame.src = address;
-        document.body.append(frame);
-    })"""
-    assert tab.evaluate(framed, f"http://{host}/") == "sealed"
-    tab.close()
-
-
-def test_a_page_with_a_wrong_token_says_what_to_do(browser: Browser, system: World) -> None:
-    tab = browser.new_page()
-    tab.goto(address(system)[:-3] + "xyz")
-    tab.get_by_text("This is not the address of the running simulator.").wait_for()
-    tab.close()
-
-
-def test_the_browser_is_opened_with_a_code_for_which_it_gets_the_token(browser: Browser, fresh: World) -> None:
-    """Command lines can be read by every user of the machine."""
-    program = fresh.home / "xdg-open"
-    program.write_text(f'#!/bin/sh\necho "$1" > {fresh.home}/opened\n')
-    program.chmod(0o755)
-    screen = {"DISPLAY": ":0", "PATH": f"{fresh.home}:{fresh.env['PATH']}"}
-    simulator = fresh.start(VIEW, "Spawning turtle", **screen)
-    until(lambda: (fresh.home / "opened").exists() and bool((fresh.home / "opened").read_text()))
-    address = (fresh.home / "opened").read_text().strip()
-    assert address != url(simulator)
-    tab = opened(browser, address)
-    until(lambda: tab.url == url(simulator))
-    second = browser.new_page()
-    second.goto(address)
-    second.get_by_text("This is not the address of the running simulator.").wait_for()
-    second.close()
     tab.close()
 
 

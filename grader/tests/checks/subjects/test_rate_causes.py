@@ -1,0 +1,164 @@
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests.checks.made import NODE_FILE, every, evidence, finding, node, recording
+from grader.tests.checks.shapes import SHAPES
+
+if TYPE_CHECKING:
+    from grader.checks.outcome import Finding
+
+TIMER = "self.create_timer(0.5, self.send)"
+
+
+def rate(shape: str, *changes: tuple[str, str]) -> Finding:
+    return finding("rate", evidence(SHAPES[shape](), node(*changes)))
+
+
+def test_a_timer_with_that_period_is_pointed_at() -> None:
+    found = rate("one hertz", (TIMER, "self.create_timer(1.0, self.send)"))
+    assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:10")
+
+
+def test_a_period_by_a_name_is_found() -> None:
+    found = rate(
+        "one hertz",
+        (TIMER, "self.create_timer(self.period, self.send)"),
+        ("def send", "period = 1 / 1\n\n    def send"),
+    )
+    assert found.diagnosis == "wrong-rate"
+    found = rate(
+        "one hertz", (f"self.timer = {TIMER}", f"period = 2 / 2\n        self.timer = {TIMER.replace('0.5', 'period')}")
+    )
+    assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:11")
+
+
+def test_the_rate_given_as_the_period_is_told() -> None:
+    found = rate("two seconds", (TIMER, "self.create_timer(2.0, self.send)"))
+    assert found.diagnosis == "rate-for-period"
+
+
+def test_a_sleep_in_the_timers_method_is_told() -> None:
+    found = rate("one hertz", ("        msg = Twist()", "        time.sleep(0.6)\n        msg = Twist()"))
+    assert (found.diagnosis, str(found.where)) == ("sleep-in-callback", f"{NODE_FILE}:13")
+
+
+def test_a_sleep_without_a_timer_is_told() -> None:
+    found = rate("one hertz", (f"self.timer = {TIMER}", "time.sleep(1.0)"))
+    assert (found.diagnosis, found.cause) == ("sleep-period", "The node sleeps for 1 s between two commands.")
+
+
+@pytest.mark.parametrize(
+    ("changes", "diagnosis", "line", "cause"),
+    [
+        ((), "uneven-rate", 16, ""),
+        (
+            (("        msg = Twist()", "        time.sleep(0.1); msg = Twist()"),),
+            "uneven-rate",
+            16,
+            "The method that calls publish sometimes takes longer than the period.",
+        ),
+        (
+            (("publish(msg)", "publish(msg); self.publisher.publish(msg)"),),
+            "uneven-rate",
+            16,
+            "More than one line calls publish, or more than one timer runs.",
+        ),
+        (
+            ((TIMER, f"{TIMER}; {TIMER}"),),
+            "uneven-rate",
+            16,
+            "More than one line calls publish, or more than one timer runs.",
+        ),
+        (
+            (("        msg = Twist()", f"        {TIMER}; msg = Twist()"),),
+            "timer-in-callback",
+            13,
+            "send creates a new timer",
+        ),
+    ],
+)
+def test_an_uneven_rhythm_is_explained_by_the_source(
+    changes: tuple[tuple[str, str], ...], diagnosis: str, line: int, cause: str
+) -> None:
+    found = rate("uneven", *changes)
+    assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:{line}")
+    assert found.cause.startswith(cause)
+    assert bool(found.cause) == bool(cause)
+
+
+@pytest.mark.parametrize(
+    ("first", "line", "cause"),
+    [
+        ("self.count = 0", 17, ""),
+        ("time.sleep(3)", 9, "The node sleeps first."),
+        (
+            "self.client.wait_for_service()",
+            17,
+            "The node waits for something first, such as a service (wait_for_service).",
+        ),
+    ],
+)
+def test_a_late_start_is_explained_by_the_source(first: str, line: int, cause: str) -> None:
+    found = rate("late", ('super().__init__("draw_circle")\n', f'super().__init__("draw_circle")\n        {first}\n'))
+    assert (found.diagnosis, str(found.where), found.cause) == ("late-start", f"{NODE_FILE}:{line}", cause)
+
+
+@pytest.mark.parametrize(
+    ("period", "diagnosis"),
+    [
+        ("1.0", "timer-period"),
+        ("1.08", "timer-period"),
+        ("0.92", "timer-period"),
+        ("1.2", "wrong-rate"),
+        ("0.8", "wrong-rate"),
+    ],
+)
+def test_a_timer_explains_a_rate_that_is_nearly_its_own(period: str, diagnosis: str) -> None:
+    found = rate("one hertz", (TIMER, f"self.create_timer({period}, self.send)"))
+    assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:10")
+
+
+@pytest.mark.parametrize(
+    ("length", "diagnosis"),
+    [("1.08", "sleep-period"), ("0.92", "sleep-period"), ("1.2", "wrong-rate"), ("LENGTH", "wrong-rate")],
+)
+def test_a_sleep_explains_a_rate_that_is_nearly_its_own(length: str, diagnosis: str) -> None:
+    found = rate("one hertz", (f"self.timer = {TIMER}", f"time.sleep({length})"))
+    assert (found.diagnosis, str(found.where)) == (
+        diagnosis,
+        f"{NODE_FILE}:{10 if diagnosis == 'sleep-period' else 16}",
+    )
+
+
+def test_a_sleep_of_which_nothing_is_known_explains_nothing() -> None:
+    found = rate("one hertz", ("        msg = Twist()", "        time.sleep(LENGTH); msg = Twist()"))
+    assert (found.diagnosis, str(found.where)) == ("wrong-rate", f"{NODE_FILE}:10")
+
+
+def test_several_timers_with_other_periods_are_told() -> None:
+    found = rate("four hertz", (TIMER, f"{TIMER}\n        self.other = {TIMER}"))
+    assert (found.diagnosis, str(found.where)) == ("several-timers", f"{NODE_FILE}:11")
+
+
+@pytest.mark.parametrize(
+    ("period_s", "diagnosis"), [(2.15, "rate-for-period"), (1.85, "rate-for-period"), (2.25, "timer-period")]
+)
+def test_the_rate_as_a_period_is_told_when_it_is_nearly_that(period_s: float, diagnosis: str) -> None:
+    made = recording(every(period_s, 2.0, 1.0))
+    found = finding("rate", evidence(made, node((TIMER, f"self.create_timer({period_s}, self.send)"))))
+    assert found.diagnosis == diagnosis
+
+
+def test_a_loop_without_a_pause_is_told_with_its_line() -> None:
+    loop = (f"self.timer = {TIMER}", "while True: self.publisher.publish(Twist())")
+    assert (rate("ten kilohertz", loop).diagnosis, str(rate("ten kilohertz", loop).where)) == (
+        "loop-without-pause",
+        f"{NODE_FILE}:10",
+    )
+    slow = recording([(index / 3.9, 2.0, 1.0) for index in range(1, 39)])
+    assert finding("rate", evidence(slow, node(loop))).diagnosis == "wrong-rate"
+    quick = recording([(index / 4.3, 2.0, 1.0) for index in range(1, 43)])
+    assert finding("rate", evidence(quick, node(loop))).diagnosis == "loop-without-pause"

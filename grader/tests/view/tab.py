@@ -1,0 +1,59 @@
+"""The page of the live view in a tab of a browser."""
+
+from __future__ import annotations
+
+import io
+import re
+from typing import TYPE_CHECKING
+
+from PIL import Image
+
+from grader.tests.waiting import HANG_S
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+    from grader.tests.ros2.world import Running, World
+
+VIEW = "ros2 run turtlesim turtlesim_node --view"
+PEN = (179, 184, 255)
+
+
+def address(of: World) -> str:
+    """What the last turtlesim that was started has printed."""
+    started = of.running[-1] if len(of.running) == 1 else next(each for each in reversed(of.running) if url(each))
+    return url(started)
+
+
+def url(running: Running) -> str:
+    found = re.search(r"http://\S+", "\n".join(running.lines))
+    return found[0] if found else ""
+
+
+def opened(browser: Browser, url: str) -> Page:
+    tab = browser.new_page(viewport={"width": 1000, "height": 700})
+    tab.set_default_timeout(HANG_S * 1000)
+    tab.goto(url)
+    tab.get_by_role("status").get_by_text("Live").wait_for()
+    return tab
+
+
+def drawn(page: Page) -> int:
+    """How many pixels of the canvas have the pen's colour, as they are seen."""
+    picture = Image.open(io.BytesIO(page.locator("#sea").screenshot())).convert("RGB")
+    return sum(
+        count
+        for count, color in picture.getcolors(maxcolors=1 << 24) or []
+        if isinstance(color, tuple) and all(abs(a - b) < 12 for a, b in zip(color, PEN, strict=True))
+    )
+
+
+def turtle(page: Page, name: str = "turtle1") -> str:
+    """Where it is drawn."""
+    return page.locator(f'.turtle[data-name="{name}"]').get_attribute("transform") or ""
+
+
+def live(of: World) -> tuple[str, str, str]:
+    """The server's host and port, the token, and the address of the connection that reads and drives."""
+    host, _, token = address(of).removeprefix("http://").partition("/#")
+    return host, token, f"ws://{host}/live?token={token}"

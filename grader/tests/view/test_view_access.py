@@ -1,0 +1,99 @@
+"""Only the page with the right address may connect to the live view, and no page of another site."""
+
+from __future__ import annotations
+
+import socket
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+from websockets.typing import Origin
+
+from grader.tests.view.tab import VIEW, address, live, opened, url
+from grader.tests.waiting import until
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+    from grader.tests.ros2.world import World
+
+
+def test_with_the_right_host_origin_and_token_one_comes_in(system: World) -> None:
+    host, _, way = live(system)
+    with connect(way, origin=Origin(f"http://{host}")) as link:
+        assert '"kind":"all"' in str(link.recv())
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"origin": "http://evil.example"},
+        {"origin": "http://localhost:1"},
+        {"origin": None},
+        {"name": "evil.example"},
+        {"token": "x" * 22},
+        {"token": ""},
+    ],
+    ids=["foreign origin", "other port", "no origin", "rebound name", "wrong token", "no token"],
+)
+def test_who_has_not_all_three_is_refused(system: World, wrong: dict[str, Any]) -> None:
+    wrong = dict(wrong)
+    host, token, way = live(system)
+    port = host.partition(":")[2]
+    # As after DNS rebinding: a foreign name that leads to this machine.
+    name = f"{wrong.pop('name')}:{port}" if "name" in wrong else host
+    asked = {"origin": f"http://{name}", "sock": socket.create_connection(("127.0.0.1", int(port))), **wrong}
+    way = way.replace(host, name).replace(token, str(asked.pop("token", token)))
+    with pytest.raises(InvalidStatus) as refused, connect(way, **asked):
+        pass
+    assert refused.value.response.status_code == 403
+
+
+def test_a_foreign_page_can_neither_read_nor_drive(browser: Browser, system: World) -> None:
+    host, _, way = live(system)
+    tab = browser.new_page()
+    tab.route("http://evil.example/", lambda route: route.fulfill(body="<p>evil</p>", content_type="text/html"))
+    tab.goto("http://evil.example/")
+    opens = """way => new Promise(resolve => {
+        const link = new WebSocket(way);
+        link.onopen = () => resolve("open");
+        link.onerror = () => resolve("refused");
+    })"""
+    assert tab.evaluate(opens, way) == "refused"
+    reads = "address => fetch(address).then(answer => answer.text(), () => 'refused')"
+    assert tab.evaluate(reads, f"http://{host}/") == "refused"
+    framed = """address => new Promise(resolve => {
+        const frame = document.createElement("iframe");
+        frame.onload = () => resolve(frame.contentDocument === null ? "sealed" : "open");
+        frame.src = address;
+        document.body.append(frame);
+    })"""
+    assert tab.evaluate(framed, f"http://{host}/") == "sealed"
+    tab.close()
+
+
+def test_a_page_with_a_wrong_token_says_what_to_do(browser: Browser, system: World) -> None:
+    tab = browser.new_page()
+    tab.goto(address(system)[:-3] + "xyz")
+    tab.get_by_text("This is not the address of the running simulator.").wait_for()
+    tab.close()
+
+
+def test_the_browser_is_opened_with_a_code_for_which_it_gets_the_token(browser: Browser, fresh: World) -> None:
+    """Command lines can be read by every user of the machine."""
+    program = fresh.home / "xdg-open"
+    program.write_text(f'#!/bin/sh\necho "$1" > {fresh.home}/opened\n')
+    program.chmod(0o755)
+    screen = {"DISPLAY": ":0", "PATH": f"{fresh.home}:{fresh.env['PATH']}"}
+    simulator = fresh.start(VIEW, "Spawning turtle", **screen)
+    until(lambda: (fresh.home / "opened").exists() and bool((fresh.home / "opened").read_text()))
+    address = (fresh.home / "opened").read_text().strip()
+    assert address != url(simulator)
+    tab = opened(browser, address)
+    until(lambda: tab.url == url(simulator))
+    second = browser.new_page()
+    second.goto(address)
+    second.get_by_text("This is not the address of the running simulator.").wait_for()
+    second.close()
+    tab.close()
