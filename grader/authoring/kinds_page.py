@@ -1,6 +1,6 @@
 """Write docs/kinds.md, which lists every kind of check with its parameters, from the registry of kinds.
 
-   python -m grader.authoring.kinds_page [--check]
+    python -m grader.authoring.kinds_page [--check]
 
 The examples come from the course: the first check of each kind.
 """

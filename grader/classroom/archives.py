@@ -42,8 +42,8 @@ def unpacked(archive: Path) -> Iterator[Path]:
     """Yield a temporary folder with the content of the archive.
 
     Raises:
-       NotUnpackedError: the archive cannot be unpacked, or is larger than a submission may be.
-       DiskError: the disk failed on which it is unpacked.
+        NotUnpackedError: the archive cannot be unpacked, or is larger than a submission may be.
+        DiskError: the disk failed on which it is unpacked.
     """
     if not archive.name.lower().endswith(ENDINGS):
         message = "is not a supported archive: hand in a .zip or a .tar.gz"

@@ -40,7 +40,7 @@ def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused
     """Return the submission to be graded; `student` is the person who handed it in.
 
     Raises:
-       DiskError: the disk failed on which archives are unpacked.
+        DiskError: the disk failed on which archives are unpacked.
     """
     if found.refused:
         return Refused(found.refused)
@@ -69,7 +69,7 @@ def fingerprint(found: Found, exercise: Exercise) -> str:
     An archive is not unpacked for this.
 
     Raises:
-       DiskError: the disk failed on which archives are unpacked.
+        DiskError: the disk failed on which archives are unpacked.
     """
     archive = None if found.refused else _archive(found.path)
     if archive is not None:

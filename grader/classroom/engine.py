@@ -65,5 +65,5 @@ class Engine(Protocol):
         """Return what happened since the last call; wait at most `wait_s` for something to happen.
 
         Raises:
-           MachineError: this machine cannot grade any submission any more.
+            MachineError: this machine cannot grade any submission any more.
         """

@@ -54,7 +54,7 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
     """Return all submissions in the folders, archives and packages `given`, sorted by student, without `leave_out`.
 
     Raises:
-       UsageError: there is none, or the exercise is not known.
+        UsageError: there is none, or the exercise is not known.
     """
     wanted = find_exercise(exercise).id if exercise else None
     found = [each for path in given for each in _in(path, wanted, leave_out)]
@@ -75,7 +75,7 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
     """Yield the same submissions. One of an unknown exercise is repeated for each exercise of the others.
 
     Raises:
-       UsageError: no exercise is known.
+        UsageError: no exercise is known.
     """
     known = sorted({each.exercise for each in found} - {UNKNOWN})
     for each in found:

@@ -53,8 +53,8 @@ def grade_class(request: Request, say: Callable[[str], None], tell: Callable[[st
     """Grade everything that has no valid result yet, write all files, and return every result, sorted by student.
 
     Raises:
-       UsageError: the command is wrong.
-       MachineError: nothing more can be graded or written. Results that were written stay, and the next run continues.
+        UsageError: the command is wrong.
+        MachineError: nothing more can be graded or written. Results that were written stay, and the next run continues.
     """
     _engine_is_known(request)
     return grade_found(request, find_submissions(request.submissions, request.exercise, request.out), say, tell)

@@ -30,8 +30,8 @@ def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bo
     With `trusted`, submissions run even if Gradescope's container allows no sandbox.
 
     Raises:
-       UsageError: the exercise does not exist, the private checks are wrong, or this is not a checkout of the course.
-       MachineError: the archive cannot be written.
+        UsageError: the exercise does not exist, the private checks are wrong, or this is not a checkout of the course.
+        MachineError: the archive cannot be written.
     """
     known = find_exercise(exercise)
     sources = sources_of({known.id}, checks)[known.id]

@@ -1,10 +1,10 @@
 """Write the files in the folder of results after a run: a page of the class, a table, and files for CI and Gradescope.
 
-   index.html            the page of the class, for the instructor
-   summary.csv           for a spreadsheet or gradebook, for the instructor
-   junit.xml             for the list of tests of a CI
-   gradescope/NAME.json  Gradescope's results.json of each submission
-   github-summary.md, github-annotations.txt   for a step of GitHub Actions
+    index.html            the page of the class, for the instructor
+    summary.csv           for a spreadsheet or gradebook, for the instructor
+    junit.xml             for the list of tests of a CI
+    gradescope/NAME.json  Gradescope's results.json of each submission
+    github-summary.md, github-annotations.txt   for a step of GitHub Actions
 
 Students may see the files for CI and Gradescope, so these do not contain hidden checks.
 """

@@ -1,9 +1,9 @@
 """The results of a class on disk: one JSON file and one page per submission.
 
-   OUT/reports/STUDENT.EXERCISE.json   the report (grader.report.json) with the additional keys student, key (key.py)
-                                       and errors (how many times in a row grading ended with an error); it is for
-                                       the instructor, because it contains hidden checks
-   OUT/reports/STUDENT.EXERCISE.html   the page of the submission, without hidden checks
+    OUT/reports/STUDENT.EXERCISE.json   the report (grader.report.json) with the additional keys student, key (key.py)
+                                        and errors (how many times in a row grading ended with an error); it is for
+                                        the instructor, because it contains hidden checks
+    OUT/reports/STUDENT.EXERCISE.html   the page of the submission, without hidden checks
 
 Each file is written completely or not at all. The JSON is written after the page, so a result with a JSON file is
 complete. A killed run may leave files that end in .partial. The next run removes them. Only one run at a time may use
@@ -125,8 +125,8 @@ def opened(folder: Path) -> Iterator[Results]:
     """Yield the folder, which is created if necessary. No other run can use it at the same time.
 
     Raises:
-       UsageError: another run uses it, or it contains something else than results.
-       MachineError: it cannot be written.
+        UsageError: another run uses it, or it contains something else than results.
+        MachineError: it cannot be written.
     """
     lock = folder / _LOCK
     if folder.exists() and not (folder.is_dir() and (lock.exists() or not any(folder.iterdir()))):

@@ -31,7 +31,7 @@ def run(order: Order, todo: list[Todo], engine: Engine, results: Results, screen
     judged: in this case the machine works, so the error was chance or the submission caused it.
 
     Raises:
-       MachineError: nothing more can be graded or written. Results that were written stay.
+        MachineError: nothing more can be graded or written. Results that were written stay.
     """
     one = _Run(order, deque(todo), engine, results, screen)
     with engine:

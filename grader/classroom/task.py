@@ -78,7 +78,7 @@ def perform(
     While it waits, other submissions can use the processors.
 
     Raises:
-       MachineError: this grader has another version than the one that made the task, or there is no sandbox.
+        MachineError: this grader has another version than the one that made the task, or there is no sandbox.
     """
     if task.grader != grader_key():
         message = (

@@ -24,8 +24,8 @@ def make_class(folder: Path, roster: Path | None) -> int:
     """Make the folder and add the students of the roster to its gradebook. Return the number of students.
 
     Raises:
-       UsageError: the folder is not empty, the roster is invalid, or this copy of the course has no solutions.
-       MachineError: the folder cannot be written, or nbgrader is not installed.
+        UsageError: the folder is not empty, the roster is invalid, or this copy of the course has no solutions.
+        MachineError: the folder cannot be written, or nbgrader is not installed.
     """
     students = read_students(roster) if roster else []
     root = course_folder().parent

@@ -67,8 +67,8 @@ def open_class(folder: Path | None) -> ClassFolders:
     """Open the class whose nbgrader_config.py is in `folder` or its course/. None means the current folder.
 
     Raises:
-       UsageError: there is no nbgrader_config.py.
-       MachineError: nbgrader is not installed.
+        UsageError: there is no nbgrader_config.py.
+        MachineError: nbgrader is not installed.
     """
     tried = [folder or Path(), (folder or Path()) / "course"]
     found = next((each for each in tried if (each / CONFIG).is_file()), None)

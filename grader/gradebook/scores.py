@@ -84,8 +84,8 @@ def sync(
     """Grade collected submissions that have no valid result, and write every score into the gradebook.
 
     Raises:
-       UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
-       MachineError: nothing can be graded or written. Scores that are not confirmed still count 0 points.
+        UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
+        MachineError: nothing can be graded or written. Scores that are not confirmed still count 0 points.
     """
     from nbgrader.api import Gradebook
     from sqlalchemy.exc import SQLAlchemyError

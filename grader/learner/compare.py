@@ -26,7 +26,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
     """Print where the solution of a step differs from the learner's files.
 
     Raises:
-       UsageError: the step has not passed yet.
+        UsageError: the step has not passed yet.
     """
     exercise = find_exercise(step)
     root = progress.workspace_of(folder)

@@ -24,7 +24,7 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     After the last hint, the last one is returned again. A single letter as `step` is a part of the current step.
 
     Raises:
-       UsageError: no step was started, or the step has no such part.
+        UsageError: no step was started, or the step has no such part.
     """
     if step is not None and part is None and re.fullmatch("[A-Za-z]", step):
         step, part = None, step

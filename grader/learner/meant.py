@@ -18,7 +18,7 @@ def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -
     """Return the exercise and the folder with the work on it; for the arguments see `guessed`.
 
     Raises:
-       UsageError: nothing determines the exercise, or the step was never started.
+        UsageError: nothing determines the exercise, or the step was never started.
     """
     known, place = guessed(path, exercise, folder)
     if known is None:
@@ -36,10 +36,10 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
     `path` is what was typed: a package, a step ("03", "3"), the workspace (this means the current step), or None.
     `exercise` is the one named by --exercise. `folder` is the workspace; None means the learner's default.
 
-       guessed(Path("03"), None)  # step 03 and the package in the workspace
+        guessed(Path("03"), None)  # step 03 and the package in the workspace
 
     Raises:
-       UsageError: there is no exercise of that name, or the step was never started.
+        UsageError: there is no exercise of that name, or the step was never started.
     """
     root = progress.workspace_of(folder)
     if path is not None and not path.exists() and _is_step(str(path)):

@@ -93,7 +93,7 @@ def load(workspace: Path) -> Progress:
     """Return the progress in a workspace. It is empty at the beginning.
 
     Raises:
-       MachineError: the file is damaged or cannot be read.
+        MachineError: the file is damaged or cannot be read.
     """
     data = _read(state_file())["workspaces"].get(str(workspace))
     if data is None:
@@ -112,10 +112,10 @@ def _step(data: dict[str, Any]) -> StepProgress:
 def update(workspace: Path, change: Callable[[Progress], Progress]) -> Progress:
     """Change the progress in a workspace, completely or not at all. Other processes may write at the same time.
 
-       update(root, lambda known: known.at("03-circle-publisher"))
+        update(root, lambda known: known.at("03-circle-publisher"))
 
     Raises:
-       MachineError: the file is damaged or cannot be written.
+        MachineError: the file is damaged or cannot be written.
     """
     file = state_file()
     try:

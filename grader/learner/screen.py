@@ -31,7 +31,7 @@ def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
     """Grade now and after every save, until q, Ctrl-C or the end of the terminal.
 
     Raises:
-       UsageError: there is no such folder.
+        UsageError: there is no such folder.
     """
     if not folder.is_dir():
         message = f"There is no folder {folder}. Start a step with `grader start`, or name the folder of your package."

@@ -35,7 +35,7 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
     """Start a step, or the next one ("next"), in the workspace.
 
     Raises:
-       UsageError: there is no such step, or (for "next") the current one has not passed yet.
+        UsageError: there is no such step, or (for "next") the current one has not passed yet.
     """
     root = progress.workspace_of(folder)
     exercise = _next(progress.load(root)) if step == "next" else find_exercise(step)

@@ -43,7 +43,7 @@ def starting_point(exercise: Exercise) -> Path:
     """Return the folder in exercises/ with the starting point of the step.
 
     Raises:
-       MachineError: the folder is missing.
+        MachineError: the folder is missing.
     """
     folder = course_folder().parent / "exercises" / exercise.id
     if not folder.is_dir():
@@ -56,7 +56,7 @@ def solution(exercise: Exercise) -> Path:
     """Return the folder in solutions/ of the step.
 
     Raises:
-       UsageError: this copy of the course has no solutions.
+        UsageError: this copy of the course has no solutions.
     """
     folder = course_folder().parent / "solutions" / exercise.id
     if not folder.is_dir():
@@ -76,8 +76,8 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
     If the step has the student's own numbers, they are those of `student`.
 
     Raises:
-       UsageError: the workspace is not a folder.
-       MachineError: it cannot be written.
+        UsageError: the workspace is not a folder.
+        MachineError: it cannot be written.
     """
     source = starting_point(exercise)
     if exercise.package:

@@ -69,11 +69,11 @@ class Checking:
     def check(self, step: str | None = None) -> Verdict:
         """Grade the package (or the answers) next to this notebook. The default is the notebook's own step.
 
-           check("03-circle-publisher").points("circle")
+            check("03-circle-publisher").points("circle")
 
         Raises:
-           UsageError: there is no such step, or nothing to grade.
-           MachineError: the grader or the machine is broken.
+            UsageError: there is no such step, or nothing to grade.
+            MachineError: the grader or the machine is broken.
         """
         from grader.notebook.worker import opened
 

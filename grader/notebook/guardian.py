@@ -1,6 +1,6 @@
 """Guardian: ends the processes that a kernel started when the kernel is gone, however it ended.
 
-   python guardian.py MARK          its standard input is a pipe that only the kernel holds open
+    python guardian.py MARK          its standard input is a pipe that only the kernel holds open
 
 Every process that a notebook starts has MARK in its environment. When the pipe closes, these processes and all their
 descendants are ended: first with SIGINT, so that nodes can stop properly, then with SIGKILL.

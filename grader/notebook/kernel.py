@@ -1,6 +1,6 @@
 """The kernel "ROS 2 Jazzy (course)": a Python kernel whose environment has ROS 2 without sourcing anything.
 
-   python -m grader.notebook.kernel -f CONNECTION_FILE     what Jupyter runs
+    python -m grader.notebook.kernel -f CONNECTION_FILE     what Jupyter runs
 
 The environment is made again at each start. So a ROS 2 that was installed or sourced in the meantime is found.
 """
@@ -51,7 +51,7 @@ def install(prefix: Path | None = None) -> Path:
     """Install the kernel for this user's Jupyter, or for the one below `prefix`. Return the folder of the kernel.
 
     Raises:
-       MachineError: Jupyter is not installed, or the folder cannot be written.
+        MachineError: Jupyter is not installed, or the folder cannot be written.
     """
     try:
         from jupyter_client.kernelspec import KernelSpecManager

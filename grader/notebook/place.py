@@ -2,9 +2,9 @@
 
 A student hands in the package (or the answers) next to the notebook. A cell writes one of its files:
 
-   %%node draw_circle.py    <package>/<package>/draw_circle.py
-   %%package package.xml    <package>/package.xml
-   %%answers                answers.toml
+    %%node draw_circle.py    <package>/<package>/draw_circle.py
+    %%package package.xml    <package>/package.xml
+    %%answers                answers.toml
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def part_path(magic: str, name: str, exercise: Exercise) -> str:
     """Return the file that a cell writes, relative to the notebook's folder.
 
     Raises:
-       UsageError: the name is not valid for such a file.
+        UsageError: the name is not valid for such a file.
     """
     package = exercise.package
     if magic == "answers":

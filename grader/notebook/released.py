@@ -42,7 +42,7 @@ def solved_away(source: str, cell_type: str, *, solution: bool, name: str) -> st
     """Return a cell's source with the starting point instead of its solutions.
 
     Raises:
-       UsageError: markers are wrong, or a solution cell has none, so that all of it would be released.
+        UsageError: markers are wrong, or a solution cell has none, so that all of it would be released.
     """
     text = stripped(source, _syntax(source, cell_type), name)
     if solution and text == source:

@@ -26,7 +26,7 @@ def refreshed(data: bytes, exercise: Exercise, files: Mapping[str, bytes], name:
     """Return the updated source notebook. `files` are those of the solution, by their path in the step's folder.
 
     Raises:
-       UsageError: it is not a notebook, or a cell writes a file that the solution does not have; with `name` and cell.
+        UsageError: it is not a notebook, or a cell writes a file that the solution does not have; with `name` and cell.
     """
     try:
         notebook: dict[str, Any] = json.loads(data)

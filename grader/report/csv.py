@@ -1,18 +1,18 @@
 """A class as a CSV table with one line per submission, for the instructor's spreadsheet or gradebook.
 
-   submission  the name of the folder or archive
-   exercise    the id of the exercise
-   points      the points that the submission got
-   max         the points of the whole exercise, including checks that could not be judged
-   percent     points as a percentage of max
-   status      passed, failed, or error; an error is graded again by the next run
-   failed      ids of the failed checks in the order of the exercise, separated by spaces
-   diagnoses   the stable ids of their causes
-   first       what the first failed check observed, in words
-   clock, seed
-   graded_by   the version of the grader and the first digits of the sha256 of its sources
-   report      the file with the whole report
-   attention   why an instructor should look at it: "suspicious" if the grader failed at it again and again
+    submission  the name of the folder or archive
+    exercise    the id of the exercise
+    points      the points that the submission got
+    max         the points of the whole exercise, including checks that could not be judged
+    percent     points as a percentage of max
+    status      passed, failed, or error; an error is graded again by the next run
+    failed      ids of the failed checks in the order of the exercise, separated by spaces
+    diagnoses   the stable ids of their causes
+    first       what the first failed check observed, in words
+    clock, seed
+    graded_by   the version of the grader and the first digits of the sha256 of its sources
+    report      the file with the whole report
+    attention   why an instructor should look at it: "suspicious" if the grader failed at it again and again
 
 No cell is a formula, whatever a student wrote.
 """

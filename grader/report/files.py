@@ -25,8 +25,8 @@ def write(file: Path, content: bytes) -> None:
     """Write the file.
 
     Raises:
-       UsageError: the file cannot be written there.
-       MachineError: the disk is full, or the machine failed in another way.
+        UsageError: the file cannot be written there.
+        MachineError: the disk is full, or the machine failed in another way.
     """
     try:
         file.write_bytes(content)

@@ -17,8 +17,8 @@ class Progress:
 
     Calling the object is the same as calling `tell`:
 
-       with progress() as tell:
-           tell("Building with colcon")
+        with progress() as tell:
+            tell("Building with colcon")
     """
 
     tell: Callable[[str], None]

@@ -1,15 +1,16 @@
-"""Run a command without trusting it: the one door through which everything of a student's passes.
+"""Run a command that is not trusted. All student code is started here.
 
-Two walls, both made by bubblewrap:
+There are two walls, both made by bubblewrap:
 
-- a **room** holds what belongs together and is ours (the simulator of one trial), as an ordinary user, with
-  processes and a network of its own: loopback only. What a student's node sends is read here, by libraries that may
-  have holes;
-- a **cell** holds a student's process: own user, pid, ipc, uts, cgroup and mount namespaces, no network but the
-  room's, nothing of the disk but what `View` names, a filter of system calls (system_calls.py), limits on memory,
-  processes, files, CPU and disk. What no limit counts in all, usage.py does.
+- a **room** contains processes of ours that belong together (the simulator of one trial). They run as an ordinary user,
+  with their own processes and a network of their own that has only loopback. They read what a student's node sends,
+  with libraries that may have security holes;
+- a **cell** contains a student's process. It has its own user, pid, ipc, uts, cgroup and mount namespaces, no network
+  but that of the room, nothing of the disk but what `View` names, a filter of system calls (system_calls.py), and
+  limits
+  on memory, processes, files, CPU and disk. usage.py watches totals for which there is no limit.
 
-These functions only make command lines; whoever runs them owns the process. Input and output travel on pipes.
+These functions only make command lines. The caller starts the process and owns it. Input and output use pipes.
 """
 
 from __future__ import annotations
@@ -33,27 +34,27 @@ if TYPE_CHECKING:
     from grader.ros.installation import Ros
 
 WORKSPACE = Path("/ws")
-"""The workspace inside a cell: a tmpfs of its own."""
+"""The workspace inside a cell, on a tmpfs of its own."""
 HOME = Path("/tmp/home")
-"""HOME inside room and cell: empty, and gone with it."""
+"""HOME inside room and cell. It is empty at first and is deleted with the cell."""
 USER_ID = 65530
-"""Who a root caller becomes: in no range that systemd or Debian's policy gives to users or services."""
+"""The user that a root caller becomes. Systemd and Debian's policy do not use this id for users or services."""
 
 MIB = 1024 * 1024
 ROOM_DISK = 256 * MIB
 MOST_OTHERS = 4096
-"""Processes and threads that a user may have beside a grading without a cell."""
+"""How many processes and threads a user may have in addition to a grading without a cell."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a cell may use. `memory` is the address space of each process, `disk` of each writable tmpfs (bytes)."""
+    """What a cell may use. `memory` limits the address space of each process, `disk` each writable tmpfs (bytes)."""
 
     memory: int = 4096 * MIB
     total_memory: int = 2048 * MIB
-    """What all processes and disks of a cell hold together (usage.py)."""
+    """The memory of all processes and disks of a cell together (usage.py)."""
     processes: int = 600
-    """Processes and threads together; a node that makes 400 timers makes no thread for them."""
+    """Processes and threads together. A node with 400 timers needs no thread for them."""
     open_files: int = 1024
     file_size: int = 256 * MIB
     disk: int = 256 * MIB
@@ -68,9 +69,9 @@ NODE_LIMITS = Limits()
 
 @dataclass(frozen=True)
 class View:
-    """What a room or cell sees of the disk, each at its own path; `hidden` folders are empty there.
+    """What a room or cell sees of the disk, each path at its own place. `hidden` folders are empty there.
 
-    `writable`: folders through which the cell may hand something out, as the sockets of a kernel.
+    The cell can return files through the `writable` folders, for example the sockets of a kernel.
     """
 
     read_only: tuple[Path, ...]
@@ -79,7 +80,10 @@ class View:
 
 
 def ros_view(ros: Ros, *more: Path) -> View:
-    """The interpreter, ROS 2 and the folders or files `more`; not the grader, though it may be installed beside."""
+    """Return the view of the interpreter, ROS 2 and the folders or files `more`, without the grader itself.
+
+    The grader is hidden even if it is installed in the same folder.
+    """
     needed = [Path(sys.base_prefix), Path(sys.prefix), *ros.all_prefixes, *more]
     site = Path(sys.prefix) / f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages"
     hidden = tuple(site / name for name in ("grader", "course", "solutions") if (site / name).is_dir())
@@ -87,17 +91,17 @@ def ros_view(ros: Ros, *more: Path) -> View:
 
 
 def program() -> str | None:
-    """Where bwrap is, if it is installed."""
+    """Return the path of bwrap, or None if it is not installed."""
     return shutil.which("bwrap", path="/usr/local/bin:/usr/bin:/bin")
 
 
 def room(argv: Sequence[str], view: View, *, env: Mapping[str, str], cwd: Path | None = None) -> list[str]:
-    """`argv` as an ordinary user in a network of its own, seeing `view`; for our own processes."""
+    """Return the command that runs `argv` as an ordinary user in a network of its own; for our own processes."""
     command = [_bwrap(), "--unshare-net", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--hostname", "grader"]
     command += ["--die-with-parent", "--size", str(ROOM_DISK), "--tmpfs", "/tmp", "--perms", "0777", "--dir", str(HOME)]
     command += [*_disk(view), *(["--dir", "/proc"] if os.geteuid() == 0 else ["--proc", "/proc"])]
-    # LTTng, which rclpy loads, keeps a file here; where it cannot, its threads wait for any child of the process, and
-    # take the exit code of a node that ends just then.
+    # LTTng, which rclpy loads, keeps a file here. If it cannot, its threads wait for any child of the process, and may
+    # take the exit code of a node that ends at this moment.
     command += ["--size", str(ROOM_DISK), "--perms", "1777", "--tmpfs", "/dev/shm"]
     return [*_ordinary(command), *_environment(env), "--chdir", str(cwd or HOME), "--", *_stay_ordinary(), *argv]
 
@@ -113,38 +117,38 @@ def cell(
     info_fd: int | None = None,
     filter_fd: int | None = None,
 ) -> list[str]:
-    """`argv` confined. `network`: the caller's own (a room's loopback), else none at all.
+    """Return the command that runs `argv` in a cell. With `network`, the cell uses the network of the caller (a room).
 
-    `filter_fd`: the filter of system calls, from system_calls.call_filter(); the process must inherit it.
-
-    A root caller must put the cell in a room, where it is root no longer: root is exempt from the limit on
-    processes, whatever its namespace. `info_fd` gets bubblewrap's JSON with the pid of the cell's first process.
+    `filter_fd` is the filter of system calls from system_calls.call_filter(). The process must inherit it. A root
+    caller must
+    put the cell into a room, where it is not root any more, because the limit on processes does not apply to root.
+    bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
     """
     command = [_bwrap(), "--unshare-user", "--disable-userns", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
     command += ["--unshare-cgroup-try", "--uid", "1000", "--gid", "1000", "--hostname", "robot"]
     command += ["--die-with-parent", "--new-session", *([] if network else ["--unshare-net"])]
-    # First /tmp, since what `view` names may lie below it.
+    # /tmp comes first, because folders of the view may be inside of it.
     command += ["--size", str(limits.disk), "--tmpfs", "/tmp", "--dir", str(HOME)]
     command += ["--size", str(limits.disk), "--tmpfs", str(WORKSPACE), *_disk(view), "--proc", "/proc"]
-    # --dev leaves /dev and /dev/shm writable and large.
+    # --dev makes /dev and /dev/shm writable and large.
     command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev", "--remount-ro", "/"]
     command += [] if info_fd is None else ["--info-fd", str(info_fd)]
     command += [] if filter_fd is None else ["--seccomp", str(filter_fd)]
-    # Set inside: the limit on processes then counts only this cell's.
+    # Set inside of the cell, so that the limit counts only processes of this cell.
     return [*command, *_environment(env), "--chdir", str(cwd), "--", *limited(argv, limits, in_cell=True)]
 
 
 def lone_cell(
     argv: Sequence[str], view: View, *, env: Mapping[str, str], limits: Limits, filter_fd: int | None = None
 ) -> list[str]:
-    """`argv` in a cell that shares its network with nobody, whoever the caller is."""
+    """Return the command that runs `argv` in a cell with a network of its own, for any caller."""
     inner = cell(argv, view, env=env, limits=limits, filter_fd=filter_fd)
     return room(inner, view, env=env) if os.geteuid() == 0 else inner
 
 
 def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> list[str]:
-    """`argv` under resource limits: all that can be had without bubblewrap, and part of what a cell has."""
-    # Outside of a cell the kernel counts all processes of the user; usage.py counts those of `argv`.
+    """Return the command that runs `argv` under resource limits: all that is possible without bubblewrap."""
+    # Outside of a cell the kernel counts all processes of the user, and usage.py counts those of `argv`.
     processes = limits.processes if in_cell else limits.processes + MOST_OTHERS
     return [
         "prlimit",
@@ -155,43 +159,43 @@ def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> li
         f"--cpu={_allowed(resource.RLIMIT_CPU, limits.cpu_s)}",
         "--core=0",
         "--",
-        # When the machine runs out of memory, this is what should go first.
+        # If the machine runs out of memory, the kernel should kill this first.
         *("choom", "-n", "1000", "--"),
         *argv,
     ]
 
 
 def _allowed(which: int, wanted: int) -> int:
-    """The limit that is wanted, or the user's own if that is lower: nobody but root can raise it."""
+    """Return the limit, or the user's own if that is lower. Only root can raise it."""
     hard = resource.getrlimit(which)[1]
     return wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
 
 
 def usable() -> bool:
-    """Whether cells can be made here: a try of a few milliseconds."""
+    """Return whether cells work here. The test takes a few milliseconds."""
     return why_unavailable() is None
 
 
 def require(*, trusted: bool = False) -> bool:
-    """Whether student code is to be confined, for whoever grades strangers for marks.
+    """Return whether student code will run in a sandbox; for grading strangers for marks.
 
-    `trusted`: they are trusted where there is no sandbox; without a word of that, nothing of theirs runs.
+    With `trusted`, code also runs without a sandbox if there is none.
 
     Raises:
-        MachineError: there is no sandbox here, and they are not trusted.
+        MachineError: there is no sandbox, and the code is not trusted.
     """
     why = why_unavailable()
     if why is None or trusted:
         return why is None
     message = (
-        f"Code of others runs in a sandbox only, and there is none here: {why}. On "
-        "a machine that you can lose, --trust-submissions runs it all the same, with limits on time, memory and output."
+        f"There is no sandbox, so code of others does not run: {why}. On "
+        "a machine that you can lose, --trust-submissions runs it with limits on time, memory and output only."
     )
     raise MachineError(message)
 
 
 def why_unavailable() -> str | None:
-    """Try a cell; None when it works, else what is wrong and what to do."""
+    """Try a cell. Return None if it works, otherwise what is wrong and what to do."""
     if program() is None:
         return _not_installed()
     view = View(read_only=())
@@ -215,7 +219,7 @@ def why_unavailable() -> str | None:
         f"bubblewrap cannot create its namespaces ({lines[0]}). On Ubuntu 24.04, AppArmor forbids them to "
         "ordinary users; `sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0` allows them until the next "
         "start. "
-        'docs/security.md, "Without a sandbox", has a permanent rule, and the options that a container needs'
+        'docs/security.md, "Without a sandbox", has a permanent rule and the options for containers'
     )
 
 
@@ -230,20 +234,20 @@ def _bwrap() -> str:
 def _not_installed() -> str:
     need = packages.Need("bubblewrap", "bubblewrap")
     manager = packages.find_manager(os.environ.get("PATH", ""))
-    return f"bubblewrap is not installed; it comes with `{packages.command(manager, [need], root=os.geteuid() == 0)}`"
+    return f"bubblewrap is not installed. Install it with `{packages.command(manager, [need], root=os.geteuid() == 0)}`"
 
 
 def _ordinary(command: list[str]) -> list[str]:
-    # Root makes mounts and network without a user namespace, and then steps down (_stay_ordinary).
+    # Root makes mounts and the network without a user namespace, and then becomes an ordinary user (_stay_ordinary).
     return command if os.geteuid() == 0 else [command[0], "--unshare-user", *command[1:]]
 
 
 def _stay_ordinary() -> list[str]:
     if os.geteuid() != 0:
         return []
-    # A mount by bubblewrap would cover parts of /proc, and then no cell inside could have a /proc of its own.
+    # A mount by bubblewrap would cover parts of /proc. Then a cell inside could not have its own /proc.
     proc = ["sh", "-c", 'mount -t proc -o nosuid,nodev,noexec proc /proc && exec "$@"', "sh"]
-    # Changing the user clears the signal that --die-with-parent asked for: ask again.
+    # Changing the user clears the signal of --die-with-parent, so it is requested again.
     user = [f"--reuid={USER_ID}", f"--regid={USER_ID}", "--clear-groups", "--inh-caps=-all", "--bounding-set=-all"]
     return [*proc, "setpriv", *user, "--no-new-privs", "--pdeathsig=KILL", "--"]
 
@@ -259,11 +263,11 @@ def _disk(view: View) -> list[str]:
     etc = [Path("/etc") / name for name in ("alternatives", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime")]
     shown = [Path("/usr"), *(path for path in etc if path.exists())]
     shown += [path for path in view.read_only if not path.is_relative_to("/usr")]
-    # Parents that bwrap makes by itself are closed to all but their owner; named ones are not.
+    # Parent folders that bwrap creates itself are readable only by their owner, and named ones are not.
     named = [*shown, *view.writable]
     parents = dict.fromkeys(parent for path in named for parent in reversed(path.parents[:-1]))
     command += [word for parent in parents for word in ("--dir", str(parent))]
-    # What is to be seen of a hidden folder goes in once it is empty.
+    # Visible parts of a hidden folder are added after the folder was emptied.
     within = {path: folder for path in shown for folder in view.hidden if path.is_relative_to(folder)}
     command += [word for path in shown if path not in within for word in _seen(path)]
     command += [word for folder in view.writable for word in ("--bind", str(folder), str(folder))]

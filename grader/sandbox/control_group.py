@@ -1,11 +1,12 @@
-"""Control groups: the kernel's own count of what many processes hold together, where one may make them.
+"""Control groups: the kernel counts what many processes use together, if we are allowed to make groups.
 
-Root may nearly everywhere, an ordinary user where systemd has delegated a part of the tree and the grader runs in it.
-The wall is `ABOVE` beyond what usage.py allows, so that usage.py ends a cell first and knows why; what grows faster
-than it looks, and what the kernel holds for sockets and pipes, stops here.
+Root is allowed to nearly everywhere. An ordinary user is allowed to if systemd has delegated a part of the tree and the
+grader runs in it. The limit of the group is `ABOVE` higher than that of usage.py, so that usage.py ends a cell first
+and
+knows the reason. The group stops processes that grow too fast for usage.py, and memory for sockets and pipes.
 
-Both versions are known: in version 2 a group is a folder in one tree, in version 1 one in each controller's
-(https://docs.kernel.org/admin-guide/cgroup-v2.html and cgroup-v1/).
+Both versions are supported. In version 2 a group is a folder in one tree, in version 1 one folder in each controller's
+tree (https://docs.kernel.org/admin-guide/cgroup-v2.html and cgroup-v1/).
 """
 
 from __future__ import annotations
@@ -27,9 +28,9 @@ TREE = Path("/sys/fs/cgroup")
 OWN = Path("/proc/self/cgroup")
 CONTROLLERS = ("memory", "pids")
 ABOVE = 512 * 1024 * 1024
-"""Memory of a group beyond the cell's total (bytes): the conductor of a trial lives in it too."""
+"""Memory of a group in addition to the cell's total (bytes), for the conductor of a trial."""
 PROCESSES_ABOVE = 200
-"""Processes and threads of a group beyond the cell's: those of bubblewrap and of the conductor."""
+"""Processes and threads of a group in addition to the cell's, for bubblewrap and the conductor."""
 GONE_S = 2.0
 _PREFIX = "grader-"
 _JOIN = 'until [ "$1" = -- ]; do echo $$ 2>/dev/null >"$1/cgroup.procs"; shift; done; shift; exec "$@"'
@@ -38,7 +39,7 @@ _numbers = count()
 
 @dataclass(frozen=True)
 class ControlGroup:
-    """A group: one folder (version 2) or one a controller (version 1); none where it cannot be had."""
+    """A group: one folder (version 2), one per controller (version 1), or none if groups are not possible."""
 
     folders: tuple[Path, ...] = ()
 
@@ -47,13 +48,13 @@ class ControlGroup:
         return bool(self.folders)
 
     def joined(self, argv: Sequence[str]) -> list[str]:
-        """`argv` as the group's: it joins before anything of it runs."""
+        """Return the command that joins the group and then runs `argv`."""
         if not self.folders:
             return list(argv)
         return ["sh", "-c", _JOIN, "sh", *map(str, self.folders), "--", *argv]
 
     def out_of_memory(self) -> bool:
-        """Whether the kernel has ended a process of the group for the memory that all held."""
+        """Return whether the kernel killed a process because the group used too much memory."""
         for folder in self.folders:
             for name in ("memory.events", "memory.oom_control"):
                 with suppress(OSError):
@@ -64,7 +65,7 @@ class ControlGroup:
 
 @contextmanager
 def control_group(limits: Limits) -> Iterator[ControlGroup]:
-    """A new group for a cell of these limits and what belongs to it; an empty one where none can be had."""
+    """Yield a new group for a cell with these limits, or an empty one if groups are not possible."""
     group = _make(limits)
     try:
         yield group
@@ -99,10 +100,10 @@ def _make(limits: Limits) -> ControlGroup:
 
 
 def _parents() -> list[Path]:
-    """Where a group can be made: one folder for both controllers, or one each; empty where it cannot."""
+    """Return where a group can be made: one folder for both controllers, or one each. Empty if that is not possible."""
     own = dict(_own())
     if all(name in own for name in CONTROLLERS):
-        # In a container the path may be the host's: then the top of the tree is its own.
+        # In a container the path may be that of the host. Then the group is the top of the container's tree.
         places = [(TREE / name / own[name].lstrip("/"), TREE / name) for name in CONTROLLERS]
         return [next((place for place in both if os.access(place, os.W_OK)), both[0]) for both in places]
     here = TREE / own.get("", "/").lstrip("/")
@@ -111,14 +112,14 @@ def _parents() -> list[Path]:
             break
         with suppress(OSError):
             passed_on = (place / "cgroup.subtree_control").read_text("ascii").split()
-            # To move a process, its new group and what both groups have in common must be ours.
+            # To move a process, we must own its new group and the common parent of both groups.
             if set(CONTROLLERS) <= set(passed_on) and os.access(place / "cgroup.procs", os.W_OK):
                 return [place]
     return []
 
 
 def _own() -> Iterator[tuple[str, str]]:
-    """Controller -> the group that this process is in; "" stands for version 2."""
+    """Return controller -> the group of this process; "" is the key for version 2."""
     with suppress(OSError):
         for line in OWN.read_text("utf-8").splitlines():
             _, controllers, path = line.split(":", 2)
@@ -127,7 +128,7 @@ def _own() -> Iterator[tuple[str, str]]:
 
 
 def _remove(folder: Path) -> None:
-    """Remove a group; the kernel refuses while a process of it is about to end."""
+    """Remove a group. The kernel refuses while a process of the group is ending."""
     until = time.monotonic() + GONE_S
     while folder.is_dir() and time.monotonic() < until:
         with suppress(OSError):

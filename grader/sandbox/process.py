@@ -1,4 +1,4 @@
-"""Run a child process to its end, with input, capped output and a deadline."""
+"""Run a child process to its end, with input, limited output and a deadline."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ _CHUNK = 1024 * 1024
 class Finished:
     """How a child ended.
 
-    It was ended because of `too_much` on standard output, or because it was `out_of` something that `watch` limits.
+    `too_much`: it was stopped because of its standard output. `out_of`: the limit of `watch` because of which it was
+    stopped.
     """
 
     exit_code: int
@@ -38,7 +39,7 @@ class Finished:
 
 
 class _Tail:
-    """The first and the last half of what may be kept: a log's beginning and its end say most."""
+    """The first and the last half of an output. The beginning and the end of a log are the most useful parts."""
 
     def __init__(self, most: int) -> None:
         self._half = most // 2
@@ -66,7 +67,7 @@ class _Tail:
 
 
 class _Pump:
-    """The child's three pipes, all served at once, so that none can block another."""
+    """The three pipes of a child, served at the same time, so that none blocks another."""
 
     def __init__(self, child: subprocess.Popen[bytes], stdin: bytes, most_stdout: int, most_stderr: int) -> None:
         assert child.stdin is not None
@@ -87,9 +88,9 @@ class _Pump:
         return len(self.stdout) > self._most
 
     def serve(self, deadline: float, stopped: Callable[[], bool]) -> bool:
-        """Serve until the child has closed its pipes or written too much; false at the deadline (monotonic, s).
+        """Serve until the child has closed its pipes or written too much. Return False at the deadline (monotonic, s).
 
-        `stopped` is asked several times a second, and true ends it too.
+        `stopped` is called several times per second. If it returns True, serving ends too.
         """
         with self._selector:
             while self._selector.get_map() and not self.too_much:
@@ -130,9 +131,11 @@ def run(
     pass_fds: Sequence[int] = (),
     watch: Limits | None = None,
 ) -> Finished:
-    """Run `argv` in a session of its own; of standard error, beginning and end are kept (bytes).
+    """Run `argv` in a session of its own. The beginning and the end of standard error are kept (bytes).
 
-    `watch`: end it when it holds more in all than these limits say.
+    With `watch`, the child is ended when it uses more in total than these limits.
+
+        done = run(["cat"], stdin=b"text", timeout_s=60.0, most_stdout=1000, most_stderr=1000)
     """
     begun = time.monotonic()
     pipe = subprocess.PIPE

@@ -1,8 +1,9 @@
-"""Which system calls a cell may make: a seccomp filter, as bubblewrap takes it.
+"""The system calls that a cell may make: a seccomp filter for bubblewrap.
 
-It names what no node needs and what has opened sandboxes before, rather than what is allowed: a new Python or Fast DDS
-must not break because of it. Namespaces, limits and mounts are the wall; this is the second one behind it. It also
-closes ways to hold memory that neither a tmpfs nor a process's size shows (memfd, System V shared memory).
+The filter lists forbidden calls: those that no node needs and that have opened sandboxes before. A list of allowed
+calls
+would break with a new Python or Fast DDS. Namespaces, limits and mounts are the first wall, and this is the second. It
+also forbids memory that neither a tmpfs nor the size of a process shows (memfd, System V shared memory).
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-# Numbers of x86-64 (linux/arch/x86/entry/syscalls/syscall_64.tbl), by what they are good for.
+# Numbers for x86-64 (linux/arch/x86/entry/syscalls/syscall_64.tbl), grouped by purpose.
 DENIED = {
     "other processes": {
         "ptrace": 101, "process_vm_readv": 310, "process_vm_writev": 311, "kcmp": 312, "pidfd_getfd": 438,
@@ -29,7 +30,7 @@ DENIED = {
         "mount_setattr": 442, "name_to_handle_at": 303, "open_by_handle_at": 304,
     },
     "keys": {"add_key": 248, "request_key": 249, "keyctl": 250},
-    "parts of the kernel that have had most holes": {
+    "parts of the kernel with the most security holes": {
         "bpf": 321, "perf_event_open": 298, "userfaultfd": 323, "io_uring_setup": 425, "io_uring_enter": 426,
         "io_uring_register": 427, "modify_ldt": 154, "fanotify_init": 300, "vmsplice": 278, "lookup_dcookie": 212,
         "uselib": 134, "_sysctl": 156, "nfsservctl": 180,
@@ -46,7 +47,7 @@ DENIED = {
     },
 }  # fmt: skip
 _SOCKET, _CLONE, _CLONE3 = 41, 56, 435
-# AF_UNIX, AF_INET, AF_INET6, AF_NETLINK (which interfaces there are). AF_VSOCK leads out of a virtual machine.
+# AF_UNIX, AF_INET, AF_INET6, and AF_NETLINK for listing interfaces. AF_VSOCK would lead out of a virtual machine.
 _FAMILIES = (1, 2, 10, 16)
 # CLONE_NEWNS, NEWCGROUP, NEWUTS, NEWIPC, NEWUSER, NEWPID and NEWNET.
 _NEW_NAMESPACE = 0x7E020000
@@ -59,13 +60,13 @@ _ALLOW, _ERRNO = 0x7FFF0000, 0x00050000
 
 @contextmanager
 def call_filter() -> Iterator[int | None]:
-    """A descriptor with the filter, to be read once; None on machines whose numbers are not known here."""
+    """Yield a descriptor from which the filter can be read once; None on machines with unknown call numbers."""
     if platform.machine() != "x86_64":
         yield None
         return
     reads, writes = os.pipe()
     try:
-        # Far less than a pipe holds.
+        # A pipe can hold much more than this.
         os.write(writes, program())
         os.close(writes)
         yield reads
@@ -74,14 +75,14 @@ def call_filter() -> Iterator[int | None]:
 
 
 def program() -> bytes:
-    """The filter: struct sock_filter, one after another."""
+    """Return the filter: a sequence of struct sock_filter."""
     refuse = _ERRNO | errno.EPERM
     absent = _ERRNO | errno.ENOSYS
     lines = [(_LOAD, 0, 0, _ARCHITECTURE), (_EQUAL, 1, 0, _X86_64), (_RETURN, 0, 0, absent)]
     lines += [(_LOAD, 0, 0, _NUMBER), (_AT_LEAST, 0, 1, _X32), (_RETURN, 0, 0, absent)]
     for number in sorted(number for group in DENIED.values() for number in group.values()):
         lines += [(_EQUAL, 0, 1, number), (_RETURN, 0, 0, refuse)]
-    # Its flags stand in memory, where a filter cannot look; the C library then takes clone.
+    # Its flags are in memory, where a filter cannot look. The C library then uses clone.
     lines += [(_EQUAL, 0, 1, _CLONE3), (_RETURN, 0, 0, absent)]
     lines += [(_EQUAL, 0, 4, _CLONE), (_LOAD, 0, 0, _FIRST_ARGUMENT)]
     lines += [(_ANY_BIT, 0, 1, _NEW_NAMESPACE), (_RETURN, 0, 0, refuse), (_RETURN, 0, 0, _ALLOW)]

@@ -1,8 +1,8 @@
-"""Read a tar stream that a stranger's process may have written.
+"""Read a tar stream that an untrusted process may have written.
 
-The module tarfile is made for archives that mean well: its versions have followed nested headers until the stack ran
-out, looped over sizes below zero, and spent hours in a regular expression. Here every step moves forward by at least
-one block, and what is not understood ends the reading: what GNU tar writes with --format=gnu, and no more.
+Python's tarfile is made for harmless archives. Some versions followed nested headers until the stack overflowed, looped
+over negative sizes, or spent hours in a regular expression. Here every step moves forward by at least one block, and
+reading ends at the first block that is not understood. It understands the output of GNU tar with --format=gnu only.
 """
 
 from __future__ import annotations
@@ -12,21 +12,24 @@ from pathlib import PurePosixPath
 
 BLOCK = 512
 _FILES = (b"0", b"\0", b"2")
-"""Type flags of files, in new and old archives, and of symbolic links."""
+"""Type flags of files in new and old archives, and of symbolic links."""
 _LONG_NAME, _LONG_LINK = b"L", b"K"
 _MOST_NAME = 4096
 
 
 @dataclass(frozen=True)
 class Member:
-    """Where a file's content lies in the stream (bytes)."""
+    """The position and size of a file's content in the stream (bytes)."""
 
     start: int
     size: int
 
 
 def read_tar(stream: bytes, most: int) -> dict[PurePosixPath, Member]:
-    """The files and links of the stream, at most so many; of what is no tar, those before it went wrong."""
+    """Return the files and links of the stream, at most `most`.
+
+    In a damaged stream, these are the ones before the damage.
+    """
     found: dict[PurePosixPath, Member] = {}
     at, long_name = 0, None
     while at + BLOCK <= len(stream) and len(found) < most:
@@ -50,11 +53,11 @@ def read_tar(stream: bytes, most: int) -> dict[PurePosixPath, Member]:
 
 
 def _number(field: bytes) -> int | None:
-    """An octal number; None for anything else, the binary form for numbers beyond 8 GiB or below zero included."""
+    """Return an octal number, or None for anything else, such as the binary form of large or negative numbers."""
     digits = field.strip(b" \0")
     return int(digits, 8) if digits and not digits.strip(b"01234567") else None
 
 
 def _sum(header: bytes) -> int:
-    """The sum of the header's bytes, its own field counted as blanks."""
+    """Return the sum of the header's bytes, with spaces in place of the checksum field."""
     return sum(header) - sum(header[148:156]) + 8 * ord(" ")

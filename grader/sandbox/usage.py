@@ -1,7 +1,7 @@
-"""Watch how much a cell holds in all: memory and number of its processes, its disks, the files on them.
+"""Watch how much a cell uses in total: the memory and number of its processes, its disks, and the files on them.
 
-Resource limits count each process for itself, and a tmpfs as bubblewrap mounts it limits bytes but not files. Control
-groups could count, where one may make them; looking ten times a second works everywhere.
+Resource limits apply to each process alone, and a tmpfs of bubblewrap limits bytes but not files. Control groups count
+totals, but only if we are allowed to make them. Checking ten times per second works everywhere.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 EVERY_S = 0.1
 LAUNCHERS = 16
-"""Processes beyond the limit that are not the student's: bubblewrap's and whatever else starts a cell.
+"""Processes in addition to the limit that are not the student's: those of bubblewrap and others that start a cell.
 
-In a cell the kernel counts too, and refuses before this is reached.
+In a cell the kernel counts too, and refuses new processes before this number is reached.
 """
 _DISKS = ("ws", "tmp", "dev/shm")
 _PAGE = os.sysconf("SC_PAGE_SIZE")
@@ -29,7 +29,7 @@ _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
 def exceeded(pid: int, limits: Limits) -> str | None:
-    """Which limit ("memory", "processes", "files") the cell at or below the process `pid` is over; None if none."""
+    """Return which limit the cell at or below process `pid` exceeds ("memory", "processes", "files"), or None."""
     memory = 0
     processes = 0
     disks: dict[int, tuple[int, int]] = {}
@@ -47,7 +47,7 @@ def exceeded(pid: int, limits: Limits) -> str | None:
 
 
 class Guard:
-    """A thread that looks at a cell until it is closed, and calls `over` once when a limit is passed."""
+    """A thread that watches a cell until it is closed, and calls `over` once if a limit is exceeded."""
 
     def __init__(self, pid: int, limits: Limits, over: Callable[[str], None]) -> None:
         self._pid, self._limits, self._over = pid, limits, over
@@ -57,12 +57,12 @@ class Guard:
         self._thread.start()
 
     def close(self) -> None:
-        """Look no longer."""
+        """Stop watching."""
         self._closed.set()
         self._thread.join()
 
     def worked_s(self, begin: float, end: float) -> float:
-        """How long the cell's processes worked between two times of CLOCK_MONOTONIC, at least (s of CPU time)."""
+        """Return the CPU time (s) that the cell's processes used, at least, between two times of CLOCK_MONOTONIC."""
         before = max((cpu for at, cpu in self._worked if at <= begin), default=0.0)
         return max((cpu for at, cpu in self._worked if at <= end + EVERY_S), default=0.0) - before
 
@@ -76,7 +76,7 @@ class Guard:
 
 
 def _family(pid: int) -> Iterator[int]:
-    """The process and all below it; orphans hang on the cell's first process."""
+    """Return the process and all its descendants. Orphans become children of the cell's first process."""
     waiting = [pid]
     while waiting:
         process = waiting.pop()
@@ -89,7 +89,7 @@ def _family(pid: int) -> Iterator[int]:
 
 
 def _own_bytes(pid: int) -> int:
-    """Memory of the process that is no file's."""
+    """Return the memory of the process without mapped files."""
     try:
         _, resident, shared, *_ = _read(f"/proc/{pid}/statm").split()
     except (OSError, ValueError):
@@ -98,7 +98,7 @@ def _own_bytes(pid: int) -> int:
 
 
 def _threads(pid: int) -> int:
-    """Threads of the process."""
+    """Return the number of threads of the process."""
     try:
         return len(os.listdir(f"/proc/{pid}/task"))  # noqa: PTH208 - many, often
     except OSError:
@@ -106,17 +106,17 @@ def _threads(pid: int) -> int:
 
 
 def _cpu_s(pid: int) -> float:
-    """How long the process has worked, and those of its children that have ended (s)."""
+    """Return the CPU time of the process and of its children that have ended (s)."""
     try:
         fields = _read(f"/proc/{pid}/stat").rpartition(")")[2].split()
     except OSError:
         return 0.0
-    # utime, stime, cutime, cstime of proc(5), counted from the state, which is field 3.
+    # utime, stime, cutime and cstime of proc(5), counted from the state (field 3).
     return sum(map(int, fields[11:15])) * _TICK_S
 
 
 def _disks(pid: int) -> dict[int, tuple[int, int]]:
-    """Bytes and files on each writable disk of the cell, by device; nothing for a process outside of it."""
+    """Return bytes and files on each writable disk of the cell, by device; nothing for a process outside of it."""
     root = Path(f"/proc/{pid}/root")
     found = {}
     try:

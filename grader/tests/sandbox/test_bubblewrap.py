@@ -23,7 +23,7 @@ def run(
     limits: bubblewrap.Limits = bubblewrap.Limits(),  # noqa: B008
     view: bubblewrap.View = SEEN,
 ) -> process.Finished:
-    """Python code in a cell of its own."""
+    """Run Python code in a cell of its own."""
     with call_filter() as filter_fd:
         command = bubblewrap.lone_cell([sys.executable, "-c", code], view, env=ENV, limits=limits, filter_fd=filter_fd)
         return process.run(
@@ -37,7 +37,7 @@ def run(
         )
 
 
-def test_a_cell_is_nobody_with_no_rights() -> None:
+def test_a_cell_is_an_ordinary_user_without_privileges() -> None:
     code = """
 import json, os
 status = dict(line.split(":\\t", 1) for line in open("/proc/self/status").read().splitlines() if ":\\t" in line)
@@ -46,7 +46,7 @@ print(json.dumps([os.getuid(), os.getgroups(), *map(status.get, ("CapEff", "CapB
     assert json.loads(run(code).stdout) == [1000, [], "0" * 16, "0" * 16, "1", "2"]
 
 
-def test_a_cell_sees_its_own_processes_and_nothing_of_the_disk() -> None:
+def test_a_cell_sees_only_its_own_processes_and_no_disk() -> None:
     code = """
 import json, os
 print(json.dumps([sorted(name for name in os.listdir("/proc") if name.isdigit()), sorted(os.listdir("/"))]))
@@ -57,14 +57,14 @@ print(json.dumps([sorted(name for name in os.listdir("/proc") if name.isdigit())
     assert set(top) <= expected | {Path(path).parts[1] for path in (sys.prefix, sys.base_prefix)}
 
 
-def test_a_room_has_shared_memory_since_lttng_else_waits_for_other_threads_children() -> None:
+def test_a_room_has_shared_memory_because_lttng_needs_it() -> None:
     argv = ["sh", "-c", "touch /dev/shm/lttng-ust-wait-6 && mount | grep -c ' /dev/shm .*size=262144k'"]
     done = subprocess.run(bubblewrap.room(argv, SEEN, env=ENV), capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
 
 
-def test_of_a_hidden_folder_a_cell_sees_only_what_is_named(tmp_path: Path) -> None:
-    """An installed grader lies beside the libraries that a node needs, and of it a cell needs the launcher."""
+def test_a_cell_sees_only_named_parts_of_a_hidden_folder(tmp_path: Path) -> None:
+    """An installed grader is next to libraries that a node needs. The cell needs only its launcher."""
     package = tmp_path / "site-packages" / "grader"
     for name in ("trial/launcher.py", "trial/rest.py", "solutions/a.py", "fastdds.xml"):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
@@ -83,16 +83,16 @@ print(sorted(str(path.relative_to(below)) for path in below.rglob("*")), (below 
 
 def test_a_cell_inherits_no_descriptor() -> None:
     done = run("import os; print(len([fd for fd in os.listdir('/proc/self/fd') if int(fd) > 2]))")
-    assert int(done.stdout) == 1  # the one that lists
+    assert int(done.stdout) == 1  # the one for listing
 
 
 @pytest.mark.parametrize("place", ["/", "/usr", "/etc", "/dev", sys.prefix])
-def test_a_cell_writes_nowhere_but_where_it_may(place: str) -> None:
+def test_a_cell_can_only_write_to_its_writable_folders(place: str) -> None:
     done = run(f"open({place + '/hostile'!r}, 'w')")
     assert b"Read-only file system" in done.stderr
 
 
-def test_a_cell_that_holds_too_much_in_all_is_ended() -> None:
+def test_a_cell_that_uses_too_much_memory_in_total_is_ended() -> None:
     code = "blocks = [bytearray(60 << 20) for _ in range(4)]; import time; time.sleep(20)"
     done = run(code, bubblewrap.Limits(total_memory=128 * bubblewrap.MIB))
     assert (done.out_of, done.timed_out) == ("memory", False)
@@ -104,7 +104,7 @@ def test_a_cell_with_too_many_files_is_ended() -> None:
     assert (done.out_of, done.timed_out) == ("files", False)
 
 
-def test_every_denied_call_is_refused_and_no_other() -> None:
+def test_only_forbidden_calls_are_refused() -> None:
     numbers = sorted(number for group in DENIED.values() for number in group.values())
     code = f"""
 import ctypes, errno
@@ -141,11 +141,11 @@ def test_grading_for_marks_refuses_without_a_sandbox(monkeypatch: pytest.MonkeyP
     assert bubblewrap.require(trusted=True) is False
 
 
-def test_with_a_sandbox_it_confines_even_the_trusted() -> None:
+def test_trusted_code_runs_in_the_sandbox_if_there_is_one() -> None:
     assert bubblewrap.require(trusted=True) is True
 
 
-def test_it_says_what_to_do_where_namespaces_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_says_what_to_do_if_namespaces_are_forbidden(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     refused = tmp_path / "bwrap"
     refused.write_text("#!/bin/sh\necho 'bwrap: setting up uid map: Permission denied' >&2\nexit 1\n")
     refused.chmod(0o755)

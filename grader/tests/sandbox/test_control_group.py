@@ -1,4 +1,4 @@
-"""The kernel counts for a cell what it holds in all, where it lets us; where not, the cell runs all the same."""
+"""The kernel counts what a cell uses in total, if groups are allowed. Otherwise the cell runs without a group."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ HOARD = "x = bytearray({mib} * 1024 * 1024); print(len(x) // 1024 // 1024)"
 def group() -> ControlGroup:
     with control_group(SMALL) as made:
         if not made:
-            pytest.skip("the kernel lets us make no control group here")
+            pytest.skip("the kernel does not allow a control group here")
     return made
 
 
@@ -31,7 +31,7 @@ def hoard(group: ControlGroup, mib: int) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.usefixtures("group")
-def test_what_a_group_holds_beyond_its_limit_ends_it_and_is_told() -> None:
+def test_a_group_over_its_limit_is_ended_and_this_is_reported() -> None:
     with control_group(SMALL) as group:
         assert hoard(group, 100).stdout == "100\n"
         assert not group.out_of_memory()
@@ -40,8 +40,8 @@ def test_what_a_group_holds_beyond_its_limit_ends_it_and_is_told() -> None:
 
 
 @pytest.mark.usefixtures("group")
-def test_what_several_processes_hold_together_counts() -> None:
-    # Each half of what is too much, at the same time.
+def test_the_memory_of_several_processes_counts_together() -> None:
+    # Two processes that use half of too much memory each.
     half = f"{sys.executable} -c 'x = bytearray({340 * MIB}); import time; time.sleep(60)'"
     with control_group(SMALL) as group:
         script = f"{half} & {half} & wait -n; kill $(jobs -p) 2>/dev/null; wait"
@@ -50,7 +50,7 @@ def test_what_several_processes_hold_together_counts() -> None:
 
 
 @pytest.mark.usefixtures("group")
-def test_a_group_is_gone_afterwards() -> None:
+def test_a_group_is_removed_afterwards() -> None:
     with control_group(SMALL) as group:
         assert all(folder.is_dir() for folder in group.folders)
         assert subprocess.run(group.joined(["true"]), check=False).returncode == 0
@@ -58,7 +58,7 @@ def test_a_group_is_gone_afterwards() -> None:
 
 
 @pytest.mark.usefixtures("group")
-def test_what_a_killed_grader_left_is_removed_by_the_next() -> None:
+def test_the_group_of_a_killed_grader_is_removed_by_the_next_one() -> None:
     script = """
 from grader.sandbox.control_group import control_group
 from grader.sandbox.bubblewrap import Limits
@@ -74,7 +74,7 @@ with control_group(Limits()) as group:
         assert not any(Path(folder).exists() for folder in left)
 
 
-def test_where_none_can_be_made_the_command_runs_as_it_is(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_groups_the_command_runs_unchanged(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(module, "OWN", tmp_path / "no such file")
     monkeypatch.setattr(module, "TREE", tmp_path / "nor this")
     with control_group(SMALL) as group:
@@ -83,11 +83,11 @@ def test_where_none_can_be_made_the_command_runs_as_it_is(monkeypatch: pytest.Mo
         assert not group.out_of_memory()
 
 
-# Version 2 with systemd's tree cannot be had on every machine: its files are laid out in a folder.
+# Not every machine has version 2 with systemd's tree, so its files are created in a folder.
 
 
 def version_2(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The tree of a user's terminal: the slice above it passes the controllers on."""
+    """Create the tree of a user's terminal. Its upper slice passes the controllers on."""
     slice_ = folder / "user.slice/user-1000.slice/user@1000.service/app.slice"
     scope = slice_ / "terminal.scope"
     scope.mkdir(parents=True)
@@ -100,7 +100,7 @@ def version_2(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return slice_
 
 
-def test_in_version_2_the_group_lies_where_the_controllers_are_passed_on(
+def test_in_version_2_the_group_is_in_the_slice_that_passes_controllers_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     slice_ = version_2(tmp_path, monkeypatch)
@@ -112,9 +112,9 @@ def test_in_version_2_the_group_lies_where_the_controllers_are_passed_on(
     assert not any(group.folders[0].parent.glob("grader-*"))
 
 
-def test_in_version_2_a_slice_that_is_not_ours_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_in_version_2_a_slice_of_another_user_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if os.getuid() == 0:
-        monkeypatch.setattr(os, "access", lambda *_: False)  # root may write everywhere
+        monkeypatch.setattr(os, "access", lambda *_: False)  # root can write everywhere
     slice_ = version_2(tmp_path, monkeypatch)
     (slice_ / "cgroup.procs").chmod(0o400)
     with control_group(SMALL) as group:

@@ -1,4 +1,4 @@
-"""Resource limits, as they are set in a cell and where there is none."""
+"""Resource limits in a cell and without one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def test_limits_alone_need_no_bubblewrap() -> None:
 
 
 def test_limits_never_exceed_those_of_the_user() -> None:
-    """Nobody but root may raise a hard limit, and prlimit would refuse to start anything."""
+    """Only root can raise a hard limit. For other users, prlimit would refuse to start the command."""
     code = "from grader.sandbox.bubblewrap import *; print(*limited([], Limits()))"
     command = ["prlimit", f"--fsize={100 * bubblewrap.MIB}", "--nofile=512", "--", sys.executable, "-c", code]
     told = subprocess.run(command, capture_output=True, text=True, check=True).stdout
@@ -32,7 +32,7 @@ def test_limits_never_exceed_those_of_the_user() -> None:
         ("import time\nx = bytearray(b'1' * (300 << 20))\ntime.sleep(20)", "memory"),
     ],
 )
-def test_without_a_cell_the_grader_counts_what_all_processes_hold(code: str, out_of: str) -> None:
+def test_without_a_cell_the_grader_counts_the_total_of_all_processes(code: str, out_of: str) -> None:
     limits = bubblewrap.Limits(processes=20, total_memory=100 * bubblewrap.MIB)
     command = bubblewrap.limited([sys.executable, "-c", code], limits)
     done = process.run(command, timeout_s=15.0, most_stdout=1000, most_stderr=1000, watch=limits)

@@ -9,18 +9,18 @@ def python(code: str, *, stdin: bytes = b"", timeout_s: float = 60.0, most: int 
     return run([sys.executable, "-c", code], stdin=stdin, timeout_s=timeout_s, most_stdout=most, most_stderr=2_000)
 
 
-def test_output_input_and_exit_code_are_told() -> None:
+def test_input_output_and_exit_code() -> None:
     done = python("import sys; sys.stderr.write('e'); print(sys.stdin.read()[::-1]); sys.exit(3)", stdin=b"abc")
     assert (done.exit_code, done.stdout, done.stderr) == (3, b"cba\n", b"e")
 
 
-def test_megabytes_in_and_out_at_once_do_not_block() -> None:
+def test_megabytes_of_input_and_output_do_not_block() -> None:
     data = bytes(range(256)) * 20_000
     done = python("import sys; sys.stdout.buffer.write(sys.stdin.buffer.read())", stdin=data, most=10_000_000)
     assert done.stdout == data
 
 
-def test_a_child_that_reads_nothing_is_no_error() -> None:
+def test_a_child_that_does_not_read_its_input_is_not_an_error() -> None:
     assert python("pass", stdin=b"x" * 1_000_000).exit_code == 0
 
 
@@ -30,7 +30,7 @@ def test_a_child_that_never_ends_is_ended_with_its_children() -> None:
     assert done.timed_out
 
 
-def test_a_child_that_closes_its_output_and_stays_is_ended_too() -> None:
+def test_a_child_that_closes_its_output_but_does_not_end_is_ended() -> None:
     done = python("import os, time; os.close(1); os.close(2); time.sleep(1000)", timeout_s=1.0)
     assert done.timed_out
 
@@ -41,7 +41,7 @@ def test_too_much_output_ends_the_child() -> None:
     assert not done.timed_out
 
 
-def test_of_a_long_log_beginning_and_end_are_kept() -> None:
+def test_the_beginning_and_the_end_of_a_long_log_are_kept() -> None:
     done = python("import sys; sys.stderr.write('begin' + 'x' * 1_000_000 + 'end')")
     assert done.stderr.startswith(b"begin")
     assert done.stderr.endswith(b"end")

@@ -46,7 +46,7 @@ def test_nested_long_names_do_not_recurse() -> None:
     assert set(read_tar(nested + header(b"b", b"00000000000\0"), 10)) == {PurePosixPath("a")}
 
 
-def test_sizes_below_zero_do_not_lead_back() -> None:
+def test_negative_sizes_do_not_move_backwards() -> None:
     begun = time.monotonic()
     below = b"\xff" * 10 + b"\xfc\x00"
     assert read_tar(header(b"a", b"00000000000\0") + header(b"b", below) * 2 + bytes(1024), 10).keys() == {
@@ -61,7 +61,7 @@ def test_paths_that_leave_the_folder_are_left_out() -> None:
     assert set(read_tar(stream, 10)) == {PurePosixPath("good")}
 
 
-def test_what_is_no_tar_holds_nothing() -> None:
+def test_other_data_has_no_files() -> None:
     assert read_tar(b"", 10) == {}
     assert read_tar(b"\0" * 10240, 10) == {}
     assert read_tar(b"PK\3\4" * 1000, 10) == {}
