@@ -1,8 +1,8 @@
-"""An attack: a submission that wants more than to be graded, and what must hold.
+"""An attack: a submission that tries to harm or cheat the grader, and what must be true after its grading.
 
 grader/tests/hostile/NNN-name/
-  files/           laid over the solution of step 03
-  make.py          make(package): what a folder in git cannot hold
+  files/           added to the solution of step 03, or replacing its files
+  make.py          make(package): makes files that git cannot store
   expected.toml    the keys are the fields of `Attack`, below
 """
 
@@ -27,24 +27,24 @@ FOLDER = Path(__file__).parent / "hostile"
 
 @dataclass(frozen=True)
 class Attack:
-    """What stands in expected.toml.
+    """The content of expected.toml.
 
-    One of these names the trace that the attack leaves where nothing is defended, and that must not be there otherwise:
-    `says` (in what build and node wrote), `file` (a path in the observed host), `process` (a part of a command line),
-    `socket`, `kills` (the grader itself), `secret` (the caller's secret in the node's output). `raw` is a shell
-    command, run in the package's folder: its trace is `says` or `file`.
+    One of these keys names the trace that the attack leaves without a sandbox, and must not leave with one: `says` (text
+    in the output of build and node), `file` (a path in the observed host), `process` (a part of a command line),
+    `socket`, `kills` (the grader itself), `secret` (the caller's secret in the node's output). `raw` is a shell command
+    that is run in the package's folder; its trace is `says` or `file`.
 
-    What reaches the simulator leaves its trace in the recording either way, since there it belongs to what is judged:
-    `passes` is a check that would pass if `without` were not looked at ("interventions", "participants"), `reaches` a
-    topic, an intervention or a text that must be in the recording to show that the attack was made.
+    An attack on the simulator leaves its trace in the recording with a sandbox too, because the recording is what is
+    judged. `passes` is a check that would pass if `without` were ignored ("interventions", "participants"). `reaches` is
+    a topic, an intervention or a text in the recording, which shows that the attack was made.
     """
 
     name: str
     why: str
     points: float = -1.0
-    """No fewer and no more; below 0, what the node does right may count."""
+    """The exact points. If below 0, the points are not checked, because the node may be partly right."""
     most: float = 100.0
-    """No more than that."""
+    """The maximum of points."""
     says: str = ""
     file: str = ""
     process: str = ""
@@ -56,20 +56,20 @@ class Attack:
     without: str = ""
     reaches: str = ""
     never: tuple[str, ...] = ()
-    """What the grader may not print."""
+    """Text that the grader must not print."""
     never_html: tuple[str, ...] = ()
-    """What the page may not contain."""
+    """Text that the page must not contain."""
     sample: bool = False
     clock: str = "auto"
 
     @property
     def is_of_the_host(self) -> bool:
-        """Whether the trace is one that the sandbox prevents."""
+        """Return whether the sandbox prevents the trace."""
         return bool(self.says or self.file or self.process or self.socket or self.kills or self.secret)
 
 
 def read_attacks() -> tuple[Attack, ...]:
-    """Every attack, in the order of their names; ValueError for a key that there is not."""
+    """Return every attack, sorted by name. Raises ValueError for an unknown key."""
     return tuple(_read(folder) for folder in sorted(FOLDER.iterdir()) if (folder / "expected.toml").is_file())
 
 
@@ -84,7 +84,7 @@ def _read(folder: Path) -> Attack:
 
 
 def make_attack(attack: Attack, to: Path) -> Path:
-    """Write the package below the new folder `to`, and return its path."""
+    """Write the package below the new folder `to`. Return its path."""
     package = to / "my_robot_controller"
     copy_solution("03-circle-publisher", package)
     files = FOLDER / attack.name / "files"

@@ -1,4 +1,4 @@
-"""Every attack in hostile/: held where the sandbox is, and really an attack where it is not."""
+"""Every attack in hostile/ is stopped by the sandbox, and works without it."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no san
 
 @dataclass(frozen=True)
 class Graded:
-    """An attack's grading: what the host was left with, and the folder with report.json, report.html and recording/."""
+    """The grading of an attack: its effects on the host, and a folder with report.json, report.html and recording/."""
 
     left: Left
     work: Path
@@ -61,7 +61,7 @@ class Graded:
 
     @property
     def said(self) -> str:
-        """What build and node wrote."""
+        """The output of the build and of the node."""
         evidence = self.evidence
         log = evidence.build.log if evidence.build else ""
         if evidence.run.recording is None:
@@ -70,7 +70,7 @@ class Graded:
 
 
 class Runs:
-    """Runs what this session asks for, as many at once as there are processors."""
+    """Run the attacks that this session needs, as many at once as there are processors."""
 
     def __init__(self, wanted: list[tuple[Attack, str]], folder: Path, pool: ThreadPoolExecutor) -> None:
         self._futures: dict[tuple[str, str], Future[Graded]] = {
@@ -101,7 +101,7 @@ def runs(request: pytest.FixtureRequest) -> Iterator[Runs]:
         if isinstance(attack, Attack):
             for mark in item.iter_markers("clocks"):
                 wanted.update({(attack.name, way): (attack, way) for way in mark.args})
-    # pytest's own folders are closed to other users.
+    # Other users cannot read pytest's own folders.
     with tempfile.TemporaryDirectory(prefix="hostile-") as folder, ThreadPoolExecutor(AT_ONCE) as pool:
         Path(folder).chmod(0o755)
         yield Runs(list(wanted.values()), Path(folder), pool)
@@ -123,15 +123,15 @@ def readable_by_others(path: Path) -> bool:
 
 @pytest.mark.clocks("defended")
 @each(lambda _: True)
-def test_an_attack_is_held(attack: Attack, runs: Runs) -> None:
+def test_an_attack_is_stopped(attack: Attack, runs: Runs) -> None:
     assert_held(attack, runs.of(attack, "defended"))
 
 
 @pytest.mark.skipif(not readable_by_others(Path(__file__)), reason="other users cannot read this folder")
-@pytest.mark.skipif(os.geteuid() != 0, reason="the other tests run as an ordinary user already")
+@pytest.mark.skipif(os.geteuid() != 0, reason="the other tests already run as an ordinary user")
 @pytest.mark.clocks("as-user")
 @each(lambda _: True, sampled=False)
-def test_an_attack_is_held_for_an_ordinary_user(attack: Attack, runs: Runs) -> None:
+def test_an_attack_is_stopped_for_an_ordinary_user(attack: Attack, runs: Runs) -> None:
     assert_held(attack, runs.of(attack, "as-user"))
 
 
@@ -157,7 +157,7 @@ def assert_held(attack: Attack, done: Graded) -> None:
 
 
 def was_there(evidence: Evidence, what: str) -> bool:
-    """Whether a topic, a node or an intervention is in the recording, or the build is what it should be."""
+    """Return whether a topic, a node or an intervention is in the recording, or a text in the output of the build."""
     if evidence.run.overwhelmed is not None:
         return True
     if what.endswith(" files"):
@@ -169,7 +169,7 @@ def was_there(evidence: Evidence, what: str) -> bool:
 
 @pytest.mark.clocks("undefended")
 @each(lambda attack: attack.is_of_the_host, sampled=False)
-def test_undefended_an_attack_leaves_its_trace(attack: Attack, runs: Runs) -> None:
+def test_an_attack_without_a_sandbox_leaves_its_trace(attack: Attack, runs: Runs) -> None:
     done = runs.of(attack, "undefended")
     left = done.left
     graded = (done.work / "recording").is_dir()
@@ -209,11 +209,11 @@ def test_without_its_defence_a_check_would_pass(attack: Attack, runs: Runs) -> N
 
 
 def is_double(node: str) -> bool:
-    """Whether a student's node is called as one of the grader's."""
+    """Return whether a student's node has the name of a node of the grader."""
     return node.endswith(NAMESAKE) or node.startswith(OWN_NAMESPACE)
 
 
-def test_the_next_submission_is_graded_as_if_the_attacker_had_not_been_there(tmp_path: Path) -> None:
+def test_an_attack_does_not_change_the_grading_of_the_next_submission(tmp_path: Path) -> None:
     host = Host(tmp_path / "host", underlay.ensure(installation.find_ros()))
     chosen = [attack for attack in ATTACKS if attack.name[:3] in ("301", "304", "406")]
     commands = []
@@ -228,7 +228,7 @@ def test_the_next_submission_is_graded_as_if_the_attacker_had_not_been_there(tmp
     assert (left.exit_code, report["points"], sorted(left.files), left.processes) == (0, 100.0, [], ()), left.stdout
 
 
-def test_sixty_attacks_are_kept() -> None:
+def test_there_are_at_least_sixty_attacks() -> None:
     assert len(ATTACKS) >= 60
     unproven = [a.name for a in ATTACKS if not (a.is_of_the_host or a.passes or a.reaches)]
     assert unproven == []

@@ -1,10 +1,10 @@
-"""draw_circle.py points to a file of the caller's."""
+"""draw_circle.py is a link to a file of the caller."""
 
 from pathlib import Path
 
 
 def make(package: Path) -> None:
-    """Put the link in the place of the node's file."""
+    """Replace the file of the node by the link."""
     file = package / "my_robot_controller" / "draw_circle.py"
     file.unlink()
     file.symlink_to("/home/caller/.secret")

@@ -1,4 +1,4 @@
-"""A compiled file that Python takes without a look at the source."""
+"""A compiled file that Python uses without checking the source."""
 
 import importlib.util
 import py_compile
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def make(package: Path) -> None:
-    """Compile another source in the place of draw_circle.py."""
+    """Compile another source instead of draw_circle.py."""
     folder = package / "my_robot_controller"
     source = folder / "other.py"
     source.write_text('print("TRACE of the cache")\n')

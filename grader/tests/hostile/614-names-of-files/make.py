@@ -1,10 +1,10 @@
-"""Names that no README shows."""
+"""File names with commands, which cannot be stored in git on every system."""
 
 from pathlib import Path
 
 
 def make(package: Path) -> None:
-    """Make the files, and links that lead nowhere, so that they are told of."""
+    """Make the files, and broken links, so that messages contain their names."""
     for name in ("\x1b[2Jhostile", "<script>alert(1)<script>", "a\n::error::hostile", "$(touch hostile)"):
         (package / name).write_text("")
         (package / (name + ".link")).symlink_to("/" + name.replace("/", ""))

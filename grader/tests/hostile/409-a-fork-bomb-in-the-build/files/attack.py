@@ -1,4 +1,4 @@
-"""setup.py starts processes without end."""
+"""setup.py keeps starting processes."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""setup.py makes many large processes."""
+"""setup.py starts many large processes."""
 
 import os
 import time

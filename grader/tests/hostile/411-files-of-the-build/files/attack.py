@@ -1,4 +1,4 @@
-"""setup.py makes empty files without end."""
+"""setup.py keeps making empty files."""
 
 import os
 

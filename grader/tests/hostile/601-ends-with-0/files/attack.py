@@ -1,4 +1,4 @@
-"""setup.py ends at once and says that all is well."""
+"""setup.py ends at once with exit code 0."""
 
 import os
 

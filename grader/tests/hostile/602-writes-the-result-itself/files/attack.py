@@ -1,4 +1,4 @@
-"""setup.py writes into the pipe on which the install tree travels."""
+"""setup.py writes into the pipe that transfers the install tree."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Runs in every Python that finds it."""
+"""Every Python process that finds this module runs it."""
 
 from pathlib import Path
 

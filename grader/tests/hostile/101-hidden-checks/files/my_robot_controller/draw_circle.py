@@ -1,4 +1,4 @@
-"""It reads what is checked."""
+"""It reads the hidden checks."""
 
 import sys
 from pathlib import Path

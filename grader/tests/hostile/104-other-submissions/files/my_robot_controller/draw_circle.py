@@ -1,4 +1,4 @@
-"""It reads what others have handed in."""
+"""It reads the submissions of others."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""It looks for files that others have left open."""
+"""It looks for files that other processes have open."""
 
 import os
 from pathlib import Path

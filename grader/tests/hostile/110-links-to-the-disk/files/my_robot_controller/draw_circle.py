@@ -1,4 +1,4 @@
-"""It goes to the disk through another process's root."""
+"""It reaches the disk through the root folder of another process."""
 
 from pathlib import Path
 

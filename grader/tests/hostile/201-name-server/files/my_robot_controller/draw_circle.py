@@ -1,4 +1,4 @@
-"""It asks a name server, and so could send anything out."""
+"""It queries a name server, so it could send any data out."""
 
 import socket
 

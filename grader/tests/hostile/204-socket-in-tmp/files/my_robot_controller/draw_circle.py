@@ -1,4 +1,4 @@
-"""It connects to a socket that lies in /tmp."""
+"""It connects to a socket in /tmp."""
 
 import socket
 

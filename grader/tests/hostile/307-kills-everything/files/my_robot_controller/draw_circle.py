@@ -1,4 +1,4 @@
-"""It ends every process that it may."""
+"""It kills every process that it can."""
 
 import os
 import signal

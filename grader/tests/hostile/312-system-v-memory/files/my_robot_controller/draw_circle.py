@@ -1,4 +1,4 @@
-"""It takes shared memory that no limit counts and no end of a process frees."""
+"""It allocates shared memory that no limit counts and that stays when its process ends."""
 
 import ctypes
 

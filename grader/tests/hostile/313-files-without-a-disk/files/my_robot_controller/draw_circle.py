@@ -1,4 +1,4 @@
-"""It makes files that lie in memory and on no disk."""
+"""It makes files in memory that are not on a disk."""
 
 import ctypes
 

@@ -1,4 +1,4 @@
-"""It makes itself root in a namespace of its own, where most holes are."""
+"""It becomes root in its own namespace, where the kernel has the most security holes."""
 
 import ctypes
 
@@ -7,7 +7,7 @@ def main():
     call = ctypes.CDLL(None, use_errno=True).syscall
     import os
 
-    # Alone: a process with threads may not.
+    # In a new process, because a process with threads is not allowed to.
     if os.fork() == 0:
         if call(272, 0x10000000) == 0:
             print("TRA" "CE", flush=True)

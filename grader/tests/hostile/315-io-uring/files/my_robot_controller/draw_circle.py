@@ -1,4 +1,4 @@
-"""It asks for a way around the filter of system calls."""
+"""It uses io_uring to avoid the filter of system calls."""
 
 import ctypes
 

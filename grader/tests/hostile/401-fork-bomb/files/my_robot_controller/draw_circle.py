@@ -1,4 +1,4 @@
-"""It starts processes without end."""
+"""It keeps starting processes."""
 
 import os
 

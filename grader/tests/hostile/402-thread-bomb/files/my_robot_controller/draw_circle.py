@@ -1,4 +1,4 @@
-"""It starts threads without end."""
+"""It keeps starting threads."""
 
 import threading
 

@@ -1,4 +1,4 @@
-"""It asks for more memory than there may be."""
+"""It allocates more memory than the limit."""
 
 import mmap
 

@@ -1,4 +1,4 @@
-"""Each of its processes is small enough, all together are not."""
+"""Each of its processes is below the limit, but their total is not."""
 
 import os
 import time

@@ -1,4 +1,4 @@
-"""It makes a file that has more bytes than the disk."""
+"""It makes a file that is larger than the disk."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""It puts the turtle where a circle would be, and drives nothing."""
+"""It teleports the turtle along a circle and does not drive."""
 
 import math
 

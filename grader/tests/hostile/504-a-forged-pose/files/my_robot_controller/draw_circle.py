@@ -1,4 +1,4 @@
-"""It tells the world that the turtle drives a circle."""
+"""It publishes false poses of a turtle that drives a circle."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""It makes its own time go faster."""
+"""It publishes a faster clock."""
 
 import rclpy
 from geometry_msgs.msg import Twist

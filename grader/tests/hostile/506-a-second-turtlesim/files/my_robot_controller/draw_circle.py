@@ -1,4 +1,4 @@
-"""A node of its own is called turtlesim, and what that publishes looks like the simulator's."""
+"""It starts a node named turtlesim, whose messages look like those of the simulator."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""A node hides among the grader's own."""
+"""A node hides among the nodes of the grader."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""A node is called as the grader's recorder."""
+"""A node has the name of the grader's recorder."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""A hundred and twenty topics are to push the wrong one out of sight."""
+"""A hundred and twenty topics hide the wrong one."""
 
 import rclpy
 from geometry_msgs.msg import Twist

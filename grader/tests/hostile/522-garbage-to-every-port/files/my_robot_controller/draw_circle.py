@@ -1,4 +1,4 @@
-"""It sends garbage to all ports where discovery is heard."""
+"""It sends random bytes to all discovery ports."""
 
 import os
 import socket

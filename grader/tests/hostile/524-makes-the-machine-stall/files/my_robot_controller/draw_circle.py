@@ -1,4 +1,4 @@
-"""Its processes take all processors at each command, so that no arrival can be trusted."""
+"""Its processes use all processors at each command, so that arrival times are not reliable."""
 
 import os
 import time

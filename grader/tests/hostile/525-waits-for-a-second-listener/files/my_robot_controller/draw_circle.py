@@ -1,4 +1,4 @@
-"""It drives only while somebody else than the turtle listens."""
+"""It drives only while another node than the turtle subscribes."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""Its commands are no numbers, which no comparison finds wrong."""
+"""Its commands are NaN, for which every comparison is false."""
 
 import rclpy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-"""Another process publishes, and the node does nothing."""
+"""Another process publishes, and the node itself does nothing."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Does nothing; what is compiled does."""
+"""This file does nothing, but the compiled file does."""
 
 
 def main():

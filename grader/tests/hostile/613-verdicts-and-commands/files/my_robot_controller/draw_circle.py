@@ -1,4 +1,4 @@
-"""It prints what the grader prints, and commands for a CI."""
+"""It prints a verdict like the grader, and commands for a CI."""
 
 def main():
     print("Passed: 100 of 100 points.")

@@ -1,4 +1,4 @@
-"""An object that is equal to everything, and functions that agree with everybody."""
+"""An object is equal to everything, and patched functions always return True."""
 
 import builtins
 import math

@@ -1,4 +1,4 @@
-"""It stops, and no longer hears Ctrl-C."""
+"""It stops itself and does not react to Ctrl-C."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""It ignores all signals and answers with children that do the same."""
+"""It ignores all signals, and so do the children that it starts."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""A hundred and thirty publishers and as many topics are to push a second type out of sight."""
+"""A hundred and thirty publishers and as many topics hide a second type."""
 
 import rclpy
 from geometry_msgs.msg import Twist

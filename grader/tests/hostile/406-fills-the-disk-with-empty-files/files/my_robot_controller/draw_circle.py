@@ -1,0 +1,10 @@
+"""It keeps making empty files."""
+
+import os
+
+
+def main():
+    os.makedirs("/tmp/hostile-406", exist_ok=True)
+    for count in range(60_000):
+        os.close(os.open(f"/tmp/hostile-406/{count}", os.O_CREAT | os.O_WRONLY))
+    print("TRA" "CE 60000 files")

@@ -1,0 +1,9 @@
+"""It repeats the message of the launcher that it is ready, and closes all its files."""
+
+import os
+
+
+def main():
+    os.write(1, b"\x00ready\n" * 100)
+    os.write(2, b"TRA" b"CE of a second start\n")
+    os.closerange(0, 1000)
