@@ -157,7 +157,7 @@ def assert_held(attack: Attack, done: Graded) -> None:
 
 
 def was_there(evidence: Evidence, what: str) -> bool:
-    """Return whether a topic, a node or an intervention is in the recording, or a text in the output of the build."""
+    """Return whether a topic, a node or an intervention is in the recording, or the build made too many files."""
     if evidence.run.overwhelmed is not None:
         return True
     if what.endswith(" files"):
