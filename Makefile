@@ -1,13 +1,13 @@
-# What there is to type; `make help` lists it. Every target sets up what it needs first, and is quick when that is done.
+# The commands to type; `make help` lists them. Each target first sets up what it needs, and is quick if that is done.
 
 .DEFAULT_GOAL := help
 .PHONY: help demo cluster notebooks docs test test-all lint lock clean
 
-# Exported, so that it also holds where the caller has no PATH at all (`env -i make demo`).
+# Exported, so that the targets also work if the caller has no PATH (`env -i make demo`).
 export PATH := $(if $(PATH),$(PATH):)/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 
 BIN := .venv/bin
-# `make demo PYTHON=python3.12` chooses the Python of .venv, and makes it anew if it was another.
+# `make demo PYTHON=python3.12` chooses the Python of .venv, and replaces a .venv of another Python.
 SET_UP := python3 -Es -m grader.setup.bootstrap
 CHOSEN := $(if $(findstring command line,$(origin PYTHON)),--python $(PYTHON))
 
@@ -17,7 +17,7 @@ help: ## this list
 demo: python3 ## set up, grade the solution of step 03, say what to type next
 	@begin=$$(date +%s) && $(SET_UP) learner $(CHOSEN) && $(BIN)/python -I -m grader.setup.demo --since $$begin
 
-cluster: python3 ## set up a machine that is to grade for another one, with Dask
+cluster: python3 ## set up a machine that grades for another one, with Dask
 	@$(SET_UP) cluster $(CHOSEN)
 
 notebooks: python3 ## set up JupyterLab and nbgrader, with the course's kernel
@@ -28,7 +28,7 @@ docs: python3 ## build README, docs/ and the lessons as a site in build/site; a 
 	@$(BIN)/sphinx-build -q -W --keep-going -n -c docs -d build/site-doctrees . build/site
 	@echo "The documentation: build/site/index.html"
 
-test: lint ## set up, lint, and run the tests but the exhaustive ones, a process a core
+test: lint ## set up, lint, and run all tests but the exhaustive ones, one process per core
 	@$(BIN)/python -m pytest -n auto --dist loadscope
 
 test-all: lint ## all tests: in both clocks, with repetition and load (long)
@@ -42,7 +42,7 @@ lint: .tests ## ruff and mypy
 lock: .tests ## resolve pyproject.toml into requirements.lock; UPGRADE=1 takes the newest versions
 	@$(BIN)/python -I -m grader.setup.lock $(if $(UPGRADE),--upgrade)
 
-clean: ## remove .venv and what the tools left; never anybody's work
+clean: ## remove .venv and the files of the tools; never your own work
 	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis build/demo build/site build/site-doctrees
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
