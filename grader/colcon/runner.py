@@ -23,6 +23,7 @@ from grader.sandbox import bubblewrap, process
 from grader.sandbox.control_group import control_group
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.tar_stream import Member, read_tar
+from grader.sandbox.user import cell_user
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
@@ -94,8 +95,8 @@ def build(submission: Submission, ros: installation.Ros, *, in_cell: bool, tell:
         argv = ["sh", "-c", _SCRIPT, "sh", *colcon.argv]
         if in_cell:
             view = bubblewrap.ros_view(ros)
-            with call_filter() as filter_fd, control_group(LIMITS) as group:
-                command = bubblewrap.lone_cell(argv, view, env=env, limits=LIMITS, filter_fd=filter_fd)
+            with call_filter() as filter_fd, control_group(LIMITS) as group, cell_user() as user:
+                command = bubblewrap.lone_cell(argv, view, env=env, limits=LIMITS, user=user, filter_fd=filter_fd)
                 done = _run(group.joined(command), env, submission, () if filter_fd is None else (filter_fd,))
                 if group.out_of_memory():
                     done = replace(done, out_of="memory")

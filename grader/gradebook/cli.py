@@ -36,7 +36,10 @@ Steps = Annotated[
 ]
 Course = Annotated[
     Optional[Path],  # noqa: UP045
-    typer.Option(help="Folder of the class or its course/. [default: the current folder]", metavar="DIR"),
+    typer.Option(
+        help="Folder of the class or its course/. [default: the current folder, if `grader class new` made it]",
+        metavar="DIR",
+    ),
 ]
 
 
@@ -107,8 +110,10 @@ def new(
     """Make a course folder for a class, with lessons, solutions, notebooks and nbgrader's gradebook."""
     from grader.common.words import count
     from grader.gradebook.class_folder import make_class
+    from grader.gradebook.folders import remember
 
     students = make_class(folder, roster)
+    remember(folder)
     typer.echo(f"A class of {count(students, 'student')}: {folder}")
     typer.echo(f"Next: cd {folder / 'course'}; nbgrader generate_assignment 01-first-node")
 

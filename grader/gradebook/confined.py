@@ -1,13 +1,11 @@
-"""Autograde's kernels: each runs in a cell (grader.sandbox) and is reached over sockets in a shared folder.
+"""Autograde's kernels: each runs in a cell (grader.sandbox) and is reached through a relay with a budget (relay.py).
 
-The cells of a notebook are student code. A sandbox cell has only its own loopback network, so the kernel is reached
-over
-ipc sockets instead of TCP. Interrupts are sent as messages, because a signal would reach bubblewrap and not the kernel.
+The cells of a notebook are student code. A sandbox cell has only its own loopback network and its own disks, so the
+kernel is reached through pipes. Interrupts are sent as messages, because a signal would reach the relay.
 """
 
 from __future__ import annotations
 
-import math
 import os
 import signal
 import subprocess
@@ -18,19 +16,20 @@ from typing import TYPE_CHECKING, Any
 
 from jupyter_client.kernelspec import KernelSpec
 from jupyter_client.manager import AsyncKernelManager
-from nbclient.exceptions import CellTimeoutError, DeadKernelError
+from nbclient.exceptions import CellControlSignal, CellTimeoutError, DeadKernelError
 from nbgrader.preprocessors import Execute
 from traitlets import Bool, Instance, Integer, Unicode
 
 from grader.common.interpreter import interpreter
+from grader.errors import GraderError, MachineError
 from grader.exercise.model import course_folder
+from grader.gradebook.outputs import MOST_OUTPUT, TOO_MUCH, honest, mark, put_right
+from grader.gradebook.relay import WHY_FILE, Order
 from grader.notebook.mode import CONFINED
 from grader.ros.installation import environment, find_ros
 from grader.ros.underlay import with_turtlesim
 from grader.sandbox import bubblewrap
-from grader.sandbox.bubblewrap import HOME, Limits, View, lone_cell, ros_view
-from grader.sandbox.system_calls import call_filter
-from grader.sandbox.usage import Guard
+from grader.sandbox.bubblewrap import HOME, WORKSPACE, View, ros_view
 from grader.submission import tree
 from grader.submission.package import Submission, write_copy
 from grader.submission.reader import read
@@ -40,8 +39,8 @@ if TYPE_CHECKING:
 
 CHECK_S = 300
 """The time limit for an instructor's cell (s). It builds and runs a package, perhaps in wall time."""
-MOST_OUTPUT = 4_000_000
-"""Characters of all outputs together. A notebook that prints more is stopped."""
+SHOWN = ("stream", "display_data", "execute_result", "error", "update_display_data")
+"""Messages that become outputs of a cell."""
 
 
 class ConfinedKernelManager(AsyncKernelManager):
@@ -49,52 +48,52 @@ class ConfinedKernelManager(AsyncKernelManager):
 
     submission = Unicode("")
     trusted = Bool(default_value=False)
+    why = ""
+    """Why the kernel was ended, once it is; nothing where it ended by itself."""
     _folder = Instance(tempfile.TemporaryDirectory, allow_none=True)
-    _guard: Guard | None = None
+    _life = -1
 
     @property
     def kernel_spec(self) -> KernelSpec:
         """The course's own kernel, whatever the notebook names."""
-        argv = interpreter(
-            *("-m", "grader.notebook.confined", "{submission}", "-f", "{connection_file}"), searches=True
-        ).argv
+        argv = interpreter("-m", "grader.gradebook.relay", "{relay_folder}").argv
         return KernelSpec(argv=argv, display_name="", language="python", interrupt_mode="message")
 
     async def _async_pre_start_kernel(self, **kw: Any) -> Any:  # noqa: ANN401 - as the base class
+        # Only the caller can enter this folder. The cell does not see it.
         self._folder = tempfile.TemporaryDirectory(prefix="kernel-")
-        sockets = Path(self._folder.name) / "sockets"
-        sockets.mkdir()
-        # The user of the cell can write there. The folder around it keeps all other users out.
-        sockets.chmod(0o777)
+        folder = Path(self._folder.name)
         self.transport = "ipc"
-        self.connection_file = str(sockets / "kernel.json")
-        self.ip = str(sockets / "socket")
+        self.connection_file = str(folder / "kernel.json")
+        self.ip = str(folder / "socket")
         return await super()._async_pre_start_kernel(**kw)
 
     async def _async_launch_kernel(self, kernel_cmd: list[str], **kw: Any) -> None:  # noqa: ANN401 - as the base class
-        confined = bubblewrap.require(trusted=self.trusted)
         assert self._folder is not None
-        copy = Path(self._folder.name) / "submission"
-        _copy(Path(self.submission), copy)
-        Path(self.connection_file).chmod(0o644)
-        argv = [word.replace("{submission}", str(copy)) for word in kernel_cmd]
-        env, view = _environment(copy, Path(self.connection_file).parent)
+        folder = Path(self._folder.name)
+        _order(Path(self.submission), folder, self.connection_file, trusted=self.trusted).write(folder)
+        argv = [word.replace("{relay_folder}", str(folder)) for word in kernel_cmd]
         kw.pop("cwd", None)
-        # Output of a student on these would control the instructor's terminal.
-        kw |= {"env": env, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        limits = Limits()
-        with call_filter() as filter_fd:
-            if confined:
-                argv = lone_cell(argv, view, env=env, limits=limits, filter_fd=filter_fd)
-                kw["pass_fds"] = () if filter_fd is None else (filter_fd,)
+        # The relay ends when this pipe is closed, however this process ends.
+        ends, self._life = os.pipe()
+        try:
+            kw |= {"env": interpreter("-c", "").env, "cwd": "/", "stdin": ends, "stdout": subprocess.DEVNULL}
             await super()._async_launch_kernel(argv, **kw)
-        pid = self.provisioner.process.pid  # type: ignore[union-attr]
-        self._guard = Guard(pid, limits, lambda _: _kill(pid))
+        finally:
+            os.close(ends)
+
+    def read_why(self) -> str:
+        """Why the relay has ended the kernel, if it has."""
+        if self._folder is not None and not self.why:
+            with suppress(OSError):
+                self.why = (Path(self._folder.name) / WHY_FILE).read_text("utf-8")
+        return self.why
 
     async def _async_cleanup_resources(self, restart: bool = False) -> None:
-        if self._guard is not None:
-            self._guard.close()
-            self._guard = None
+        self.read_why()
+        if self._life >= 0:
+            os.close(self._life)
+            self._life = -1
         await super()._async_cleanup_resources(restart)
         if self._folder is not None:
             with suppress(OSError):
@@ -126,79 +125,79 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         self._submission = folder
         try:
             nb, resources = super().preprocess(nb, resources, km)
-        except (DeadKernelError, RuntimeError) as error:
-            # The kernel did not start or did not stop.
-            self._ended = self._ended or str(error).partition("\n")[0]
+        except MachineError:
+            raise
+        except Exception as error:
+            # The kernel did not start or did not stop, or nbclient could not handle what it sent.
+            self._ended = self._ended or self._reason(error)
             self.log.warning("The kernel ended: %s", self._ended)
             for cell in nb.cells:
                 if cell.cell_type == "code" and not cell.get("outputs") and cell.get("execution_count") is None:
-                    _mark(cell, self._ended)
+                    mark(cell, self._ended)
+        put_right(nb)
         for cell in nb.cells:
-            _honest(cell)
+            honest(cell)
         return nb, resources
 
     def create_kernel_manager(self) -> Any:  # noqa: ANN401 - as the base class
         """Create the manager of this submission's kernel, whatever kernel the notebook's metadata name."""
         self.km = ConfinedKernelManager(submission=self._submission, trusted=self.trust_submissions, config=self.config)
+        self._manager = self.km
         return self.km
 
     def preprocess_cell(self, cell: NotebookNode, resources: Any, index: int) -> tuple[NotebookNode, Any]:  # noqa: ANN401
         """Run one cell, if the kernel is still alive."""
         if self._ended:
             if cell.cell_type == "code":
-                _mark(cell, self._ended)
+                mark(cell, self._ended)
             return cell, resources
         try:
-            return super().preprocess_cell(cell, resources, index)  # type: ignore[no-any-return, unused-ignore]
-        except (DeadKernelError, CellTimeoutError) as error:
-            if isinstance(error, CellTimeoutError):
-                self._end("A cell did not end in time, and did not stop when it was interrupted.")
-            self._ended = self._ended or "The kernel died."
-            if cell.cell_type == "code":
-                _mark(cell, self._ended)
-            return cell, resources
+            cell, resources = super().preprocess_cell(cell, resources, index)
+        except Exception as error:
+            self._end(self._reason(error))
+        if self._ended and cell.cell_type == "code":
+            mark(cell, self._ended)
+        return cell, resources
 
     def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> NotebookNode | None:
         """Handle a message of the kernel, unless all of them together are too long."""
-        if msg["msg_type"] in {"stream", "display_data", "execute_result", "error", "update_display_data"}:
+        if msg["msg_type"] in SHOWN:
             self._printed += len(str(msg["content"]))
             if self._printed > MOST_OUTPUT:
-                self._end(f"The notebook printed more than {MOST_OUTPUT // 1_000_000} million characters.")
+                self._end(TOO_MUCH)
                 return None
-        return super().process_message(msg, cell, cell_index)  # type: ignore[no-any-return, unused-ignore]
+        try:
+            return super().process_message(msg, cell, cell_index)  # type: ignore[no-any-return, unused-ignore]
+        except CellControlSignal:
+            raise
+        except Exception as error:
+            self._end(self._reason(error))
+            return None
+
+    def on_comm_open_jupyter_widget(self, msg: dict[str, Any]) -> None:
+        """Do not act as the front end of a widget: the kernel could make the answers as long as it likes."""
 
     def _get_timeout(self, cell: NotebookNode | None) -> int | None:
         locked = cell is not None and cell.get("metadata", {}).get("nbgrader", {}).get("locked")
         return CHECK_S if locked or cell is None else self.cell_s
 
+    def _reason(self, error: Exception) -> str:
+        """Why no more can be run."""
+        why: str = self._manager.read_why()
+        if why or isinstance(error, DeadKernelError):
+            return why or "The kernel died."
+        if isinstance(error, CellTimeoutError):
+            return "A cell did not end in time, and did not stop when it was interrupted."
+        if isinstance(error, RuntimeError | GraderError):
+            return str(error).partition("\n")[0]
+        self.log.debug("What the kernel sent", exc_info=error)
+        return "The kernel sent what nbgrader could not follow."
+
     def _end(self, why: str) -> None:
         if not self._ended:
             self._ended = why
-            _kill(self.km.provisioner.process.pid)  # type: ignore[union-attr]
-
-
-def _mark(cell: NotebookNode, why: str) -> None:
-    from nbformat.v4 import new_output
-
-    cell.outputs = [new_output("error", ename="NotRun", evalue=why, traceback=[why])]  # type: ignore[no-untyped-call]
-
-
-def _honest(cell: NotebookNode) -> None:
-    """Replace the result of a cell that should give its points by an error if it is not a valid number.
-
-    nbgrader gives full marks to a cell without output.
-    """
-    about = cell.get("metadata", {}).get("nbgrader", {})
-    if not about.get("grade") or cell.cell_type != "code" or ".points(" not in cell.source:
-        return
-    results = [output for output in cell.outputs if output.output_type == "execute_result"]
-    failed = any(output.output_type == "error" for output in cell.outputs)
-    try:
-        number = float(results[0]["data"]["text/plain"]) if len(results) == 1 else math.nan
-    except (KeyError, TypeError, ValueError):
-        number = math.nan
-    if not failed and not 0.0 <= number <= float(about["points"]):
-        _mark(cell, "The cell did not give its points.")
+            if self.km is not None and self.km.has_kernel:
+                _kill(self.km.provisioner.process.pid)  # type: ignore[union-attr]
 
 
 def _copy(folder: Path, copy: Path) -> None:
@@ -208,18 +207,32 @@ def _copy(folder: Path, copy: Path) -> None:
     write_copy(Submission("", folder, files, (), "", frozenset(found.executable & files.keys())), copy)
 
 
-def _environment(*folders: Path) -> tuple[dict[str, str], View]:
+def _order(submission: Path, folder: Path, connection_file: str, *, trusted: bool) -> Order:
+    """What the relay is to start; `folder` is its own."""
+    confined = bubblewrap.require(trusted=trusted)
+    copy, home, workspace = folder / "submission", HOME, WORKSPACE
+    _copy(submission, copy)
+    if not confined:
+        home, workspace = folder / "home", folder / "workspace"
+        home.mkdir()
+        workspace.mkdir()
+    env, view = _environment(copy, home)
+    start = interpreter("-m", "grader.notebook.bridge", str(copy), str(workspace), env=env, searches=True)
+    return Order(start.argv, start.env, view, confined, connection_file)
+
+
+def _environment(copy: Path, home: Path) -> tuple[dict[str, str], View]:
     ros = with_turtlesim(find_ros())
     course = course_folder()
     package = Path(__file__).resolve().parent.parent
     exercises = course.parent / "exercises"
-    shown = ros_view(ros, *(path for path in (package, course, exercises, folders[0]) if path.exists()))
+    shown = ros_view(ros, *(path for path in (package, course, exercises, copy) if path.exists()))
     # The grader's tests contain solutions too, and so does the folder next to the course if it is installed.
     hidden = [path for path in shown.hidden if path.name == "solutions"]
     hidden += [path for path in (package / "tests",) if path.is_dir()]
-    view = View(shown.read_only, tuple(hidden), (folders[1],))
-    env = environment(ros, home=HOME)
-    env |= {CONFINED: "1", "NBGRADER_EXECUTION": "autograde", "IPYTHONDIR": str(HOME / "ipython")}
+    view = View(shown.read_only, tuple(hidden))
+    env = environment(ros, home=home)
+    env |= {CONFINED: "1", "NBGRADER_EXECUTION": "autograde", "IPYTHONDIR": str(home / "ipython")}
     if ros.underlay:
         env["XDG_CACHE_HOME"] = str(ros.underlay.parent.parent)
     return env, view

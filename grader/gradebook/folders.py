@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
+import shlex
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.checks.exercises import find_exercise
+from grader.common import xdg
 from grader.errors import MachineError, UsageError
-from grader.exercise.model import catalogue
+from grader.exercise.model import catalogue, course_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -63,11 +66,40 @@ def _is_folder(path: Path) -> bool:
         return True  # The folder is not readable. The error is reported when it is read.
 
 
+def remember(folder: Path) -> None:
+    """Remember that the class in `folder` was made by this user. Raises MachineError where that cannot be kept."""
+    file = _made()
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with file.open("a", encoding="utf-8") as opened:
+            opened.write(json.dumps(str(folder.resolve() / "course")) + "\n")
+    except OSError as error:
+        message = f"{error.filename or file} could not be written: {error.strerror}."
+        raise MachineError(message) from error
+
+
+def _is_known(course: Path) -> bool:
+    """Whether the folder is the course that this grader belongs to, or was made by `grader class new`."""
+    try:
+        made = _made().read_text("utf-8").splitlines()
+    except (OSError, UnicodeDecodeError):
+        made = []
+    return course == course_folder().resolve() or json.dumps(str(course)) in made
+
+
+def _made() -> Path:
+    """The list of the classes that this user has made, one per line."""
+    return xdg.state() / "classes"
+
+
 def open_class(folder: Path | None) -> ClassFolders:
     """Open the class whose nbgrader_config.py is in `folder` or its course/. None means the current folder.
 
+    nbgrader_config.py is a program and is run. The current folder may be a student's, so it is used only if it is a
+    class that this user made.
+
     Raises:
-        UsageError: there is no nbgrader_config.py.
+        UsageError: there is no nbgrader_config.py, or this user did not make the class.
         MachineError: nbgrader is not installed.
     """
     tried = [folder or Path(), (folder or Path()) / "course"]
@@ -76,6 +108,12 @@ def open_class(folder: Path | None) -> ClassFolders:
         message = (
             f"There is no {CONFIG} in {folder or Path.cwd()}. Go to the course's folder, or name it with --course. "
             "`grader class new DIR` makes one."
+        )
+        raise UsageError(message)
+    if folder is None and not _is_known(found.resolve()):
+        message = (
+            f"{found.resolve() / CONFIG} is a program, and `grader class new` has not made this folder for you. If it "
+            f"is yours, name it: --course {shlex.quote(str(found.resolve()))}"
         )
         raise UsageError(message)
     try:

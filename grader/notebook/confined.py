@@ -1,7 +1,9 @@
-"""A kernel in a cell (grader.sandbox) for `nbgrader autograde`: `python -m grader.notebook.confined FOLDER -f FILE`.
+"""A kernel in a cell (grader.sandbox), for `nbgrader autograde`.
 
-FOLDER is a read-only copy of the submission. The kernel works on its own copy on the cell's disk, which is deleted with
-the cell.
+    python -m grader.notebook.confined FOLDER WORKSPACE -f CONNECTION_FILE     what bridge.py starts
+
+FOLDER is a read-only copy of the submission. The kernel works on its own copy in WORKSPACE, on the cell's disk, which
+is deleted with the cell.
 """
 
 from __future__ import annotations
@@ -9,8 +11,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-
-from grader.sandbox.bubblewrap import WORKSPACE
+from pathlib import Path
 
 
 def main() -> None:
@@ -19,10 +20,10 @@ def main() -> None:
     # Python's.
     from ipykernel import kernelapp
 
-    folder = WORKSPACE / "submission"
+    folder = Path(sys.argv[2], "submission")
     shutil.copytree(sys.argv[1], folder, symlinks=True)
     os.chdir(folder)
-    kernelapp.launch_new_instance(argv=sys.argv[2:])  # type: ignore[no-untyped-call, unused-ignore]
+    kernelapp.launch_new_instance(argv=sys.argv[3:])  # type: ignore[no-untyped-call, unused-ignore]
 
 
 if __name__ == "__main__":

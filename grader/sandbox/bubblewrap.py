@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING
 from grader.common import packages
 from grader.errors import MachineError
 from grader.sandbox.system_calls import call_filter
+from grader.sandbox.user import cell_user
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -37,11 +38,11 @@ WORKSPACE = Path("/ws")
 """The workspace inside a cell, on a tmpfs of its own."""
 HOME = Path("/tmp/home")
 """HOME inside room and cell. It is empty at first and is deleted with the cell."""
-USER_ID = 65530
-"""The user that a root caller becomes. Systemd and Debian's policy do not use this id for users or services."""
 
 MIB = 1024 * 1024
 ROOM_DISK = 256 * MIB
+MOST_SIGNALS = 1000
+"""How many signals and POSIX timers of a cell may be pending. The kernel also counts them for the user."""
 MOST_OTHERS = 4096
 """How many processes and threads a user may have in addition to a grading without a cell."""
 
@@ -69,14 +70,10 @@ NODE_LIMITS = Limits()
 
 @dataclass(frozen=True)
 class View:
-    """What a room or cell sees of the disk, each path at its own place. `hidden` folders are empty there.
-
-    The cell can return files through the `writable` folders, for example the sockets of a kernel.
-    """
+    """What a room or cell sees of the disk, each path at its own place. `hidden` folders are empty there."""
 
     read_only: tuple[Path, ...]
     hidden: tuple[Path, ...] = ()
-    writable: tuple[Path, ...] = ()
 
 
 def ros_view(ros: Ros, *more: Path) -> View:
@@ -95,15 +92,21 @@ def program() -> str | None:
     return shutil.which("bwrap", path="/usr/local/bin:/usr/bin:/bin")
 
 
-def room(argv: Sequence[str], view: View, *, env: Mapping[str, str], cwd: Path | None = None) -> list[str]:
-    """Return the command that runs `argv` as an ordinary user in a network of its own; for our own processes."""
+def room(
+    argv: Sequence[str], view: View, *, env: Mapping[str, str], user: int | None, cwd: Path | None = None
+) -> list[str]:
+    """Return the command that runs `argv` as an ordinary user in a network of its own; for our own processes.
+
+    `user` comes from user.cell_user(): the user that a root caller becomes, or None for other callers.
+    """
     command = [_bwrap(), "--unshare-net", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--hostname", "grader"]
     command += ["--die-with-parent", "--size", str(ROOM_DISK), "--tmpfs", "/tmp", "--perms", "0777", "--dir", str(HOME)]
-    command += [*_disk(view), *(["--dir", "/proc"] if os.geteuid() == 0 else ["--proc", "/proc"])]
+    command += [*_disk(view), *(["--proc", "/proc"] if user is None else ["--dir", "/proc"])]
     # LTTng, which rclpy loads, keeps a file here. If it cannot, its threads wait for any child of the process, and may
     # take the exit code of a node that ends at this moment.
     command += ["--size", str(ROOM_DISK), "--perms", "1777", "--tmpfs", "/dev/shm"]
-    return [*_ordinary(command), *_environment(env), "--chdir", str(cwd or HOME), "--", *_stay_ordinary(), *argv]
+    command = [*_ordinary(command, user), *_environment(env), "--chdir", str(cwd or HOME), "--"]
+    return [*command, *_stay_ordinary(user), *argv]
 
 
 def cell(
@@ -139,11 +142,17 @@ def cell(
 
 
 def lone_cell(
-    argv: Sequence[str], view: View, *, env: Mapping[str, str], limits: Limits, filter_fd: int | None = None
+    argv: Sequence[str],
+    view: View,
+    *,
+    env: Mapping[str, str],
+    limits: Limits,
+    user: int | None,
+    filter_fd: int | None = None,
 ) -> list[str]:
-    """Return the command that runs `argv` in a cell with a network of its own, for any caller."""
+    """Return the command that runs `argv` in a cell with a network of its own. `user` is as for a room."""
     inner = cell(argv, view, env=env, limits=limits, filter_fd=filter_fd)
-    return room(inner, view, env=env) if os.geteuid() == 0 else inner
+    return inner if user is None else room(inner, view, env=env, user=user)
 
 
 def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> list[str]:
@@ -158,6 +167,7 @@ def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> li
         f"--fsize={_allowed(resource.RLIMIT_FSIZE, limits.file_size)}",
         f"--cpu={_allowed(resource.RLIMIT_CPU, limits.cpu_s)}",
         "--core=0",
+        *([f"--sigpending={_allowed(resource.RLIMIT_SIGPENDING, MOST_SIGNALS)}"] if in_cell else []),
         "--",
         # If the machine runs out of memory, the kernel should kill this first.
         *("choom", "-n", "1000", "--"),
@@ -200,17 +210,11 @@ def why_unavailable() -> str | None:
         return _not_installed()
     view = View(read_only=())
     env = {"PATH": "/usr/bin:/bin"}
-    with call_filter() as filter_fd:
-        tried = lone_cell(["true"], view, env=env, limits=Limits(), filter_fd=filter_fd)
+    with call_filter() as filter_fd, cell_user() as user:
+        tried = lone_cell(["true"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)
         inherited = () if filter_fd is None else (filter_fd,)
         done = subprocess.run(
-            tried,
-            capture_output=True,
-            text=True,
-            timeout=20,
-            check=False,
-            stdin=subprocess.DEVNULL,
-            pass_fds=inherited,
+            tried, capture_output=True, text=True, timeout=20, check=False, stdin=subprocess.DEVNULL, pass_fds=inherited
         )
     if done.returncode == 0:
         return None
@@ -237,19 +241,19 @@ def _not_installed() -> str:
     return f"bubblewrap is not installed. Install it with `{packages.command(manager, [need], root=os.geteuid() == 0)}`"
 
 
-def _ordinary(command: list[str]) -> list[str]:
+def _ordinary(command: list[str], user: int | None) -> list[str]:
     # Root makes mounts and the network without a user namespace, and then becomes an ordinary user (_stay_ordinary).
-    return command if os.geteuid() == 0 else [command[0], "--unshare-user", *command[1:]]
+    return [command[0], "--unshare-user", *command[1:]] if user is None else command
 
 
-def _stay_ordinary() -> list[str]:
-    if os.geteuid() != 0:
+def _stay_ordinary(user: int | None) -> list[str]:
+    if user is None:
         return []
     # A mount by bubblewrap would cover parts of /proc. Then a cell inside could not have its own /proc.
     proc = ["sh", "-c", 'mount -t proc -o nosuid,nodev,noexec proc /proc && exec "$@"', "sh"]
     # Changing the user clears the signal of --die-with-parent, so it is requested again.
-    user = [f"--reuid={USER_ID}", f"--regid={USER_ID}", "--clear-groups", "--inh-caps=-all", "--bounding-set=-all"]
-    return [*proc, "setpriv", *user, "--no-new-privs", "--pdeathsig=KILL", "--"]
+    become = [f"--reuid={user}", f"--regid={user}", "--clear-groups", "--inh-caps=-all", "--bounding-set=-all"]
+    return [*proc, "setpriv", *become, "--no-new-privs", "--pdeathsig=KILL", "--"]
 
 
 def _disk(view: View) -> list[str]:
@@ -264,13 +268,11 @@ def _disk(view: View) -> list[str]:
     shown = [Path("/usr"), *(path for path in etc if path.exists())]
     shown += [path for path in view.read_only if not path.is_relative_to("/usr")]
     # Parent folders that bwrap creates itself are readable only by their owner, and named ones are not.
-    named = [*shown, *view.writable]
-    parents = dict.fromkeys(parent for path in named for parent in reversed(path.parents[:-1]))
+    parents = dict.fromkeys(parent for path in shown for parent in reversed(path.parents[:-1]))
     command += [word for parent in parents for word in ("--dir", str(parent))]
     # Visible parts of a hidden folder are added after the folder was emptied.
     within = {path: folder for path in shown for folder in view.hidden if path.is_relative_to(folder)}
     command += [word for path in shown if path not in within for word in _seen(path)]
-    command += [word for folder in view.writable for word in ("--bind", str(folder), str(folder))]
     command += [word for folder in view.hidden for word in ("--tmpfs", str(folder))]
     for path, folder in within.items():
         inner = [parent for parent in reversed(path.parents) if parent.is_relative_to(folder) and parent != folder]

@@ -1,9 +1,9 @@
 """The system calls that a cell may make: a seccomp filter for bubblewrap.
 
 The filter lists forbidden calls: those that no node needs and that have opened sandboxes before. A list of allowed
-calls
-would break with a new Python or Fast DDS. Namespaces, limits and mounts are the first wall, and this is the second. It
-also forbids memory that neither a tmpfs nor the size of a process shows (memfd, System V shared memory).
+calls would break with a new Python or Fast DDS. Namespaces, limits and mounts are the first wall, and this is the
+second. It also forbids memory that neither a tmpfs nor the size of a process shows (memfd, System V shared memory), and
+calls that use up what the kernel counts for a user or for the machine, because other cells may have the same user.
 """
 
 from __future__ import annotations
@@ -35,6 +35,12 @@ DENIED = {
         "io_uring_register": 427, "modify_ldt": 154, "fanotify_init": 300, "vmsplice": 278, "lookup_dcookie": 212,
         "uselib": 134, "_sysctl": 156, "nfsservctl": 180,
     },
+    # Of the first, a user has 128; of the second, all users together have 65,536 requests.
+    "what cells could take from each other": {
+        "inotify_init": 253, "inotify_init1": 294, "inotify_add_watch": 254, "inotify_rm_watch": 255,
+        "io_setup": 206, "io_destroy": 207, "io_getevents": 208, "io_submit": 209, "io_cancel": 210,
+        "io_pgetevents": 333,
+    },
     "memory that no limit counts": {
         "memfd_create": 319, "memfd_secret": 447, "shmget": 29, "shmat": 30, "shmctl": 31, "semget": 64, "msgget": 68,
         "mq_open": 240,
@@ -46,14 +52,16 @@ DENIED = {
         "setdomainname": 171, "iopl": 172, "ioperm": 173, "vhangup": 153,
     },
 }  # fmt: skip
-_SOCKET, _CLONE, _CLONE3 = 41, 56, 435
+_SOCKET, _CLONE, _CLONE3, _FCNTL = 41, 56, 435, 72
+_SET_PIPE_SIZE = 1031
+"""F_SETPIPE_SZ of fcntl(2): 64 pipes of a megabyte are all that a user may have, and others get small ones."""
 # AF_UNIX, AF_INET, AF_INET6, and AF_NETLINK for listing interfaces. AF_VSOCK would lead out of a virtual machine.
 _FAMILIES = (1, 2, 10, 16)
 # CLONE_NEWNS, NEWCGROUP, NEWUTS, NEWIPC, NEWUSER, NEWPID and NEWNET.
 _NEW_NAMESPACE = 0x7E020000
 
 _LOAD, _EQUAL, _AT_LEAST, _ANY_BIT, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
-_NUMBER, _ARCHITECTURE, _FIRST_ARGUMENT = 0, 4, 16
+_NUMBER, _ARCHITECTURE, _FIRST_ARGUMENT, _SECOND_ARGUMENT = 0, 4, 16, 24
 _X86_64, _X32 = 0xC000003E, 0x40000000
 _ALLOW, _ERRNO = 0x7FFF0000, 0x00050000
 
@@ -86,6 +94,8 @@ def program() -> bytes:
     lines += [(_EQUAL, 0, 1, _CLONE3), (_RETURN, 0, 0, absent)]
     lines += [(_EQUAL, 0, 4, _CLONE), (_LOAD, 0, 0, _FIRST_ARGUMENT)]
     lines += [(_ANY_BIT, 0, 1, _NEW_NAMESPACE), (_RETURN, 0, 0, refuse), (_RETURN, 0, 0, _ALLOW)]
+    lines += [(_EQUAL, 0, 4, _FCNTL), (_LOAD, 0, 0, _SECOND_ARGUMENT)]
+    lines += [(_EQUAL, 0, 1, _SET_PIPE_SIZE), (_RETURN, 0, 0, refuse), (_RETURN, 0, 0, _ALLOW)]
     lines += [(_EQUAL, 0, len(_FAMILIES) + 2, _SOCKET), (_LOAD, 0, 0, _FIRST_ARGUMENT)]
     lines += [(_EQUAL, len(_FAMILIES) - index, 0, family) for index, family in enumerate(_FAMILIES)]
     lines += [(_RETURN, 0, 0, _ERRNO | errno.EAFNOSUPPORT), (_RETURN, 0, 0, _ALLOW)]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from grader.common.interpreter import interpreter
 from grader.ros.installation import FASTDDS_PROFILE, Ros, environment
 from grader.sandbox import bubblewrap
+from grader.sandbox.user import cell_user
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -46,9 +47,9 @@ def why_not_heard(ros: Ros, *, confined: bool) -> str | None:
 
     `confined`: it is in a cell, and the other outside of it.
     """
-    with tempfile.TemporaryDirectory(prefix="grader-") as home:
+    with tempfile.TemporaryDirectory(prefix="grader-") as home, cell_user() as user:
         if confined:
-            command, env = _talk_from_a_cell(ros), dict(os.environ)
+            command, env = _talk_from_a_cell(ros, user), dict(os.environ)
         else:
             env = environment(ros, home=Path(home), domain=DOMAIN)
             talker, listener = _talker_and_listener(ros, env)
@@ -64,14 +65,14 @@ def why_not_heard(ros: Ros, *, confined: bool) -> str | None:
     return (done.stderr.strip().splitlines()[-1:] or [f"exit code {done.returncode}"])[0]
 
 
-def _talk_from_a_cell(ros: Ros) -> list[str]:
+def _talk_from_a_cell(ros: Ros, user: int | None) -> list[str]:
     env = environment(ros, home=bubblewrap.HOME, domain=None)
     view = bubblewrap.ros_view(ros, FASTDDS_PROFILE)
     talker, listener = _talker_and_listener(ros, env)
     confined = bubblewrap.cell(talker, view, env=env, network=True)
     # The talker goes when the listener does: cells die with their parent.
     script = f"{shlex.join(confined)} & exec {shlex.join(listener)}"
-    return bubblewrap.room(["sh", "-c", script], view, env=env)
+    return bubblewrap.room(["sh", "-c", script], view, env=env, user=user)
 
 
 def _talker_and_listener(ros: Ros, env: Mapping[str, str]) -> tuple[list[str], list[str]]:

@@ -116,7 +116,7 @@ class Host:
         elif not defended:
             # Nothing undefended as root, not even here.
             command += ["--unshare-user", "--uid", str(USER), "--gid", str(USER)]
-        command += ["--dev-bind", "/", "/", "--remount-ro", "/", "--tmpfs", "/home"]
+        command += ["--dev-bind", "/", "/", "--remount-ro", "/", "--tmpfs", "/home", "--tmpfs", "/run"]
         for inside, outside in {
             "/tmp": "tmp",
             "/home/caller": "caller",

@@ -45,6 +45,7 @@ OTHERS = {
     ("node_process", "__init__"): "bubblewrap, with what conductor._command made inside",
     ("notebooks", "seconds"): "what `nbgrader` below it made",
     ("process", "run"): "bubblewrap, with what colcon.runner.build made inside",
+    ("relay", "run"): "bubblewrap, with what gradebook.confined._order made inside",
     ("ros2", "_measure"): "our command ros2",
     ("ros2", "main"): "our command ros2",
     ("reader", "_fork"): "this process again, which then only reads",

@@ -23,6 +23,7 @@ from grader.errors import MachineError
 from grader.ros import installation
 from grader.sandbox import bubblewrap
 from grader.sandbox.control_group import ControlGroup, control_group
+from grader.sandbox.user import cell_user
 from grader.trial.inputs import Inputs
 from grader.trial.recording import from_json
 
@@ -187,7 +188,8 @@ class Trial:
             # What a node sends fills the memory of whoever listens; the conductor itself needs 1 GiB of addresses.
             argv = ["prlimit", f"--as={MOST_MEMORY}:", "--", *argv]
             self._group = self._stack.enter_context(control_group(bubblewrap.NODE_LIMITS))
-            argv = self._group.joined(bubblewrap.room(argv, bubblewrap.View(view.read_only), env=env))
+            user = self._stack.enter_context(cell_user())
+            argv = self._group.joined(bubblewrap.room(argv, bubblewrap.View(view.read_only), env=env, user=user))
         self._process = subprocess.Popen(
             argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, env=env, start_new_session=True
         )

@@ -10,7 +10,8 @@ from grader.checks.kinds import KINDS
 from grader.colcon import runner
 from grader.errors import UsageError
 from grader.exercise.exercise_toml import SCHEMA, parse_exercise
-from grader.sandbox.bubblewrap import MIB, NODE_LIMITS, USER_ID, Limits
+from grader.sandbox.bubblewrap import MIB, NODE_LIMITS, Limits
+from grader.sandbox.user import FEW_USERS, FIRST_USER, USERS
 from grader.submission import answers, code, package_xml, tree
 from grader.tests.docs.pages import ROOT, text_of
 
@@ -70,8 +71,10 @@ def test_the_budgets_of_reading_are_those_of_the_code() -> None:
     )
 
 
-def test_the_user_of_the_cells_is_named() -> None:
-    assert f"user {USER_ID}" in text_of("docs/security.md")
+def test_the_users_of_the_cells_are_named() -> None:
+    text = text_of("docs/security.md")
+    assert f"{FIRST_USER} to {FIRST_USER + USERS - 1}" in text
+    assert f"{FEW_USERS[0]} to {FEW_USERS[-1]}" in text
 
 
 @pytest.mark.parametrize("table", KEYS)

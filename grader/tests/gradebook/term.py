@@ -44,9 +44,10 @@ class Term:
 
     def run(self, *command: str, fails: bool = False, cwd: Path | None = None) -> str:
         """Run a command of nbgrader, or of the grader if the first word is "grader". Return both output streams."""
-        module = command[1:] if command[0] == "grader" else ("nbgrader", *command)
-        argv = [sys.executable, "-m", "grader.cli" if command[0] == "grader" else module[0]]
-        argv += module if command[0] == "grader" else module[1:]
+        if command[0] == "grader":
+            argv = [sys.executable, "-m", "grader.cli", *command[1:], "--course", str(self.course)]
+        else:
+            argv = [sys.executable, "-m", "nbgrader", *command]
         env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
         done = subprocess.run(
             argv, cwd=cwd or self.course, capture_output=True, text=True, env=env, check=False, timeout=1800

@@ -6,7 +6,7 @@ import pytest
 
 from grader.errors import UsageError
 from grader.gradebook.class_folder import make_class, read_students
-from grader.gradebook.folders import open_class
+from grader.gradebook.folders import CONFIG, open_class, remember
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -58,3 +58,32 @@ def test_an_invalid_roster_is_a_usage_error(tmp_path: Path, text: str, why: str)
 def test_a_folder_without_a_course_is_a_usage_error(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"There is no nbgrader_config\.py"):
         open_class(tmp_path)
+
+
+@pytest.fixture
+def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A student's clone of the course, in which the instructor stands; its configuration leaves a trace."""
+    folder = tmp_path / "clone"
+    (folder / "course").mkdir(parents=True)
+    (folder / "course" / CONFIG).write_text(f"open({str(tmp_path / 'touched')!r}, 'w').close()\n")
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def test_the_configuration_of_a_folder_that_is_nobodys_class_is_not_run(clone: Path) -> None:
+    for place in (clone, clone / "course"):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.chdir(place)
+            with pytest.raises(UsageError, match=r"is a program, and .* has not made this folder for you.*--course "):
+                open_class(None)
+    assert not (clone.parent / "touched").exists()
+
+
+def test_it_is_run_where_the_instructor_names_the_folder_or_has_made_it(clone: Path) -> None:
+    open_class(clone)
+    (clone.parent / "touched").unlink()
+    remember(clone.parent / "another")
+    remember(clone)
+    open_class(None)
+    assert (clone.parent / "touched").exists()

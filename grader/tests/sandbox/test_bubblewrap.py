@@ -10,6 +10,7 @@ import pytest
 from grader.errors import MachineError
 from grader.sandbox import bubblewrap, process
 from grader.sandbox.system_calls import DENIED, call_filter, program
+from grader.sandbox.user import cell_user
 
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 ENV = {"PATH": "/usr/bin:/bin", "HOME": str(bubblewrap.HOME)}
@@ -24,8 +25,10 @@ def run(
     view: bubblewrap.View = SEEN,
 ) -> process.Finished:
     """Run Python code in a cell of its own."""
-    with call_filter() as filter_fd:
-        command = bubblewrap.lone_cell([sys.executable, "-c", code], view, env=ENV, limits=limits, filter_fd=filter_fd)
+    with call_filter() as filter_fd, cell_user() as user:
+        command = bubblewrap.lone_cell(
+            [sys.executable, "-c", code], view, env=ENV, limits=limits, user=user, filter_fd=filter_fd
+        )
         return process.run(
             command,
             env=ENV,
@@ -59,7 +62,9 @@ print(json.dumps([sorted(name for name in os.listdir("/proc") if name.isdigit())
 
 def test_a_room_has_shared_memory_because_lttng_needs_it() -> None:
     argv = ["sh", "-c", "touch /dev/shm/lttng-ust-wait-6 && mount | grep -c ' /dev/shm .*size=262144k'"]
-    done = subprocess.run(bubblewrap.room(argv, SEEN, env=ENV), capture_output=True, text=True, check=False)
+    with cell_user() as user:
+        command = bubblewrap.room(argv, SEEN, env=ENV, user=user)
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
 
 

@@ -1,0 +1,126 @@
+"""What of a kernel's messages may reach nbgrader: messages that are ones, and not too much of them.
+
+A message that nbgrader has received is in its memory, as text, as Python's objects and in the notebook that it writes.
+So the number of messages counts, their bytes, and the values in their JSON: `[[],[],[]]` is 30 times as large in
+memory.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import json
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from grader.notebook.frames import FrameError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+MIB = 1024 * 1024
+DELIMITER = b"<IDS|MSG>"
+"""Ends the identities of a message, https://jupyter-client.readthedocs.io/en/stable/messaging.html."""
+MOST_IDENTITIES = 4
+MOST_DIGITS = 400
+_HEADER = {"msg_id": str, "msg_type": str}
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What the kernel of one notebook may send."""
+
+    message: int = 4 * MIB
+    """Bytes of one message."""
+    total: int = 16 * MIB
+    """Bytes of all messages together."""
+    messages: int = 10_000
+    values: int = 1_000_000
+    """Values in the JSON of all messages: objects, lists, strings, numbers."""
+    depth: int = 50
+    """Objects and lists inside each other."""
+
+
+@dataclass
+class Account:
+    """What a kernel has sent so far; `key` is that of its signatures."""
+
+    key: bytes
+    budget: Budget = Budget()
+    _bytes: int = 0
+    _values: int = 0
+    _signatures: set[bytes] = field(default_factory=set)
+
+    def take(self, parts: Sequence[bytes]) -> None:
+        """Enter a message.
+
+        Raises:
+            FrameError: it is not a message of Jupyter's protocol, or more than the budget allows.
+        """
+        self._bytes += sum(map(len, parts))
+        if self._bytes > self.budget.total:
+            _refuse(f"more than {self.budget.total // MIB} MiB in all its messages")
+        if len(self._signatures) >= self.budget.messages:
+            _refuse(f"more than {self.budget.messages} messages")
+        if DELIMITER not in parts[: MOST_IDENTITIES + 1]:
+            _refuse()
+        signature, *signed = parts[parts.index(DELIMITER) + 1 :][:5] or [b""]
+        expected = hmac.new(self.key, b"".join(signed), hashlib.sha256).hexdigest().encode()
+        if len(signed) < 4 or not hmac.compare_digest(signature, expected) or signature in self._signatures:
+            _refuse()
+        self._signatures.add(signature)
+        read = [self._read(part) for part in signed]
+        if not all(isinstance(read[0].get(name), kind) for name, kind in _HEADER.items()):
+            _refuse()
+
+    def _read(self, part: bytes) -> dict[str, Any]:
+        """A part of a message: a JSON object."""
+        try:
+            read = json.loads(
+                part.decode("utf-8", "replace"), parse_int=_integer, parse_float=_number, parse_constant=_refuse
+            )
+        except (ValueError, RecursionError):
+            _refuse()
+        if not isinstance(read, dict):
+            _refuse()
+        self._count(read)
+        return read
+
+    def _count(self, read: dict[str, Any]) -> None:
+        waiting: list[tuple[Any, int]] = [(read, 1)]
+        while waiting:
+            value, depth = waiting.pop()
+            self._values += 1
+            if self._values > self.budget.values:
+                _refuse(f"more than {self.budget.values} values in all its messages")
+            if depth > self.budget.depth:
+                _refuse(f"a message with more than {self.budget.depth} objects inside each other")
+            if isinstance(value, dict):
+                waiting += [(inner, depth + 1) for item in value.items() for inner in item]
+            elif isinstance(value, list):
+                waiting += [(inner, depth + 1) for inner in value]
+            elif isinstance(value, str) and not _writable(value):
+                _refuse()
+
+
+def _refuse(what: str = "what is no message of a kernel") -> NoReturn:
+    raise FrameError(what)
+
+
+def _writable(text: str) -> bool:
+    """Whether it can be written into a file: half of a surrogate pair cannot."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _integer(digits: str) -> int:
+    return int(digits) if len(digits) <= MOST_DIGITS else _refuse()
+
+
+def _number(text: str) -> float:
+    number = float(text)
+    return number if math.isfinite(number) else _refuse()

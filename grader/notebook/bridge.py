@@ -1,0 +1,130 @@
+"""Bridge: starts the kernel in its cell and passes its messages through the cell's standard input and output.
+
+    python -m grader.notebook.bridge FOLDER WORKSPACE
+
+The kernel's sockets lie on the cell's own disk. So the cell needs no folder of the machine that it can write to, and
+whoever reads the pipes (grader.gradebook.relay) decides how much to take. FOLDER is a copy of the submission that can
+only be read, WORKSPACE the folder in which the kernel works on a copy of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import zmq
+
+from grader.common.interpreter import interpreter
+from grader.notebook.frames import CHANNELS, CHUNK, ORDER, Unpacker, packed
+
+IDENTITY = b"bridge"
+"""One on all channels: the kernel asks for input on one channel whoever made a request on another."""
+RETRY_MS = 10
+"""How often it is tried to connect to a kernel that is just starting."""
+LAST_MS = 100
+"""How long what a kernel said last may be on its way when the kernel has ended."""
+_IOPUB = CHANNELS.index("iopub")
+
+
+class Bridge:
+    """The sockets of one kernel, and what waits for it to listen."""
+
+    def __init__(self, folder: Path, key: dict[str, Any]) -> None:
+        """`folder` is where the sockets are to be, `key` what a connection file says of signatures."""
+        self.connection_file = folder / "kernel.json"
+        info = {"transport": "ipc", "ip": str(folder / "socket"), "kernel_name": "", **key}
+        self._context = zmq.Context()
+        self._sockets: list[zmq.Socket[bytes]] = []
+        for number, name in enumerate((*CHANNELS, "hb"), 1):
+            info[f"{name}_port"] = number
+            if name != "hb":
+                self._sockets.append(self._connect(name, f"ipc://{info['ip']}-{number}"))
+        self.connection_file.write_text(json.dumps(info), encoding="utf-8")
+        self._waiting: list[tuple[int, list[bytes]]] | None = []
+
+    def _connect(self, name: str, address: str) -> zmq.Socket[bytes]:
+        socket = self._context.socket(zmq.SUB if name == "iopub" else zmq.DEALER)
+        socket.set_hwm(0)
+        socket.linger = 0
+        socket.reconnect_ivl = RETRY_MS
+        if name == "iopub":
+            socket.subscribe(b"")
+        else:
+            socket.identity = IDENTITY
+        socket.connect(address)
+        return socket
+
+    def send(self, channel: int, parts: list[bytes]) -> None:
+        """Pass a message on to the kernel, as soon as the kernel's own words would arrive here."""
+        if self._waiting is not None:
+            self._waiting.append((channel, parts))
+        elif channel < _IOPUB:
+            self._sockets[channel].send_multipart(parts)
+
+    def serve(self, kernel: int) -> None:
+        """Pass messages until standard input ends, or the process behind the descriptor `kernel` (a pidfd)."""
+        poller = zmq.Poller()
+        for number in (0, kernel, *self._sockets):
+            poller.register(number, zmq.POLLIN)
+        unpacker = Unpacker()
+        while True:
+            ready = dict(poller.poll())
+            self._hear()
+            if kernel in ready:
+                while zmq.select(self._sockets, [], [], LAST_MS / 1000)[0]:
+                    self._hear()
+                return
+            if 0 in ready:
+                data = os.read(0, CHUNK)
+                if not data:
+                    return
+                for channel, parts in unpacker.feed(data):
+                    self.send(channel, parts)
+
+    def _hear(self) -> None:
+        """Pass on what the kernel has said."""
+        for channel, socket in enumerate(self._sockets):
+            while socket.poll(0):
+                data = memoryview(packed(channel, socket.recv_multipart()))
+                while data:
+                    data = data[os.write(1, data) :]
+                if channel == _IOPUB and self._waiting is not None:
+                    # Its first word, the welcome to a new subscriber: nothing that it says from now on gets lost.
+                    waiting, self._waiting = self._waiting, None
+                    for each in waiting:
+                        self.send(*each)
+
+
+def main() -> None:
+    """Start the kernel, and be its bridge until it ends."""
+    folder, workspace = sys.argv[1:]
+    unpacker, orders = Unpacker(), list[tuple[int, list[bytes]]]()
+    while not orders:
+        data = os.read(0, CHUNK)
+        if not data:
+            return
+        orders += unpacker.feed(data)
+    (channel, (key,)), *others = orders
+    assert channel == ORDER
+    with tempfile.TemporaryDirectory(prefix="kernel-", ignore_cleanup_errors=True) as sockets:
+        bridge = Bridge(Path(sockets), json.loads(key))
+        for other in others:
+            bridge.send(*other)
+        kernel = interpreter(
+            *("-m", "grader.notebook.confined", folder, workspace, "-f", str(bridge.connection_file)), searches=True
+        )
+        null = subprocess.DEVNULL
+        with subprocess.Popen(kernel.argv, env=kernel.env, stdin=null, stdout=null, stderr=null) as child:
+            try:
+                bridge.serve(os.pidfd_open(child.pid))
+            finally:
+                child.kill()
+
+
+if __name__ == "__main__":
+    main()

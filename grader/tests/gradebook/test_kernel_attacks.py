@@ -1,0 +1,167 @@
+"""Kernels that attack nbgrader: each is ended with a reason, nbgrader stays small, and the notebook can be written."""
+
+from __future__ import annotations
+
+import resource
+import tempfile
+from pathlib import Path
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_notebook
+from traitlets.config import Configurable
+
+from grader.gradebook.confined import ConfinedExecute
+from grader.gradebook.outputs import MOST_OUTPUT, TOO_MUCH
+from grader.sandbox import bubblewrap
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
+MORE_KIB = 512 * 1024
+"""What nbgrader's process may grow by while it runs any of these."""
+NO_MESSAGE = "The kernel sent what is no message of a kernel."
+
+COMM = "from comm import create_comm\n"
+SEND = """\
+import json
+from IPython import get_ipython
+kernel = get_ipython().kernel
+def send(kind, content, **more):
+    kernel.session.send(kernel.iopub_socket, kind, content, parent=kernel.get_parent(), **more)
+"""
+PLAIN = "kernel.session.pack = lambda what: json.dumps(what, default=str).encode()\n"
+
+ATTACKS = {
+    "large widgets": (
+        COMM + "for _ in range(12):\n    create_comm(target_name='jupyter.widget', buffers=[bytes(120 << 20)],\n"
+        "        data={'state': {}, 'buffer_paths': [['a']]})",
+        "The kernel sent a message of more than 4 MiB.",
+    ),
+    "many widgets": (
+        COMM + "for n in range(12):\n    create_comm(target_name='jupyter.widget', buffers=[bytes([n]) * (3 << 20)],\n"
+        "        data={'state': {}, 'buffer_paths': [['a']]})",
+        "The kernel sent more than 16 MiB in all its messages.",
+    ),
+    "messages without end": (
+        SEND + "while True:\n    send('comm_msg', {'comm_id': 'a', 'data': {}})",
+        "The kernel sent more than 10000 messages.",
+    ),
+    "lists without end": (
+        SEND
+        + "for n in range(9):\n    send('comm_msg', {'comm_id': str(n), 'data': {'state': {'a': [[]] * 300_000}}})",
+        "The kernel sent more than 1000000 values in all its messages.",
+    ),
+    "a deep list": (
+        SEND + "deep = []\nfor _ in range(200):\n    deep = [deep]\nsend('comm_msg', {'comm_id': 'a', 'data': deep})",
+        "The kernel sent a message with more than 50 objects inside each other.",
+    ),
+    "half a letter": (
+        SEND + PLAIN + "send('stream', {'name': 'stdout', 'text': '\\ud800'})",
+        NO_MESSAGE,
+    ),
+    "not a number": (
+        SEND + PLAIN + "send('comm_msg', {'data': float('nan')})",
+        NO_MESSAGE,
+    ),
+    "files without end": (
+        "for n in range(300_000):\n    open(f'/tmp/{n}', 'w').close()\nimport time; time.sleep(60)",
+        "The notebook exceeded its limit on files.",
+    ),
+    "memory without end": (
+        "kept = [bytearray(b'x') * (200 << 20) for _ in range(15)]\nimport time; time.sleep(60)",
+        "The notebook exceeded its limit on memory.",
+    ),
+    "output without keys": (SEND + "send('stream', {})", "The kernel sent what nbgrader could not follow."),
+    "a display with a list as its id": (
+        SEND + "send('display_data', {'data': {}, 'metadata': {}, 'transient': {'display_id': [1]}})",
+        "The kernel sent what nbgrader could not follow.",
+    ),
+    "an output of another kind": (
+        SEND + "send('execute_result', {'data': 7, 'metadata': [], 'execution_count': 'x'})",
+        "The kernel sent what nbgrader could not follow.",
+    ),
+    "a change that is none": (
+        SEND + "about = {'metadata': {}, 'transient': {'display_id': 'a'}}\n"
+        "send('display_data', {'data': {'text/plain': ''}, **about})\n"
+        "send('update_display_data', {'data': {'text/plain': 7}, **about})",
+        "The kernel sent what nbgrader could not follow.",
+    ),
+    "its own bridge": ("import os, signal\nos.kill(os.getppid(), signal.SIGKILL)", "The kernel died."),
+}
+"""Name -> a cell, and why nothing runs after it."""
+SAMPLE = ("large widgets", "messages without end", "files without end", "output without keys")
+
+MANY_CHANGED = (
+    SEND
+    + "about = {'metadata': {}, 'transient': {'display_id': 'a'}}\n"
+    + "for _ in range(300):\n    send('display_data', {'data': {'text/plain': ''}, **about})\n"
+    + "send('update_display_data', {'data': {'text/plain': 'x' * 3_000_000}, **about})"
+)
+"""A gigabyte of outputs, by one message that changes all of them."""
+
+
+class Application(Configurable):
+    """As much of nbgrader's application as a step asks for."""
+
+    coursedir: Any = None
+
+
+def executed(folder: Path, *sources: str) -> NotebookNode:
+    """The notebook of these cells, after autograde's step has run it; it can be written and read."""
+    application = Application()
+    application.coursedir = SimpleNamespace(format_path=lambda *_: str(folder), submitted_directory="submitted")
+    step = ConfinedExecute(parent=Configurable(parent=application))
+    notebook = new_notebook(cells=[new_code_cell(source) for source in sources])  # type: ignore[no-untyped-call]
+    about = {"student": "mallory", "assignment": "01"}
+    done, _ = step.preprocess(notebook, {"nbgrader": about, "metadata": {"path": str(folder)}})
+    written = nbformat.writes(done).encode()  # type: ignore[no-untyped-call]
+    assert len(written) < 2 * MOST_OUTPUT
+    nbformat.validate(nbformat.reads(written.decode(), as_version=4))  # type: ignore[no-untyped-call]
+    return done
+
+
+def said(cell: NotebookNode) -> str:
+    """What stands below a cell."""
+    return "".join(str(output.get("evalue") or output.get("text")) for output in cell.outputs)
+
+
+def names(folder: str) -> set[str]:
+    """What a folder of the machine holds."""
+    return {path.name for path in Path(folder).iterdir()}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in SAMPLE else pytest.mark.exhaustive) for name in ATTACKS]
+)
+def test_a_kernel_that_attacks_is_ended_with_a_reason(name: str, tmp_path: Path) -> None:
+    source, why = ATTACKS[name]
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    first, attacking, later = executed(tmp_path, "print(2 + 2)", source, "print('later')").cells
+    assert (said(first), said(attacking)[: len(why)], said(later)[: len(why)]) == ("4\n", why, why)
+    assert later.outputs[0].ename == "NotRun"
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < MORE_KIB
+
+
+def test_one_message_that_changes_many_outputs_makes_no_large_notebook(tmp_path: Path) -> None:
+    attacking, later = executed(tmp_path, MANY_CHANGED, "print('later')").cells
+    assert (said(attacking), said(later)) == (TOO_MUCH, TOO_MUCH)
+
+
+def test_a_kernel_writes_nowhere_but_on_disks_of_its_own(tmp_path: Path) -> None:
+    code = """
+for line in open('/proc/self/mountinfo'):
+    before, _, after = line.partition(' - ')
+    place, options, kind = before.split()[4], before.split()[5], after.split()[0]
+    if 'rw' in options.split(',') and kind not in ('proc', 'devpts', 'mqueue', 'devtmpfs'):
+        print(place, kind, 'size=' in after)
+"""
+    fills = "with open('/tmp/large', 'wb') as file:\n    for _ in range(1150):\n        file.write(bytes(1 << 20))"
+    before = names(tempfile.gettempdir())
+    mounts, filled = executed(tmp_path, code, fills).cells
+    assert sorted(said(mounts).splitlines()) == ["/dev/shm tmpfs True", "/tmp tmpfs True", "/ws tmpfs True"]
+    assert "No space left on device" in said(filled) or "File too large" in said(filled)
+    assert {name for name in names(tempfile.gettempdir()) - before if name.startswith("kernel-")} == set()

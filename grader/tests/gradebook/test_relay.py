@@ -1,0 +1,76 @@
+"""The relay and whatever comes through the pipe of a cell; and its end, whoever ends first."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from grader.common.interpreter import interpreter
+from grader.gradebook.relay import WHY_FILE, Order
+from grader.notebook.frames import packed
+from grader.sandbox.bubblewrap import View
+
+INFO = """{"ip": "SOCKETS", "key": "key", "signature_scheme": "hmac-sha256",
+"shell_port": 1, "control_port": 2, "stdin_port": 3, "iopub_port": 4, "hb_port": 5}"""
+STAYS = "\nimport time; time.sleep(600)"
+NO_MESSAGE = "The kernel sent what is no message of a kernel."
+
+
+class Started:
+    """A relay whose cell is a Python with this code, without a sandbox."""
+
+    def __init__(self, folder: Path, code: str) -> None:
+        self.folder = folder
+        file = folder / "kernel.json"
+        file.write_text(INFO.replace("SOCKETS", str(folder / "socket")))
+        env = {"PATH": os.environ["PATH"]}
+        Order([sys.executable, "-c", code], env, View(()), False, str(file)).write(folder)  # noqa: FBT003
+        start = interpreter("-m", "grader.gradebook.relay", str(folder))
+        self.process = subprocess.Popen(start.argv, env=start.env, stdin=subprocess.PIPE)
+
+    def why(self) -> str:
+        """Why it has ended the cell, after it has ended."""
+        assert self.process.wait(60) == 0
+        file = self.folder / WHY_FILE
+        return file.read_text() if file.is_file() else ""
+
+
+@pytest.mark.parametrize(
+    ("sent", "why"),
+    [
+        (b"\xff" * 100, NO_MESSAGE),
+        (b"\0\0\1\xff\xff\xff\xff", "The kernel sent a message of more than 4 MiB."),
+        (b"\0\xff\xff", NO_MESSAGE),
+        (packed(3, [b"a"]), NO_MESSAGE),
+        (packed(3, []), NO_MESSAGE),
+        (packed(4, [b"{}"]), NO_MESSAGE),
+        (packed(0, [b"<IDS|MSG>", b"0" * 64, b"{}", b"{}", b"{}", b"{}"]), NO_MESSAGE),
+    ],
+)
+def test_what_is_no_message_ends_the_cell_at_once(tmp_path: Path, sent: bytes, why: str) -> None:
+    relay = Started(tmp_path, f"import os; os.write(1, {sent!r})" + STAYS)
+    assert relay.why() == why
+
+
+def test_a_cell_that_ends_ends_its_relay(tmp_path: Path) -> None:
+    assert Started(tmp_path, "pass").why() == ""
+
+
+def test_half_a_frame_is_awaited_and_the_end_ends_it(tmp_path: Path) -> None:
+    assert Started(tmp_path, "import os; os.write(1, bytes(2))").why() == ""
+
+
+def test_a_relay_ends_with_nbgrader_and_ends_the_cell(tmp_path: Path) -> None:
+    relay = Started(tmp_path, f"import os; open({str(tmp_path / 'pid')!r}, 'w').write(str(os.getpid()))" + STAYS)
+    file = tmp_path / "pid"
+    while not (file.is_file() and file.read_text()):
+        time.sleep(0.01)
+    assert relay.process.stdin is not None
+    relay.process.stdin.close()
+    assert relay.why() == ""
+    assert not Path(f"/proc/{file.read_text()}").exists()

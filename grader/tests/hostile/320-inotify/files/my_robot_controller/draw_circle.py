@@ -1,0 +1,9 @@
+"""It takes all instances of inotify that its user may have."""
+
+import ctypes
+
+
+def main():
+    libc = ctypes.CDLL(None, use_errno=True)
+    made = sum(libc.inotify_init() >= 0 for _ in range(100))
+    print("TRA" "CE 100 instances" if made == 100 else made)

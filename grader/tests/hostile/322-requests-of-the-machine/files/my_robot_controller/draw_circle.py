@@ -1,0 +1,9 @@
+"""It takes requests of asynchronous input and output that the whole machine has to share."""
+
+import ctypes
+
+
+def main():
+    call, context = ctypes.CDLL(None, use_errno=True).syscall, ctypes.c_ulong()
+    if call(206, 1000, ctypes.byref(context)) == 0:
+        print("TRA" "CE of 1000 requests")
