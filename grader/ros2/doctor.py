@@ -32,14 +32,14 @@ class Examination:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     group = parser.add_mutually_exclusive_group()
-    group.add_argument("--report", "-r", action="store_true", help="Print all reports.")
-    group.add_argument("--report-failed", "-rf", action="store_true", help="Print reports of failed checks only.")
-    parser.add_argument("--exclude-packages", "-ep", action="store_true", help="Exclude package checks or report.")
+    group.add_argument("--report", "-r", action="store_true", help="print all reports instead of the checks")
+    group.add_argument("--report-failed", "-rf", action="store_true", help="print the reports about what failed")
+    parser.add_argument("--exclude-packages", "-ep", action="store_true", help="leave out the packages")
     parser.add_argument(
         "--include-warnings",
         "-iw",
         action="store_true",
-        help="Include warnings as failed checks. Warnings are ignored by default.",
+        help="let a check with a warning fail",
     )
 
 

@@ -10,12 +10,13 @@ class Group:
     """A word after `ros2`.
 
     `verbs` maps the words that may follow it to their help. A group without verbs is a command by itself. `flags` maps
-    options that may stand before the verb to their explanation.
+    options that may stand before the verb to their explanation. With `runs_itself` it does something without a verb, too.
     """
 
     about: str
     verbs: dict[str, str] = field(default_factory=dict)
     flags: dict[str, str] = field(default_factory=dict)
+    runs_itself: bool = False
 
 
 GROUPS = {
@@ -57,7 +58,11 @@ GROUPS = {
             "stop": "Stop the daemon if it is running",
         },
     ),
-    "doctor": Group("Check ROS setup and other potential issues"),
+    "doctor": Group(
+        "Check ROS setup and other potential issues",
+        {"hello": "Check network connectivity between multiple hosts"},
+        runs_itself=True,
+    ),
     "interface": Group(
         "Show information about ROS interfaces",
         {
@@ -143,5 +148,9 @@ GROUPS = {
         },
         {"--include-hidden-topics": "include hidden topics, those with a name that starts with _"},
     ),
-    "wtf": Group("Use `wtf` as alias to `doctor`"),
+    "wtf": Group(
+        "Use `wtf` as alias to `doctor`",
+        {"hello": "Check network connectivity between multiple hosts"},
+        runs_itself=True,
+    ),
 }

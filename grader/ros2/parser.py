@@ -20,7 +20,8 @@ MODULES = {
     # xml is a module of Python.
     "pkg.xml": "pkg.manifest",
     "wtf": "doctor",
-    **dict.fromkeys(("launch", "security", "component.load", "component.standalone", "component.unload"), "whole"),
+    **dict.fromkeys(("launch", "security", "doctor.hello", "wtf.hello"), "whole"),
+    **dict.fromkeys(("component.load", "component.standalone", "component.unload"), "whole"),
 }
 """Groups and verbs whose module has another name than they have."""
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
@@ -95,7 +96,10 @@ def _add_group(verb: str | None) -> Callable[[argparse.ArgumentParser, str], Non
         if not group.verbs:
             _add_verb(parser, name)
             return
-        parser.set_defaults(run=_help_of(parser))
+        if group.runs_itself:
+            _add_verb(parser, name)
+        else:
+            parser.set_defaults(run=_help_of(parser))
         _add_words(parser, "verb", group.verbs, verb, lambda made, word: _add_verb(made, f"{name}.{word}"))
 
     return add

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 INSTEAD = {
     "launch": "Start each node in a terminal of its own with: ros2 run PACKAGE EXECUTABLE",
     "security": "The nodes of this course talk on this machine only, so they need no keys.",
+    "hello": "The nodes of this course talk on this machine only; `ros2 doctor` looks at it.",
     "load": "Start a node by itself with: ros2 run PACKAGE EXECUTABLE",
     "unload": "End a node with Ctrl-C in its terminal.",
     "standalone": "Start a node by itself with: ros2 run PACKAGE EXECUTABLE",

@@ -27,15 +27,14 @@ def add(parser: argparse.ArgumentParser) -> None:
         action="append",
         nargs="+",
         metavar=("uri", "storage_id"),
-        help="URI (and optional storage ID) of an input bag. May be provided more than once",
+        help="a bag to read, and how it is stored; may be given several times",
     )
     parser.add_argument(
         "-o",
         "--output-options",
         required=True,
         type=argparse.FileType("r"),
-        help='YAML file with options for output bags. Must have one top-level key "output_bags", which contains a '
-        "sequence of StorageOptions/RecordOptions objects.",
+        help="YAML file that lists the new bags under output_bags: uri, storage_id, topics and more",
     )
 
 

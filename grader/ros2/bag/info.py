@@ -20,10 +20,8 @@ _UNITS = ("B", "KiB", "MiB", "GiB", "TiB")
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_bag(parser)
-    parser.add_argument("-t", "--topic-name", action="store_true", help="Only display topic names.")
-    parser.add_argument(
-        "-v", "--verbose", action="store_true", help="Display request/response information for services"
-    )
+    parser.add_argument("-t", "--topic-name", action="store_true", help="print only the names of the topics")
+    parser.add_argument("-v", "--verbose", action="store_true", help="print more about services")
 
 
 def run(args: argparse.Namespace) -> int:

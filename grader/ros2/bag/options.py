@@ -15,20 +15,21 @@ LEVELS = ("debug", "info", "warn", "error", "fatal")
 
 def add_bag(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of a verb that reads a bag."""
-    parser.add_argument("bag_path", type=existing_path, help="Bag to open")
+    parser.add_argument("bag_path", type=existing_path, help="the bag: its folder, or one of its files")
     parser.add_argument(
         "-s",
         "--storage",
         default="",
         choices=STORAGES,
-        help="Storage implementation of bag. By default attempts to detect automatically - use this argument to "
-        "override.",
+        help="how the bag is stored; found out by itself if it is not named",
     )
 
 
 def add_log_level(parser: argparse.ArgumentParser) -> None:
     """Add the option that decides which messages are printed."""
-    parser.add_argument("--log-level", default="info", choices=LEVELS, help="Logging level.")
+    parser.add_argument(
+        "--log-level", default="info", choices=LEVELS, help="print messages of this level and above (default: info)"
+    )
 
 
 def existing_path(text: str) -> Path:

@@ -17,30 +17,25 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_bag(parser)
     parser.add_argument("--read-ahead-queue-size", type=int, default=1000, help=argparse.SUPPRESS)
+    parser.add_argument("-r", "--rate", type=above_zero, default=1.0, help="play so many times as fast (default: 1.0)")
+    parser.add_argument("--topics", default=[], metavar="topic", nargs="+", help="play only these topics")
+    parser.add_argument("-e", "--regex", default="", help="play only topics that contain this regular expression")
     parser.add_argument(
-        "-r", "--rate", type=above_zero, default=1.0, help="rate at which to play back messages. Valid range > 0.0."
+        "-x", "--exclude-regex", default="", help="leave out topics that contain this regular expression"
     )
-    parser.add_argument(
-        "--topics", default=[], metavar="topic", nargs="+", help="Space-delimited list of topics to play."
-    )
-    parser.add_argument("-e", "--regex", default="", help="Play only topics matches with regular expression.")
-    parser.add_argument("-x", "--exclude-regex", default="", help="regular expressions to exclude topics from replay.")
-    parser.add_argument(
-        "--exclude-topics", default=[], metavar="topic", nargs="+", help="Space-delimited list of topics not to play."
-    )
+    parser.add_argument("--exclude-topics", default=[], metavar="topic", nargs="+", help="leave out these topics")
     parser.add_argument(
         "-l",
         "--loop",
         action="store_true",
-        help="enables loop playback when playing a bagfile: it starts back at the beginning on reaching the end and "
-        "plays indefinitely.",
+        help="begin again at the end, until Ctrl-C",
     )
     parser.add_argument(
         "--remap",
         "-m",
         default=[],
         nargs="+",
-        help='list of topics to be remapped: in the form "old_topic1:=new_topic1 old_topic2:=new_topic2 etc." ',
+        help="publish on other topics: /old:=/new",
     )
     parser.add_argument(
         "--clock",
@@ -48,35 +43,30 @@ def add(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=40.0,
         default=0.0,
-        help="Publish to /clock at a specific frequency in Hz, to act as a ROS Time Source. Defaults to not "
-        "publishing.",
+        help="publish the time of the recording on /clock, so many times per second (40 if no number is given)",
     )
     parser.add_argument(
-        "-d", "--delay", type=above_zero, default=0.0, help="Sleep duration before play (each loop), in seconds."
+        "-d", "--delay", type=above_zero, default=0.0, help="wait so many seconds before each time it is played"
     )
     parser.add_argument(
         "--playback-duration",
         type=float,
         default=-1.0,
-        help="Playback duration, in seconds. Negative durations mark an infinite playback.",
+        help="play only so many seconds of the recording",
     )
     parser.add_argument(
         "--playback-until-sec",
         type=float,
         default=-1.0,
-        help="Playback until timestamp, expressed in seconds since epoch.",
+        help="play until this time (seconds since 1970)",
     )
-    parser.add_argument(
-        "--disable-keyboard-controls", action="store_true", help="disables keyboard controls for playback"
-    )
-    parser.add_argument(
-        "-p", "--start-paused", action="store_true", help="Start the playback player in a paused state."
-    )
+    parser.add_argument("--disable-keyboard-controls", action="store_true", help="do not listen to the keyboard")
+    parser.add_argument("-p", "--start-paused", action="store_true", help="begin paused; SPACE goes on")
     parser.add_argument(
         "--start-offset",
         type=not_negative,
         default=0.0,
-        help="Start the playback player this many seconds into the bag file.",
+        help="leave out the first seconds of the recording",
     )
     parser.add_argument("--wait-for-all-acked", type=int, default=-1, metavar="TIMEOUT", help=argparse.SUPPRESS)
     add_log_level(parser)

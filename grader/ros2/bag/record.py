@@ -37,33 +37,38 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o",
         "--output",
-        help="Destination of the bagfile to create, defaults to a timestamped folder in the current directory.",
+        help="the new folder (default: rosbag2_ and the time, in the current folder)",
     )
-    parser.add_argument("-s", "--storage", default="mcap", choices=STORAGES, help="Storage identifier to be used.")
+    parser.add_argument(
+        "-s", "--storage", default="mcap", choices=STORAGES, help="how the bag is stored (default: mcap)"
+    )
     _add_topics(parser)
     _add_discovery(parser)
     parser.add_argument("-f", "--serialization-format", default="", choices=("", "cdr"), help=argparse.SUPPRESS)
-    parser.add_argument("--start-paused", action="store_true", help="Start the recorder in a paused state.")
+    parser.add_argument("--start-paused", action="store_true", help="begin paused; SPACE starts the recording")
     parser.add_argument(
         "--use-sim-time",
         action="store_true",
-        help="Use simulation time for message timestamps by subscribing to the /clock topic. Until first /clock "
-        "message is received, no messages will be written to bag.",
+        help="stamp messages with the time from /clock; before its first message, nothing is recorded",
     )
-    parser.add_argument("--node-name", default="rosbag2_recorder", help="Specify the recorder node name.")
     parser.add_argument(
-        "--disable-keyboard-controls", action="store_true", help="disables keyboard controls for recorder"
+        "--node-name", default="rosbag2_recorder", help="name of the recording node (default: rosbag2_recorder)"
     )
+    parser.add_argument("--disable-keyboard-controls", action="store_true", help="do not listen to the keyboard")
     add_log_level(parser)
     parser.add_argument(
-        "--storage-preset-profile", default="none", choices=sorted(_PROFILES), help="Select a preset configuration."
+        "--storage-preset-profile",
+        default="none",
+        choices=sorted(_PROFILES),
+        help="how the file is written (default: none)",
     )
     parser.add_argument(
-        "--compression-mode", default="none", choices=("none", "file", "message"), help="Choose mode of compression."
+        "--compression-mode",
+        default="none",
+        choices=("none", "file", "message"),
+        help="what is compressed (default: none)",
     )
-    parser.add_argument(
-        "--compression-format", default="", choices=("", "zstd"), help="Choose the compression format/algorithm."
-    )
+    parser.add_argument("--compression-format", default="", choices=("", "zstd"), help="how it is compressed")
     for name in NOT_HERE:
         parser.add_argument(f"--{name.replace('_', '-')}", nargs="*", help=argparse.SUPPRESS)
 
@@ -75,13 +80,11 @@ def _add_topics(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="[Topic ...]",
         nargs="*",
-        help="Space-delimited list of topics to record. (deprecated)",
+        help="topics to record (deprecated: use --topics)",
     )
     completes(positional, topics)
     completes(
-        named.add_argument(
-            "--topics", default=[], metavar="Topic", nargs="+", help="Space-delimited list of topics to record."
-        ),
+        named.add_argument("--topics", default=[], metavar="Topic", nargs="+", help="topics to record"),
         topics,
     )
     completes(
@@ -90,27 +93,27 @@ def _add_topics(parser: argparse.ArgumentParser) -> None:
             nargs="+",
             default=[],
             metavar="TopicType",
-            help="Space-delimited list of topic types to record.",
+            help="record the topics of these types",
         ),
         message_types,
     )
-    parser.add_argument("-a", "--all", action="store_true", help="Record all topics (Exclude hidden topic).")
-    parser.add_argument("--all-topics", action="store_true", help="Record all topics (Exclude hidden topic).")
-    parser.add_argument("-e", "--regex", default="", help="Record only topics containing provided regular expression.")
-    parser.add_argument("--exclude-regex", default="", help="Exclude topics containing provided regular expression.")
+    parser.add_argument("-a", "--all", action="store_true", help="record all topics but hidden ones")
+    parser.add_argument("--all-topics", action="store_true", help="record all topics but hidden ones")
+    parser.add_argument("-e", "--regex", default="", help="record the topics that contain this regular expression")
+    parser.add_argument("--exclude-regex", default="", help="leave out topics that contain this regular expression")
     parser.add_argument(
         "--exclude-topic-types",
         default=[],
         metavar="ExcludeTopicTypes",
         nargs="+",
-        help="Space-delimited list of topic types not being recorded.",
+        help="leave out topics of these types",
     )
     parser.add_argument(
         "--exclude-topics",
         default=[],
         metavar="Topic",
         nargs="+",
-        help="Space-delimited list of topics not being recorded.",
+        help="leave out these topics",
     )
 
 
@@ -118,24 +121,22 @@ def _add_discovery(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--include-unpublished-topics",
         action="store_true",
-        help="Discover and record topics which have no publisher.",
+        help="record topics without a publisher, too",
     )
-    parser.add_argument(
-        "--include-hidden-topics", action="store_true", help="Discover and record hidden topics as well."
-    )
+    parser.add_argument("--include-hidden-topics", action="store_true", help="record hidden topics, too")
     parser.add_argument(
         "--no-discovery",
         action="store_true",
-        help="Disables topic auto discovery during recording: only topics present at startup will be recorded.",
+        help="record only the topics that are there at the start",
     )
     parser.add_argument(
         "-p",
         "--polling-interval",
         type=int,
         default=100,
-        help="Time in ms to wait between querying available topics for recording.",
+        help="look for new topics every so many milliseconds (default: 100)",
     )
-    parser.add_argument("--ignore-leaf-topics", action="store_true", help="Ignore topics without a subscription.")
+    parser.add_argument("--ignore-leaf-topics", action="store_true", help="leave out topics that nobody subscribes to")
 
 
 def run(args: argparse.Namespace) -> int:

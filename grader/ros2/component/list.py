@@ -18,8 +18,8 @@ _LIST_NODES = "composition_interfaces/srv/ListNodes"
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
-    parser.add_argument("container_node_name", nargs="?", help="Name of the container node to list components from")
-    parser.add_argument("--containers-only", action="store_true", help="List found containers nodes only")
+    parser.add_argument("container_node_name", nargs="?", help="name of a container")
+    parser.add_argument("--containers-only", action="store_true", help="print only the containers")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    text = "Package name to look for registered components in"
+    text = "name of the package; without it, all packages are looked through"
     completes(parser.add_argument("package_name", nargs="?", help=text), packages)
 
 

@@ -18,14 +18,16 @@ if TYPE_CHECKING:
 _GET_STATE = "lifecycle_msgs/srv/GetState"
 
 
-def add_node(parser: argparse.ArgumentParser, nargs: str | None = None, text: str = "Name of the ROS node") -> None:
+def add_node(parser: argparse.ArgumentParser, nargs: str | None = None, text: str = "name of the node") -> None:
     """Add the arguments of a verb about one node."""
     add_look(parser)
     completes(
         parser.add_argument("node_name", nargs=nargs, help=text),
         lambda parsed_args, **_: lifecycle_nodes(parsed_args, hidden=parsed_args.include_hidden_nodes),
     )
-    parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
+    parser.add_argument(
+        "--include-hidden-nodes", action="store_true", help="include hidden nodes, whose names start with _"
+    )
 
 
 def lifecycle_nodes(args: argparse.Namespace, *, hidden: bool) -> list[str]:

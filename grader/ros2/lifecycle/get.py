@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    text = "Name of the ROS node. If no name is provided, then get the state for all nodes."
+    text = "name of the node; without it, all nodes are asked"
     client.add_node(parser, "?", text)
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     client.add_node(parser)
-    parser.add_argument("-a", "--all", action="store_true", help="Display all existing transitions")
+    parser.add_argument("-a", "--all", action="store_true", help="print the transitions of all states")
 
 
 def run(args: argparse.Namespace) -> int:

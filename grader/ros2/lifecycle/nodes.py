@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     add_look(parser)
-    parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
-    parser.add_argument("-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered")
+    parser.add_argument("-a", "--all", action="store_true", help="include hidden nodes, whose names start with _")
+    parser.add_argument("-c", "--count-nodes", action="store_true", help="print only how many nodes there are")
 
 
 def run(args: argparse.Namespace) -> int:

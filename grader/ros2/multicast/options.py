@@ -10,10 +10,8 @@ _GROUP, _PORT = "225.0.0.1", 49150
 
 def add_address(parser: argparse.ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument(
-        "-g", "--group", type=_group, default=_GROUP, help=f"The multicast group to use (default: {_GROUP})"
-    )
-    parser.add_argument("-p", "--port", type=_port, default=_PORT, help=f"The port to use (default: {_PORT})")
+    parser.add_argument("--group", type=_group, default=_GROUP, help=f"the multicast group (default: {_GROUP})")
+    parser.add_argument("--port", type=_port, default=_PORT, help=f"the port (default: {_PORT})")
 
 
 def _group(text: str) -> str:

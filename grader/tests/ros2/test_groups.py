@@ -88,7 +88,7 @@ def test_a_multicast_packet_is_sent_or_the_network_is_named(here: World) -> None
     done = here.run("ros2 multicast send")
     assert done.stdout == "Sending one UDP multicast datagram...\n"
     assert done.code == 0 or "could not be sent" in done.stderr
-    wrong = here.run("ros2 multicast send -g 10.0.0.1")
+    wrong = here.run("ros2 multicast send --group 10.0.0.1")
     assert wrong.code == 2
     assert "value must be a valid IPv4 multicast address" in wrong.stderr
 
@@ -102,7 +102,12 @@ def test_components_are_looked_up(here: World) -> None:
 
 @pytest.mark.parametrize(
     "command",
-    ["ros2 launch turtlesim multisim.launch.py", "ros2 security create_keystore x", "ros2 component load /c p"],
+    [
+        "ros2 launch turtlesim multisim.launch.py",
+        "ros2 security create_keystore x",
+        "ros2 component load /c p",
+        "ros2 doctor hello",
+    ],
 )
 def test_what_needs_a_whole_ros_2_says_so_and_what_to_use(here: World, command: str) -> None:
     done = here.run(command)
