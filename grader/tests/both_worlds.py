@@ -12,7 +12,7 @@ from grader.ros import installation
 HERE = installation.find_ros()
 SET_BY_ROS = (
     *installation.SEARCHED,
-    *("ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION", "ROS_AUTOMATIC_DISCOVERY_RANGE", "QT_QPA_PLATFORM"),
+    *("ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION", "ROS_AUTOMATIC_DISCOVERY_RANGE"),
 )
 SOURCED_ENV: dict[str, str] = {
     name: os.environ[name] for name in SET_BY_ROS if HERE.kind == "sourced" and name in os.environ
@@ -22,6 +22,8 @@ PATH = os.pathsep.join([*([str(HERE.prefix / "bin")] if SOURCED_ENV else []), "/
 """PATH of such a terminal."""
 REAL_ROS2 = bool(SOURCED_ENV) and Path(HERE.prefix, "bin/ros2").is_file()
 REAL_TURTLESIM = installation.has_turtlesim(HERE)
+OUR_TURTLESIM = "grader sim" if REAL_TURTLESIM else "ros2 run turtlesim turtlesim_node"
+"""The command line of the course's turtlesim; the real one, which opens a window, knows none of its options."""
 
 of_the_wheels = pytest.mark.skipif(
     bool(SOURCED_ENV), reason="this is about the course's own ROS 2, and one is sourced here"

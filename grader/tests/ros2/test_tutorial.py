@@ -14,6 +14,7 @@ import pexpect
 import pytest
 
 from grader.ros import installation
+from grader.tests.both_worlds import of_the_wheels
 from grader.tests.domains import own_domain
 from grader.tests.ros2.world import SOLUTION, golden
 from grader.tests.waiting import HANG_S, until_gone
@@ -21,6 +22,7 @@ from grader.tests.waiting import HANG_S, until_gone
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = of_the_wheels
 PROMPT = "next> "
 BIN = Path(sys.executable).parent
 

@@ -13,12 +13,14 @@ import pytest
 
 from grader.ros import installation, underlay
 from grader.setup import machine
+from grader.tests.both_worlds import of_the_wheels
 from grader.tests.ros2.world import World
 from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+pytestmark = of_the_wheels
 UIDS = (2000, 2001)
 DRIVE = "ros2 topic pub --once /turtle1/cmd_vel geometry_msgs/msg/Twist '{linear: {x: 2.0}}'"
 WHERE = "ros2 topic echo --once --csv /turtle1/pose"

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from grader.ros import installation, underlay
+from grader.tests.both_worlds import PATH, REAL_ROS2, SOURCED_ENV
 from grader.tests.domains import own_domain
 from grader.tests.waiting import HANG_S
 
@@ -130,17 +131,23 @@ class World:
         """Let nothing that was started stay behind."""
         for running in self.running:
             running.stop()
+        if REAL_ROS2:
+            self.run("ros2 daemon stop")
 
 
 def environment(home: Path, domain: int | None = None) -> dict[str, str]:
     """What a user has after `source <(grader env)`, in a domain of its own."""
     ros = underlay.with_turtlesim(installation.find_ros())
     own = own_domain() if domain is None else domain
+    ours = str(Path(sys.executable).parent)
     user = {
+        **SOURCED_ENV,
         "HOME": str(home),
         # Where a test wants one, it starts it.
         "GRADER_ROS2_DAEMON": "0",
-        "PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin",
+        "PATH": f"{PATH}:{ours}" if SOURCED_ENV else f"{ours}:{PATH}",
+        # The window of the real turtlesim needs no screen then.
+        "QT_QPA_PLATFORM": "offscreen",
         "LANG": "C.UTF-8",
         "TERM": "dumb",
     }

@@ -9,6 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from grader.tests.both_worlds import OUR_TURTLESIM
 from grader.tests.browser import find_browser, launched
 from grader.tests.ros2.world import SOLUTION, World, environment
 
@@ -35,7 +36,7 @@ def main() -> int:
 
 def take(world: World, browser: str) -> None:
     """Let the turtle drive most of its circle, then take the picture."""
-    simulator = world.start("ros2 run turtlesim turtlesim_node --view", "Spawning turtle")
+    simulator = world.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
     url = next(word for line in simulator.lines for word in line.split() if word.startswith("http://"))
     world.start(f"python3 {SOLUTION}/my_robot_controller/draw_circle.py", "Draw")
     with launched(browser) as started:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from PIL import Image
 
+from grader.tests.both_worlds import OUR_TURTLESIM
 from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
     from grader.tests.ros2.world import Running, World
 
-VIEW = "ros2 run turtlesim turtlesim_node --view"
+VIEW = f"{OUR_TURTLESIM} --view"
 PEN = (179, 184, 255)
 
 

@@ -13,6 +13,7 @@ import pytest
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
+from grader.tests.both_worlds import OUR_TURTLESIM
 from grader.tests.ros2.world import World, children, world
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def test_grader_sim_can_draw_in_the_terminal_and_says_when_there_is_none(alone: 
 
 
 def test_a_simulator_outlives_its_view(alone: World) -> None:
-    simulator = alone.start("ros2 run turtlesim turtlesim_node --view", "Spawning turtle")
+    simulator = alone.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
     (view,) = children(simulator.program)
     os.kill(view, signal.SIGKILL)
     simulator.wait_for("The view has ended; turtlesim continues without it.")
@@ -65,7 +66,7 @@ def test_a_simulator_outlives_its_view(alone: World) -> None:
 
 
 def test_a_view_does_not_outlive_its_simulator(alone: World) -> None:
-    simulator = alone.start("ros2 run turtlesim turtlesim_node --view", "Spawning turtle")
+    simulator = alone.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
     whole(simulator)
     (view,) = children(simulator.program)
     os.kill(simulator.program, signal.SIGKILL)

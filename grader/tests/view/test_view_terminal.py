@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pexpect
 import pytest
 
+from grader.tests.both_worlds import OUR_TURTLESIM
 from grader.tests.ros2.world import World, world
 from grader.tests.waiting import HANG_S
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 UP = "\x1b[A"
-VIEW = "ros2 run turtlesim turtlesim_node --view terminal"
+VIEW = f"{OUR_TURTLESIM} --view terminal"
 COLOURS = {"TERM": "xterm-256color", "COLORTERM": "truecolor"}
 SEA = "48;2;69;86;255"
 
@@ -121,7 +122,7 @@ def test_a_terminal_without_colours_is_told(system: World) -> None:
     ],
 )
 def test_wrong_use_is_told(system: World, arguments: str, said: str) -> None:
-    done = system.run(f"ros2 run turtlesim turtlesim_node {arguments}")
+    done = system.run(f"{OUR_TURTLESIM} {arguments}")
     assert done.code == 2
     assert said in done.stderr
     assert "Traceback" not in done.stderr
