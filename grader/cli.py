@@ -75,7 +75,7 @@ def check(
     submission: Annotated[
         Optional[Path],  # noqa: UP045
         typer.Argument(
-            help="Folder of a package, a folder that contains one, or a step such as 03. [default: your current step]"
+            help="Folder of a package, a folder that contains one, or a step such as 03. Default: your current step."
         ),
     ] = None,
     exercise: ExerciseId = None,
@@ -151,7 +151,7 @@ def class_page(
     ],
     out: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Option(help="The page to write. [default: index.html in the folder]", metavar="FILE.html"),
+        typer.Option(help="The page to write. Default: index.html in the folder.", metavar="FILE.html"),
     ] = None,
 ) -> None:
     """Make a page of a class: points, the most frequent failures, and what to teach again."""

@@ -39,7 +39,7 @@ def release(
 
 def validate(
     exercises: Annotated[
-        list[str] | None, typer.Argument(help="Exercises to validate. [default: all]", metavar="ID")
+        list[str] | None, typer.Argument(help="Exercises to validate. Default: all.", metavar="ID")
     ] = None,
 ) -> None:
     """Check exercises, solutions, starting points and lessons (for authors)."""

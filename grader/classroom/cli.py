@@ -52,7 +52,7 @@ def grade(
     jobs: Annotated[
         Optional[int],  # noqa: UP045
         typer.Option(
-            min=1, help="Number of submissions graded at once. [default: as many as processors and memory allow]"
+            min=1, help="Number of submissions graded at once. Default: as many as processors and memory allow."
         ),
     ] = None,
     engine: Annotated[

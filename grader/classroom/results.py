@@ -115,7 +115,7 @@ class Results:
         return file
 
     def others(self, mine: set[str]) -> int:
-        """Return how many results in the folder belong to other submissions than those of these pages."""
+        """Return how many results in the folder belong to submissions whose page is not in `mine`."""
         found = {file.with_suffix(".html").name for file in (self.folder / REPORTS).glob("*.json")}
         return len(found - mine)
 

@@ -27,8 +27,7 @@ def run(order: Order, todo: list[Todo], engine: Engine, results: Results, screen
     """Grade the submissions and write each result as soon as it is ready, in any order.
 
     Submissions that end with an `error` are graded once more after all others, if at least one other submission could
-    be
-    judged: in this case the machine works, so the error was chance or the submission caused it.
+    be judged: in this case the machine works, so the error was chance or the submission caused it.
 
     Raises:
         MachineError: nothing more can be graded or written. Results that were written stay.

@@ -32,12 +32,12 @@ def _group() -> None:
 
 Steps = Annotated[
     Optional[list[str]],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
-    typer.Argument(help="Steps. [default: all that were collected]", metavar="STEP"),
+    typer.Argument(help="Steps. Default: all that were collected.", metavar="STEP"),
 ]
 Course = Annotated[
     Optional[Path],  # noqa: UP045
     typer.Option(
-        help="Folder of the class or its course/. [default: the current folder, if `grader class new` made it]",
+        help="Folder of the class or its course/. Default: the current folder, if `grader class new` made it.",
         metavar="DIR",
     ),
 ]
@@ -49,7 +49,7 @@ def sync(
     jobs: Annotated[
         Optional[int],  # noqa: UP045
         typer.Option(
-            min=1, help="Number of submissions graded at once. [default: as many as processors and memory allow]"
+            min=1, help="Number of submissions graded at once. Default: as many as processors and memory allow."
         ),
     ] = None,
     checks: Annotated[
@@ -121,7 +121,7 @@ def new(
 def install(
     prefix: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Option(help="Install for the Jupyter in this folder. [default: for the current user]", metavar="DIR"),
+        typer.Option(help="Install for the Jupyter in this folder. Default: for the current user.", metavar="DIR"),
     ] = None,
 ) -> None:
     """Install the Jupyter kernel "ROS 2 Jazzy (course)", which has ROS 2 without sourcing anything."""

@@ -2,10 +2,8 @@
 
 The output of an autograded cell comes from a kernel that runs student code, so its score is provisional. For such a
 cell, `autograde` writes 0 points and "needs manual grade" (unconfirmed.py). `grader gradebook sync` then replaces them
-by
-the grader's own score. A score without a result of the grader is withheld: it becomes 0 points, and a person has to
-look
-at it. Manual grades and extra credit stay unchanged. Other assignments than the exercises of this course do, too.
+by the grader's own score. A score without a result of the grader is withheld: it becomes 0 points, and a person has to
+look at it. Manual grades and extra credit stay unchanged. Other assignments than the exercises of this course do, too.
 """
 
 from __future__ import annotations
@@ -73,8 +71,7 @@ def unconfirmed(
     """Return the cells that no result of the grader confirms, by exercise and student, without manual grades.
 
     `steps` limits the exercises; all are used if it is empty. `unread` are submissions that could not be read this
-    time,
-    so their stored results do not count.
+    time, so their stored results do not count.
     """
     names: dict[tuple[str, str, str], list[str]] = {}
     for student, step, grade, why in _doubts(gradebook, results, steps, unread):

@@ -26,10 +26,8 @@ class HideHiddenTests(ClearHiddenTests):  # type: ignore[misc, unused-ignore]
     """Remove hidden tests from the feedback: their lines, and all output of a kernel that has seen them.
 
     A kernel runs student code. This code can store the source of a hidden test and print it below any cell: below a
-    later
-    one, below an instructor's cell by a hook, below an earlier one by updating its display, or in a widget. So if a
-    notebook
-    has hidden tests, no output of its kernel is shown.
+    later one, below an instructor's cell by a hook, below an earlier one by updating its display, or in a widget. So if
+    a notebook has hidden tests, no output of its kernel is shown.
     """
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:

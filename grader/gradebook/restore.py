@@ -1,8 +1,7 @@
 """Restore the instructor's cells of a submitted notebook before it is graded.
 
 nbgrader trusts the metadata of a submission, and stops if they are invalid. Here only the id of a cell counts. Its
-points
-and whether it is locked come from the gradebook, and missing locked cells are added again.
+points and whether it is locked come from the gradebook, and missing locked cells are added again.
 """
 
 from __future__ import annotations

@@ -2,8 +2,7 @@
 
 Scores from a kernel are provisional. The scores here come from the submitted package, graded in the sandbox, and are
 written into nbgrader's gradebook through its API. A check that the grader cannot judge counts 0 points and needs a
-manual
-grade (confirmed.py). A manual grade is never changed.
+manual grade (confirmed.py). A manual grade is never changed.
 """
 
 from __future__ import annotations
@@ -59,8 +58,7 @@ class Difference:
     """A check on which kernel and grader disagree.
 
     `kernel` is None if the notebook was not run to its end. `grader` is None if the grader has confirmed nothing. The
-    check
-    then counts 0 points, for the reason `why`.
+    check then counts 0 points, for the reason `why`.
     """
 
     student: str

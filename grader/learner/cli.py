@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 Workspace = Annotated[
     Optional[Path],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
-    typer.Option(help="Your colcon workspace. [default: $ROS2_WORKSPACE or ~/ros2_ws]", metavar="DIR"),
+    typer.Option(help="Your colcon workspace. Default: $ROS2_WORKSPACE or ~/ros2_ws.", metavar="DIR"),
 ]
 Step = Annotated[Optional[str], typer.Argument(help="A step such as 03-circle-publisher or 03.", metavar="STEP")]  # noqa: UP045
 
@@ -82,7 +82,7 @@ def solution(
 
 
 def watch(
-    path: Annotated[Path | None, typer.Argument(help="Folder of a package. [default: your current step]")] = None,
+    path: Annotated[Path | None, typer.Argument(help="Folder of a package. Default: your current step.")] = None,
     exercise: Annotated[Optional[str], typer.Option(help="The exercise, if the folder does not determine it.")] = None,  # noqa: UP045
     workspace: Workspace = None,
 ) -> None:
@@ -93,7 +93,7 @@ def watch(
 
 
 def _print(text: str) -> None:
-    """Print text. On a terminal, it is wrapped at words. In a pipe, lines stay whole."""
+    """Print text. On a terminal, lines are wrapped at words. In a pipe, they are not wrapped."""
     from rich.console import Console
 
     console = Console(highlight=False)
@@ -101,10 +101,10 @@ def _print(text: str) -> None:
 
 
 def place(path: Path | None, exercise: str | None, workspace: Path | None = None) -> tuple[Exercise, Path]:
-    """Return the exercise that is meant, and where the work on it lies.
+    """Return the exercise and the folder with the work on it.
 
     Raises:
-        UsageError: neither the path nor the learner's progress tells it.
+        UsageError: neither the path nor the learner's progress determines the exercise.
     """
     from grader.learner.meant import meant
 

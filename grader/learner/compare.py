@@ -1,4 +1,4 @@
-"""A step's solution beside the learner's own, file by file."""
+"""Show the solution of a step next to the learner's files."""
 
 from __future__ import annotations
 

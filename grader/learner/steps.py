@@ -132,7 +132,7 @@ def print_status(folder: Path | None, console: Console) -> None:
     elif passed == len(catalogue()):
         console.print("You have finished the course.")
     elif known.step(known.current).passed:
-        console.print("Go on with: grader start next")
+        console.print("Continue with: grader start next")
 
 
 def _next(known: progress.Progress) -> Exercise:

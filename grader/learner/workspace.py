@@ -99,8 +99,8 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
 def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Copy the files of `source` that `folder` does not have, without notebooks.
 
-    `instead` has other contents for some of these files. Returns the paths that were added,
-    and those that were not changed. Raises OSError.
+    `instead` has other contents for some of these files. Returns the paths that were added, and those that were not
+    changed. Raises OSError.
     """
     found = tree.read_folder(source)
     added, present = [], []

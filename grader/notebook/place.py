@@ -111,8 +111,7 @@ def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str
     """Add the files of the step that `folder` does not have, next to the notebook. Return the paths that were written.
 
     If there is no package yet, it is copied from the learner's workspace, or else from the starting point. With
-    `alone`, it
-    is always copied from the starting point. No file of the student is overwritten.
+    `alone`, it is always copied from the starting point. No file of the student is overwritten.
     """
     source, target = workspace.starting_point(exercise), folder
     if not exercise.package:

@@ -2,8 +2,8 @@
 
     python -m grader.notebook.worker EXERCISE FOLDER
 
-It prints progress on standard error, one line each, and the verdict as JSON on standard output:
-{"points": {id: number}, "reasons": {id: text}, "text": the whole verdict, "html": the same as HTML, "passed": bool}.
+It prints progress on standard error, one line each, and the verdict as JSON on standard output: {"points": {id:
+number}, "reasons": {id: text}, "text": the whole verdict, "html": the same as HTML, "passed": bool}.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """A report for GitHub Actions: the step's summary in Markdown, and annotations as workflow commands.
 
-Both contain text from a student. It must never act as Markdown or as a command. In the summary it is always plain
-text. In a command it is escaped as described in GitHub's documentation ("Workflow commands for GitHub Actions") and
-as `escapeData` and `escapeProperty` of GitHub's toolkit do it. Hidden checks are left out.
+Both contain text from a student. It must never act as Markdown or as a command. In the summary it is always plain text.
+In a command it is escaped as described in GitHub's documentation ("Workflow commands for GitHub Actions") and as
+`escapeData` and `escapeProperty` of GitHub's toolkit do it. Hidden checks are left out.
 """
 
 from __future__ import annotations

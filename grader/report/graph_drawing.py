@@ -1,7 +1,7 @@
 """The ROS graph as SVG: publishers on the left, topics with their types in the middle, subscribers on the right.
 
-The layout does not come from Graphviz, as it does for rqt_graph. A page needs light and dark colours and must be
-quick to make, and a C library should not read names that a student chose.
+The layout does not come from Graphviz, as it does for rqt_graph. A page needs light and dark colours and must be quick
+to make, and a C library should not read names that a student chose.
 """
 
 from __future__ import annotations

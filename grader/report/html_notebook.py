@@ -1,7 +1,7 @@
 """The verdict as HTML for the output of a notebook cell: a table with reasons, and then the charts of each run.
 
-It has no script, and its style sheet changes nothing outside of it. Every id begins with a key of its own, because
-one notebook may show many verdicts.
+It has no script, and its style sheet changes nothing outside of it. Every id begins with a key of its own, because one
+notebook may show many verdicts.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Make text from a student safe and short enough for a page.
 
-The template escapes all HTML. This module handles what escaping leaves: control characters, invisible characters,
-text that runs from right to left over its neighbours, and very long text.
+The template escapes all HTML. This module handles what escaping leaves: control characters, invisible characters, text
+that runs from right to left over its neighbours, and very long text.
 """
 
 from __future__ import annotations

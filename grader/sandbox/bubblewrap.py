@@ -7,8 +7,7 @@ There are two walls, both made by bubblewrap:
   with libraries that may have security holes;
 - a **cell** contains a student's process. It has its own user, pid, ipc, uts, cgroup and mount namespaces, no network
   but that of the room, nothing of the disk but what `View` names, a filter of system calls (system_calls.py), and
-  limits
-  on memory, processes, files, CPU and disk. usage.py watches totals for which there is no limit.
+  limits on memory, processes, files, CPU and disk. usage.py watches totals for which there is no limit.
 
 These functions only make command lines. The caller starts the process and owns it. Input and output use pipes.
 """
@@ -123,9 +122,8 @@ def cell(
     """Return the command that runs `argv` in a cell. With `network`, the cell uses the network of the caller (a room).
 
     `filter_fd` is the filter of system calls from system_calls.call_filter(). The process must inherit it. A root
-    caller must
-    put the cell into a room, where it is not root any more, because the limit on processes does not apply to root.
-    bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
+    caller must put the cell into a room, where it is not root any more, because the limit on processes does not apply
+    to root. bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
     """
     command = [_bwrap(), "--unshare-user", "--disable-userns", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
     command += ["--unshare-cgroup-try", "--uid", "1000", "--gid", "1000", "--hostname", "robot"]

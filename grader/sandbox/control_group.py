@@ -2,8 +2,7 @@
 
 Root is allowed to nearly everywhere. An ordinary user is allowed to if systemd has delegated a part of the tree and the
 grader runs in it. The limit of the group is `ABOVE` higher than that of usage.py, so that usage.py ends a cell first
-and
-knows the reason. The group stops processes that grow too fast for usage.py, and memory for sockets and pipes.
+and knows the reason. The group stops processes that grow too fast for usage.py, and memory for sockets and pipes.
 
 Both versions are supported. In version 2 a group is a folder in one tree, in version 1 one folder in each controller's
 tree (https://docs.kernel.org/admin-guide/cgroup-v2.html and cgroup-v1/).

@@ -82,7 +82,7 @@ def other_fault_at_the_start(root: Path) -> None:
     change(root / "course" / NEW / "exercise.toml", '["values"]', '["start"]')
 
 
-def test_a_check_that_the_starting_point_fails_wants_a_hint(root: Path) -> None:
+def test_a_check_that_the_starting_point_fails_needs_a_hint(root: Path) -> None:
     change(root / "course" / NEW / "exercise.toml", "[[hint]]", '[[hint]]\nchecks = ["start"]')
     told = f"{root}/course/{NEW}/exercise.toml: the starting point fails values, and no [[hint]] names it in checks."
     assert problems(root) == [told]

@@ -1,4 +1,4 @@
-"""Whatever is odd about one submission of a class, it has its line in the CSV, and the others are graded."""
+"""Each odd submission of a class has its line in the CSV, and all others are graded."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def damaged(how: int) -> Callable[[Path], None]:
 
 
 def an_offset_beyond_the_file(folder: Path) -> None:
-    """A zip64 record that says that the member begins where no file reaches."""
+    """A zip64 record with an offset beyond the end of the file."""
     data = packed(folder / "odd.zip")
     at, end = data.index(b"PK\x01\x02"), data.index(b"PK\x05\x06")
     record, tail = data[at:end], data[end:]
@@ -136,7 +136,7 @@ def test_an_odd_submission_is_refused_with_the_reason(tmp_path: Path, name: str)
     assert (report.points, report.max, report.with_status(Status.ERROR)) == (0.0, 100.0, ())
 
 
-def test_a_class_of_odd_submissions_is_graded_to_its_end(tmp_path: Path) -> None:
+def test_a_class_of_odd_submissions_is_graded_completely(tmp_path: Path) -> None:
     for number, (make, _) in enumerate(ODD.values()):
         (tmp_path / "made" / str(number)).mkdir(parents=True)
         make(tmp_path / "made" / str(number))
@@ -148,7 +148,7 @@ def test_a_class_of_odd_submissions_is_graded_to_its_end(tmp_path: Path) -> None
     assert done.returncode == 0, done.stderr
     found = rows(tmp_path / "grades")
     submitted = [path for path in (tmp_path / "class").iterdir() if not path.is_symlink()]
-    assert len(found) == len(submitted) - 1  # two of them are one student's
+    assert len(found) == len(submitted) - 1  # two of them belong to the same student
     assert {row["points"] for row in found[:-1]} == {"0"}
     assert (found[-1]["submission"], found[-1]["points"]) == ("zoe", "100")
     assert "Traceback" not in done.stderr
@@ -168,7 +168,7 @@ passed_over([folder], folder)
 """
 
 
-def test_a_folder_that_may_not_be_entered_is_told(tmp_path: Path) -> None:
+def test_a_folder_without_permission_is_reported(tmp_path: Path) -> None:
     a_closed_folder(tmp_path)
     start = interpreter("-c", LOOK)
     # root may enter every folder
@@ -192,7 +192,7 @@ def breaks(error: Exception) -> Callable[..., object]:
 
 
 @pytest.mark.parametrize("error", [MachineError("The disk is odd."), OSError(errno.EIO, "Input/output error")])
-def test_a_fault_of_the_machine_at_one_submission_stops_no_other(
+def test_a_fault_of_the_machine_at_one_submission_does_not_stop_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception
 ) -> None:
     one = Found("anna", STEP, tmp_path)
@@ -203,14 +203,14 @@ def test_a_fault_of_the_machine_at_one_submission_stops_no_other(
     assert str(error.args[-1]).rstrip(".") in report.outcomes[0].finding.observed
 
 
-def test_only_a_disk_of_our_own_stops_a_class(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_a_fault_of_the_graders_own_disk_stops_a_class(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     packed(tmp_path / "odd.zip")
     monkeypatch.setattr(archives, "unpacked", breaks(DiskError("full")))
     with pytest.raises(DiskError):
         read(Found("odd", STEP, tmp_path / "odd.zip"), EXERCISE, "odd")
 
 
-def test_a_student_without_an_exercise_has_a_line_for_those_of_the_others(tmp_path: Path) -> None:
+def test_a_student_without_an_exercise_gets_a_line_for_each_exercise_of_the_others(tmp_path: Path) -> None:
     (tmp_path / "anna" / STEP).mkdir(parents=True)
     (tmp_path / "ben").mkdir()
     found = find_submissions([tmp_path], None, tmp_path / "grades")

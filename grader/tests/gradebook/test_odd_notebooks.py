@@ -1,4 +1,4 @@
-"""Notebooks that cannot be put together with their packages stop nobody else's."""
+"""A notebook that cannot be combined with its package does not stop the grading of others."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def make(root: Path) -> Folders:
     return folders
 
 
-def test_each_is_graded_or_told_and_the_others_go_on(tmp_path: Path) -> None:
+def test_each_is_graded_or_reported_and_the_others_continue(tmp_path: Path) -> None:
     folders = make(tmp_path)
     found, why = _put_together(folders, [(student, CIRCLE.id) for student in (*ODD, "zoe")])  # type: ignore[arg-type]
     assert [each.student for each in found] == [*ODD, "zoe"]

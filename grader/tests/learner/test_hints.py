@@ -107,7 +107,7 @@ def test_an_unknown_part_is_an_error_that_lists_the_parts() -> None:
         hints.hint("03", None, "a")
 
 
-def test_hints_without_a_step_say_how_to_begin() -> None:
+def test_hints_without_a_step_say_how_to_start_one() -> None:
     with pytest.raises(UsageError, match="grader start 01"):
         hints.hint(None, None)
 

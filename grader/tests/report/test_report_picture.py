@@ -73,7 +73,7 @@ def test_the_wall_is_marked() -> None:
 
 
 @pytest.mark.parametrize("shape", ["no messages", "all zero", "nan", "infinity"])
-def test_a_picture_without_a_path_says_so(shape: str) -> None:
+def test_a_picture_without_a_trajectory_says_so(shape: str) -> None:
     pixels = canvas(evidence(SHAPES[shape]()))
     words = around(pixels, SIDE_M / 2, SIDE_M * 0.28, 1.0)
     assert has(words, TICK)
