@@ -1,8 +1,8 @@
-"""The trials of one submission: they are started beside the build, and those in simulated time run side by side.
+"""The trials of one submission. They start while the submission is built. Those in simulated time run side by side.
 
-One is started after the other, so that the build, which all of them wait for, keeps most of a processor.
-Simulated time has no pace of its own, so company changes nothing that a trial sees. One under the wall's clock wants
-the processors for itself: whoever runs it lets the others end first (`settle`).
+They start one after the other, so that the build keeps most of a processor: all of them wait for it.
+Simulated time has no pace of its own, so other trials change nothing in it. A trial in wall time needs the processors
+for itself, so the caller waits for the others first (`settle`).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Runs(Protocol):
-    """A trial that waits for its node, or has it already."""
+    """A trial that waits for its node, or already runs it."""
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
         """As `Trial.run`."""
@@ -27,7 +27,7 @@ class Runs(Protocol):
 
 
 class _UnderWay:
-    """A trial that was begun before somebody asked for it."""
+    """A trial whose node already runs."""
 
     def __init__(self, recording: Future[Recording]) -> None:
         self._recording = recording
@@ -37,7 +37,7 @@ class _UnderWay:
 
 
 class _Started:
-    """A trial that is started, or will be in a moment."""
+    """A trial that was started, or soon will be."""
 
     def __init__(self, trial: Trial, ready: Future[None]) -> None:
         self._trial = trial
@@ -49,9 +49,9 @@ class _Started:
 
 
 class Ahead:
-    """A context manager; leaving it ends every trial that was started in it.
+    """A context manager. Leaving it ends every trial that was started in it.
 
-    Trials have names: "" is the exercise's own. `at_once` of them run side by side.
+    A trial is named by its id. `at_once` trials run side by side.
     """
 
     def __init__(self, at_once: int) -> None:
@@ -64,7 +64,7 @@ class Ahead:
         self._under_way: dict[str, Future[Recording]] = {}
 
     def __enter__(self) -> Ahead:  # noqa: PYI034 - typing.Self is Python 3.11's
-        self._pool.submit(importlib.import_module, "numpy")  # what reads a recording needs it, and now there is time
+        self._pool.submit(importlib.import_module, "numpy")  # needed to read a recording; there is time now
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -72,15 +72,15 @@ class Ahead:
             pool.shutdown(wait=False, cancel_futures=True)
         with self._entering:
             self._left = True
-        # The trials first: their ends are what the threads wait for.
+        # The trials first: the threads wait for their ends.
         self._stack.close()
         for pool in (self._starter, self._pool):
             pool.shutdown()
 
     def start(self, name: str, trial: Trial) -> None:
-        """Start simulator and launcher as soon as those before them are ready.
+        """Start simulator and launcher as soon as those of the trials before are ready.
 
-        What goes wrong is told by the trial's `run`.
+        If that fails, the trial's `run` raises the error.
         """
         self._started[name] = _Started(trial, self._starter.submit(self._begin, trial))
 
@@ -92,15 +92,15 @@ class Ahead:
         trial.await_ready()
 
     def run(self, name: str, package: str, executable: str, tree: bytes) -> None:
-        """Begin to run the node of a trial that was started; what comes of it is told by `trial`."""
+        """Start the node of a trial that was started. `trial` returns it, with its recording."""
         self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)
 
     def trial(self, name: str) -> Runs | None:
-        """The trial to ask for its recording; None when it was not started."""
+        """Return the trial, for its recording; None if it was not started."""
         if name in self._under_way:
             return _UnderWay(self._under_way[name])
         return self._started.get(name)
 
     def settle(self) -> None:
-        """Wait until no trial is under way."""
+        """Wait until no node runs."""
         wait(self._under_way.values())

@@ -1,7 +1,7 @@
 """Clues in the source that a node may follow wall time, so that simulated time would misjudge it.
 
-Only what the executable's module reaches inside the package counts: a sleep in another node of the package is no
-reason to make this one wait.
+Only the module of the executable and the modules that it imports from the package count. A sleep in another node of
+the package does not matter.
 """
 
 from __future__ import annotations
@@ -38,20 +38,20 @@ _NAMES = {
     "SYSTEM_TIME",
     "timeout_sec",
     "throttle_duration_sec",
-    # Whoever leaves out what was typed behind the node's name leaves out use_sim_time.
+    # A node without the global arguments does not get use_sim_time either.
     "use_global_arguments",
 }
 _CLOCKS = {"Clock", "ROSClock"}
-"""What is made by itself, not taken from the node, never hears /clock."""
+"""A clock that is not the node's own clock does not follow /clock."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
-"""What nodes of several threads need, and nobody can wait in for a time."""
+"""Nodes with several threads need these, and none of them waits for a time."""
 MOST_NODES = 30
-"""Of an expression that is shown whole."""
+"""The largest expression that is shown as a whole (AST nodes)."""
 
 
 @dataclass(frozen=True)
 class Clue:
-    """What was found where: `name` as written ("time.sleep"), `file` relative to the package folder."""
+    """A name as in the source, such as "time.sleep", with its place. `file` is relative to the package folder."""
 
     name: str
     file: str
@@ -59,7 +59,7 @@ class Clue:
 
 
 def wall_clues(files: Mapping[str, bytes], module: str | None) -> list[Clue]:
-    """Find the clues in what `module` ("package.module") reaches; without a module, in the whole package."""
+    """Return the clues in `module` ("package.module") and its imports; without a module, in the whole package."""
     first = None if module is None else module_file(module, files)
     read = read_code(files, first).modules
     return [clue for each in read if each.tree is not None for clue in _clues(each.file, each.tree)]
@@ -86,7 +86,7 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
 
 
 def _short(node: ast.Attribute) -> str:
-    """The expression as text; its last name alone where it is long, since each part of a chain may be a clue."""
+    """Return the source of the expression. If it is long, only its last name: each part of a chain may be a clue."""
     return ast.unparse(node) if len(list(islice(ast.walk(node), MOST_NODES + 1))) <= MOST_NODES else node.attr
 
 
@@ -95,7 +95,7 @@ def _is_timeless(node: ast.Attribute, modules: Mapping[str, str]) -> bool:
 
 
 def _wall_time_names(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """The names under which a file knows something of the modules that follow wall time, and what they stand for."""
+    """Yield the names that a file imports from modules that follow wall time, each with its full name."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             for alias in node.names:

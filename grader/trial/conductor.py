@@ -1,10 +1,10 @@
 """Conduct one trial: the process that holds the simulator, the recorder and the clock.
 
-It lives in a room (grader.sandbox), speaks JSON lines with the grader's own process over its standard streams, and
-holds the student's node in a cell. First line in: what the trial is. It answers {"ready": true} once simulator and
-launcher wait. Second line in: what to start, followed by the install tree. Last line out: {"recording": {...}},
-{"doubt": "..."} when another clock must judge, {"overwhelmed": "..."} when the node has brought the simulator down, or
-{"fault": "..."} for a fault of the machine.
+It runs in a room (grader.sandbox), with the student's node in a cell. It exchanges JSON lines with the grader's own
+process over its standard streams. The first line of input describes the trial. The answer is {"ready": true} when
+simulator and launcher are ready. The second line of input says what to start; the install tree follows. The last line
+of output is {"recording": {...}}, {"doubt": "..."} if the other clock must decide, {"overwhelmed": "..."} if the node
+brought the simulator down, or {"fault": "..."} for a fault of the machine.
 """
 
 from __future__ import annotations
@@ -35,18 +35,18 @@ if TYPE_CHECKING:
 LAUNCHER = Path(__file__).absolute().with_name("launcher.py")
 BUSY = 0.5
 BUSY_S = 0.04
-"""While the node's processes worked for this share of a stall and this long, they made it, not the machine; so too
-all stalls of a trial when they worked for this share of it."""
+"""A stall is the node's own doing if its processes worked for this share of it, and at least for BUSY_S. If they worked
+for this share of the trial, all its stalls are."""
 
 
 class Overwhelmed(Exception):  # noqa: N818 - the simulator's, by the node's doing
-    """The simulator could not go on after what the node had sent."""
+    """The simulator failed because of what the node sent."""
 
 
 def main() -> None:
-    """Conduct the trial that standard input asks for."""
+    """Conduct the trial that standard input describes."""
     order = json.loads(sys.stdin.buffer.readline())
-    # What ROS 2 prints must not come between our lines.
+    # Output of ROS 2 must not mix with our lines.
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     try:
@@ -72,7 +72,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
         _say(answers, {"recording": to_json(recording)})
         return
     with NodeProcess(lambda *fds: _command(ros, order, *fds), bubblewrap.NODE_LIMITS, in_cell=order["in_cell"]) as node:
-        # Imported here: while it takes its time, the launcher imports too.
+        # These imports are slow. They run here, while the launcher imports too.
         from grader.trial.simulated import SimulatedTrial
         from grader.trial.wall import WallTrial
 
@@ -121,7 +121,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
 
 
 def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
-    """Run the scenario; when SIGINT was sent. From here on, what breaks was broken by what the node sent."""
+    """Run the scenario; return when SIGINT was sent. From here on, the node is the cause of every failure."""
     try:
         return trial.run(duration_s)
     except (DoubtError, KeyboardInterrupt):
@@ -132,7 +132,7 @@ def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
 
 
 def _own_doing(stall: tuple[float, float], node: NodeProcess, trial: SimulatedTrial | WallTrial) -> bool:
-    """Whether the node has made the stall itself: by its own work, or by what it had the simulator do."""
+    """Whether the node caused the stall: by its own work, or by the work that it gave the simulator."""
     now_s = trial.now()
     offset = time.monotonic() - now_s
     begin, end = stall

@@ -1,4 +1,4 @@
-"""Whether a machine gives simulator and node the time that a trial in wall time needs, told from /proc."""
+"""Whether the machine gives simulator and node the time that a trial in wall time needs. The source is /proc."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ from pathlib import Path
 from grader.trial.rest import GoneError, Threads
 
 STALL_S = 0.03
-"""Time that the machine owed to simulator or node between two frames: from here on, arrivals are not to be trusted."""
+"""If simulator or node had to wait longer than this between two frames (s), arrivals cannot be trusted."""
 OWN_DOING = 0.5
-"""A node that itself used this share of the time and more kept itself waiting: that is no stall. What it has the
-simulator do for it is the node's: a simulator that answers thousands of calls is late, and the machine owes it nothing.
+"""A node that used at least this share of the time kept itself waiting: that is not a stall. Work that the node gives
+the simulator counts as the node's: a simulator that answers thousands of calls is late, but not because of the machine.
 """
 SIMULATOR = 0.3
-"""The share of a processor that the simulator may use for itself; a tenth was measured. The rest is for the node."""
+"""The share of a processor that the simulator may use for itself; a tenth was measured. The rest is the node's."""
 OTHERS = 0.2
-"""Others use the machine when they take this share of one processor and more ..."""
+"""Other programs use the machine if they take at least this share of one processor ..."""
 WAITED = 0.05
-"""... and crowd it when simulator and node together wait for a processor this share of the time and more."""
+"""... and crowd it if simulator and node together wait for a processor for at least this share of the time."""
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
 def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
-    """Whether others crowd the machine: `others_s` they worked, `waited_s` simulator and node waited, in `of_s` (s)."""
+    """Whether others crowd the machine: in `of_s`, they worked `others_s`; simulator and node waited `waited_s` (s)."""
     return waited_s >= WAITED * of_s and others_s >= OTHERS * of_s
 
 
 class Stalls:
-    """Finds the stalls: the kernel tells how long threads were ready to run and did not."""
+    """Finds the stalls: the kernel counts how long threads were ready to run and did not run."""
 
     def __init__(self, pid: int) -> None:
         self._parts = [_threads(pid), _threads(os.getpid())]
@@ -41,13 +41,13 @@ class Stalls:
         self.look(0.0)
         self._for_node = [(0.0, 0.0)]
         self.waited_s = 0.0
-        """How long simulator and node have waited for a processor since (s), all threads together."""
+        """How long simulator and node have waited for a processor so far (s), all threads together."""
 
     def look(self, now_s: float) -> tuple[float, float] | None:
-        """Look at the time since the last look; the stall that fell into it, if any.
+        """Return the stall since the last call, or None.
 
-        A stall is what threads waited for a processor, or what was stolen from the machine. That a frame comes late is
-        none by itself: whoever keeps the simulator busy could bring it about.
+        A stall is time in which threads waited for a processor, or that was stolen from the virtual machine. A late
+        frame alone is not a stall: a node that keeps the simulator busy could cause it.
         """
         passed_s = max(now_s - self._since_s, 1e-3)
         now = [_times(threads) for threads in self._parts]
@@ -68,18 +68,18 @@ class Stalls:
         return (begun_s, now_s) if max(owed) > STALL_S else None
 
     def worked_for_node_s(self, begin_s: float, end_s: float) -> float:
-        """CPU time that the simulator spent for the node between two looks, beyond what it needs by itself (s)."""
+        """CPU time that the simulator spent for the node between two looks, beyond its own needs (s)."""
         return sum(spent_s for at_s, spent_s in self._for_node if begin_s < at_s <= end_s)
 
 
 class Others:
-    """Counts what all programs of the machine but ours have worked since it was made."""
+    """Counts the CPU time of all other programs on this machine, from its creation on."""
 
     def __init__(self) -> None:
         self._before = _machine_worked_s() - time.process_time()
 
     def worked_s(self, *, but_s: float) -> float:
-        """CPU time of all but this process and what somebody else has worked (s)."""
+        """CPU time of all but this process and the given CPU time `but_s` (s)."""
         return _machine_worked_s() - time.process_time() - self._before - but_s
 
 
@@ -91,7 +91,7 @@ def _threads(pid: int) -> Threads | None:
 
 
 def _times(threads: Threads | None) -> tuple[float, float]:
-    """How long all threads have run, and waited for a processor (s)."""
+    """Return how long all threads have run, and how long they waited for a processor (s)."""
     if threads is None:
         return 0.0, 0.0
     try:
@@ -102,7 +102,7 @@ def _times(threads: Threads | None) -> tuple[float, float]:
 
 
 def _stolen_s() -> float:
-    """How long other machines on the same hardware took the processors, all together (s)."""
+    """Return how long other virtual machines on the same hardware took the processors, all together (s)."""
     return _machine_s()[7]
 
 
@@ -112,5 +112,5 @@ def _machine_worked_s() -> float:
 
 
 def _machine_s() -> list[float]:
-    """What the processors of the machine have done, all together (s): the columns of proc(5), /proc/stat."""
+    """Return the times of all processors together (s): the columns of /proc/stat, see proc(5)."""
     return [int(column) * _TICK_S for column in Path("/proc/stat").read_text().split(maxsplit=9)[1:9]]

@@ -1,4 +1,4 @@
-"""Inputs: what the simulator does of itself in a trial, drawn from the exercise's scenario and a seed."""
+"""Inputs: what the simulator itself does in a trial, drawn from the scenario of the exercise and a seed."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import Pen, Rgb
 
 MOST_DRAWS = 200
-"""After so many draws a way that leads into a wall is taken as it is."""
+"""After this many draws, a trajectory that touches a wall is accepted."""
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """`drives`: from when on (s) the turtle is driven how fast (m/s, rad/s); `rename`, `pose_every` as in Scenario."""
+    """`drives` holds start times (s) with speeds (m/s, rad/s); `rename` and `pose_every` are those of Scenario."""
 
     drives: tuple[tuple[float, float, float], ...] = ()
     rename: tuple[str, ...] = ()
@@ -28,18 +28,18 @@ class Inputs:
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Inputs:
-        """Make Inputs of what dataclasses.asdict and JSON left of them."""
+        """Make Inputs from JSON that dataclasses.asdict produced."""
         drives = tuple((from_s, linear, angular) for from_s, linear, angular in data["drives"])
         return cls(drives, tuple(data["rename"]), data["pose_every"])
 
     def drive(self, now_s: float) -> tuple[float, float] | None:
-        """How fast the turtle is driven now (m/s, rad/s); None before the first drive."""
+        """Return the speeds of the turtle at this time (m/s, rad/s); None before the first drive."""
         due = [(linear, angular) for from_s, linear, angular in self.drives if from_s <= now_s]
         return due[-1] if due else None
 
 
 def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
-    """Draw the speeds, again and again until the way keeps 0.5 m from every wall."""
+    """Draw the speeds; repeat until the trajectory keeps 0.5 m from every wall."""
     draw = random.Random(seed)
     inputs = Inputs(rename=scenario.rename, pose_every=scenario.pose_every)
     if not scenario.drives:
@@ -56,7 +56,7 @@ def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
 
 
 class _NoPaper:
-    """Where a turtle goes is wanted here, not what it draws."""
+    """A canvas that draws nothing: only the position of the turtle matters here."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         """Draw nothing."""

@@ -1,11 +1,11 @@
 """Start a node inside its cell, quickly: rclpy is imported while colcon still builds.
 
-Runs alone as a script, before the install tree exists. On standard input come one line of JSON
-(`script`, `ros_arguments`, `python_path`, `env`, `install`) and the install tree as a tar stream; then the installed
-script runs here as __main__, just as the interpreter in its first line would run it.
+It runs as a script of its own, before the install tree exists. It reads one line of JSON (`script`, `ros_arguments`,
+`python_path`, `env`, `install`) and the install tree, a tar stream, from standard input. Then it runs the installed
+script as __main__, as the interpreter in the first line of the script would.
 
-`ros_arguments` choose simulated time. They are given to rclpy when it is initialized, and never appear in sys.argv: a
-program that reads its own arguments must see those that `ros2 run PACKAGE EXECUTABLE` gives it, which are none.
+`ros_arguments` choose simulated time. rclpy gets them when it is initialized. They never appear in sys.argv: a program
+that reads its own arguments must see those of `ros2 run PACKAGE EXECUTABLE`, which are none.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def _import_ahead() -> None:
 
 
 def _initialize_with(ours: list[str]) -> None:
-    """Add arguments to whatever each ROS context is initialized with."""
+    """Add arguments to those with which each ROS context is initialized."""
     from rclpy.context import Context
 
     original = Context.init
@@ -58,14 +58,14 @@ def _initialize_with(ours: list[str]) -> None:
 
 
 def _without_us(kind: type[BaseException], error: BaseException, trace: types.TracebackType | None) -> None:
-    """Print a traceback of the program as it would be without the launcher around it."""
+    """Print the traceback of the program without the frames of the launcher."""
     for each in _chain(error):
         each.__traceback__ = _frames_of_others(each.__traceback__)
     sys.__excepthook__(kind, error, _frames_of_others(trace))
 
 
 def _chain(error: BaseException | None) -> Iterator[BaseException]:
-    """The error, and those that it came from."""
+    """Yield the error and its causes."""
     seen: set[int] = set()
     waiting = [error]
     while waiting:
@@ -85,16 +85,16 @@ def _frames_of_others(trace: types.TracebackType | None) -> types.TracebackType 
 
 
 def main() -> None:
-    """Import, wait for the order, become the node."""
+    """Import, wait for the order, and become the node."""
     sys.path.pop(0)
     _import_ahead()
     os.write(1, b"\x00ready\n")
     order = json.loads(sys.stdin.buffer.readline())
     with tarfile.open(fileobj=sys.stdin.buffer, mode="r|") as tree:
-        # A cell holds nothing that a bad member could harm; and Debian 12's Python does not know filters yet.
+        # A bad member can harm nothing in a cell, and the Python of Debian 12 has no filters yet.
         tree.extraction_filter = lambda member, _path: member
         tree.extractall(order["install"])
-    # What the node reads from its keyboard is the end of the file.
+    # A node that reads from the keyboard gets the end of the file.
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.environ.update(order["env"])
     script = Path(order["script"])
@@ -103,7 +103,7 @@ def main() -> None:
         sys.path_importer_cache.pop(path, None)
     importlib.invalidate_caches()
     sys.argv = [str(script)]
-    # Whoever grades in the background (`grader grade ... &`) has Ctrl-C ignored, and all that it starts inherits that.
+    # In the background (`grader grade ... &`), Ctrl-C is ignored, and every child process inherits that.
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -111,7 +111,7 @@ def main() -> None:
     os.setpgid(0, 0)
     source = script.read_bytes()
     if not (source.startswith(b"#!") and b"python" in source.split(b"\n", 1)[0]):
-        # Another language: all that can be done is to put them on the command line.
+        # Another language: the arguments can only be put on the command line.
         os.execv(script, [*sys.argv, *order["ros_arguments"]])
     if order["ros_arguments"]:
         _initialize_with(order["ros_arguments"])

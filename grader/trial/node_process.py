@@ -1,4 +1,4 @@
-"""The student's node as a process: started in a cell, watched, its output kept, ended with Ctrl-C."""
+"""The process of the student's node: started in a cell, its output kept, ended with Ctrl-C."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ READY = b"\x00ready\n"
 KEPT = 256 * 1024
 """Bytes kept of each stream."""
 PIPE = 1024 * 1024
-"""Bytes that a pipe of the node's should hold: what it writes at one instant should not make it wait."""
+"""Size of the node's pipes (bytes), so that the node does not wait for a reader after each line."""
 FULL = 0.25
-"""Share of a pipe: who was kept waiting by a full one has written more. The kernel fills every page to a half."""
+"""A node that had to wait for a full pipe wrote more than this share of it: the kernel fills pages by half."""
 STOP_S = 3.0
-"""How long SIGINT has, by the exercise; SIGTERM follows, for 1 s, then SIGKILL."""
+"""How long the node may take to end after SIGINT (s). SIGTERM follows, and SIGKILL 1 s later."""
 
 
 class LaunchError(Exception):
-    """The launcher itself failed: the machine's fault, since nothing of the student's had run."""
+    """The launcher itself failed. This is a fault of the machine, since no code of the student had run."""
 
 
 def enlarge(pipe: int) -> int:
     """Make a pipe as large as the kernel allows, up to PIPE; return its size (bytes).
 
-    The kernel refuses when all pipes of a user hold too much together (fs.pipe-user-pages-soft, pipe(7)).
+    The kernel refuses if all pipes of the user are too large together (fs.pipe-user-pages-soft, see pipe(7)).
     """
     size = PIPE
     while size > (given := fcntl.fcntl(pipe, fcntl.F_GETPIPE_SZ)):
@@ -53,7 +53,7 @@ def enlarge(pipe: int) -> int:
 
 @dataclass
 class Stream:
-    """What came through one pipe so far, and when each line began (s)."""
+    """The output that came through one pipe so far, and when each line began (s)."""
 
     fd: int
     kept: bytearray = field(default_factory=bytearray)
@@ -61,7 +61,7 @@ class Stream:
     dropped: int = 0
 
     def read(self, now_s: float) -> int:
-        """Read what is there; how many bytes."""
+        """Read what is there; return the number of bytes."""
         size = 0
         for _ in range(64):
             try:
@@ -80,17 +80,17 @@ class Stream:
         return size
 
     def output(self) -> Output:
-        """Return it as a recording keeps it."""
+        """Return the output as a recording keeps it."""
         return Output(self.kept.decode("utf-8", "replace"), self.dropped, tuple(self.times))
 
 
 class NodeProcess:
-    """One node's process and its pipes. Close it, or leave its `with`, and nothing of it is left."""
+    """The process of a node with its pipes; a context manager. Leaving it ends all processes of the node."""
 
     def __init__(self, command: Callable[[int, int | None], Sequence[str]], limits: Limits, *, in_cell: bool) -> None:
-        """`command(info_fd, filter_fd)` is the launcher's command line; `in_cell`: whether that is a bubblewrap.
+        """`command(info_fd, filter_fd)` returns the command line of the launcher. `in_cell`: it starts bubblewrap.
 
-        `limits` are those that no single process of the node's can be held to.
+        `limits` are those for all processes of the node together.
         """
         info, info_write = os.pipe()
         with call_filter() as filter_fd:
@@ -127,10 +127,10 @@ class NodeProcess:
         os.close(self._info)
 
     def await_ready(self) -> None:
-        """Wait until the launcher waits for its order.
+        """Wait until the launcher is ready for its order.
 
         Raises:
-            LaunchError: it ended instead.
+            LaunchError: the launcher ended.
         """
         assert self._process.stdout is not None
         assert self._process.stderr is not None
@@ -152,18 +152,18 @@ class NodeProcess:
             self._process.stdin.write(json.dumps(order).encode() + b"\n" + tree)
             self._process.stdin.close()
         except BrokenPipeError:
-            pass  # it ended: `ended` tells
+            pass  # the launcher ended: see `ended`
 
     def worked_s(self, begin: float, end: float) -> float:
-        """How long all processes of the cell worked between two times of CLOCK_MONOTONIC (s of CPU time)."""
+        """Return the CPU time of all processes of the cell between two times of CLOCK_MONOTONIC (s)."""
         return self._guard.worked_s(begin, end) if self._guard is not None else 0.0
 
     def read_output(self, now_s: float) -> int:
-        """Keep what the node wrote, as of `now_s`; how many bytes it was."""
+        """Keep the output of the node with the arrival `now_s`; return the number of bytes."""
         return sum(stream.read(now_s) for stream in self._streams)
 
     def waited_to_write(self, size: int) -> bool:
-        """Whether a node that wrote so many bytes may have had to wait for somebody to read them."""
+        """Return whether a node that wrote this many bytes may have waited for a reader."""
         return size >= self._full
 
     def output(self) -> tuple[Output, Output]:
@@ -171,13 +171,13 @@ class NodeProcess:
         return self._streams[0].output(), self._streams[1].output()
 
     def ended(self) -> bool:
-        """Tell whether the process is gone."""
+        """Return whether the process has ended."""
         return self._process.poll() is not None
 
     def interrupt(self) -> None:
         """Do what Ctrl-C does in a terminal."""
         if self._is_gone():
-            # It ended by itself a moment ago, and bubblewrap is about to say so.
+            # The node ended by itself a moment ago, and bubblewrap is about to report it.
             with suppress(subprocess.TimeoutExpired):
                 self._process.wait(STOP_S)
         if not self.ended():
@@ -186,28 +186,28 @@ class NodeProcess:
             self._signal(signal.SIGINT)
 
     def escalate(self) -> None:
-        """Call again and again after `interrupt`: sends SIGTERM and SIGKILL when their time has come."""
+        """Send SIGTERM and SIGKILL when it is time. Call this repeatedly after `interrupt`."""
         assert self._interrupted is not None
         passed = time.monotonic() - self._interrupted
         if passed > STOP_S + 1.0 and self._by != "SIGKILL":
             self._by = "SIGKILL"
-            self._process.kill()  # with --die-with-parent, all of the cell
+            self._process.kill()  # this ends the whole cell, because of --die-with-parent
             self._signal(signal.SIGKILL)
         elif passed > STOP_S and self._by == "SIGINT":
             self._by = "SIGTERM"
             self._signal(signal.SIGTERM)
 
     def end(self, now_s: float) -> ProcessEnd:
-        """Tell how it ended; only after `ended`."""
+        """Return how the process ended; call this only after `ended` returned True."""
         code = self._process.returncode
         stopped = None if self._interrupted is None else time.monotonic() - self._interrupted
-        # bwrap tells of a signal as a shell does, by 128 + its number.
+        # bwrap reports a signal as a shell does: 128 + its number.
         exit_code = 128 - code if code > 128 else code
         return ProcessEnd(self._by, exit_code, now_s, stopped, self._out_of)  # type: ignore[arg-type]
 
     def _over(self, what: str) -> None:
         self._out_of = what
-        self._process.kill()  # with --die-with-parent, all of the cell
+        self._process.kill()  # this ends the whole cell, because of --die-with-parent
 
     def _is_gone(self) -> bool:
         try:
@@ -220,7 +220,7 @@ class NodeProcess:
         try:
             group = os.getpgid(self.pid)
             if group == os.getpgid(0):
-                os.kill(self.pid, number)  # the launcher has not made its group yet
+                os.kill(self.pid, number)  # the launcher has not created its process group yet
             else:
                 os.killpg(group, number)
         except ProcessLookupError:

@@ -1,4 +1,4 @@
-"""How long simulated time waits for a node: by what the node works, so that a loaded machine changes nothing."""
+"""How long simulated time waits for a node. CPU time counts, so that a loaded machine changes nothing."""
 
 from __future__ import annotations
 
@@ -8,33 +8,33 @@ if TYPE_CHECKING:
     from grader.trial.rest import Threads
 
 ASLEEP_S = 20.0
-"""How long a node may sleep until it waits for its clock."""
+"""How long a node may sleep before it waits for its clock (s)."""
 WORKED_S = 20.0
-"""How long it may work until then (CPU time)."""
+"""How long it may work before that (s of CPU time)."""
 HANDSHAKE_S = 100.0
-"""How long the two together may take on the most crowded machine: the trial as a whole ends soon after (trial.py)."""
+"""The most time for both on a crowded machine (s). The limit of the whole trial is a little higher (trial.py)."""
 TICK_CPU_S = 1.0
-"""A node that works longer than this on one frame never rests."""
+"""A node that works longer than this on one frame never rests (s of CPU time)."""
 TICK_S = 30.0
 ASK_EVERY_S = 0.02
-"""How often its CPU time is asked for."""
+"""The time between two looks at its CPU time (s)."""
 
 
 class HandshakePatience:
-    """How long a node may take until it waits for its clock: as long as it works, or waits for us, it goes on."""
+    """How long a node may take before it waits for its clock. Time in which it works or waits for us does not count."""
 
     def __init__(self, now_s: float) -> None:
         self._begun_s = self._seen_s = now_s
         self._asleep_s = 0.0
 
     def ended(self, now_s: float, *, asleep: bool, wrote: bool, worked_s: float) -> bool:
-        """Whether it has taken too long.
+        """Return whether the node took too long.
 
         Args:
-            now_s: the monotonic clock.
-            asleep: all of its threads sleep. One that only waits for a processor does not.
-            wrote: there was output to read. Who writes much sleeps until we have read.
-            worked_s: its CPU time so far.
+            now_s: the monotonic clock (s).
+            asleep: all threads sleep. A thread that waits for a processor does not sleep.
+            wrote: there was output to read. A node that writes much sleeps until we read.
+            worked_s: the CPU time of the node so far (s).
         """
         if asleep and not wrote:
             self._asleep_s += now_s - self._seen_s
@@ -45,7 +45,7 @@ class HandshakePatience:
 class TickPatience:
     """How long node and simulator may answer each other at one instant.
 
-    Most instants are over long before it first asks for the node's CPU time, which costs as much as a look.
+    Reading the CPU time of the node costs as much as a look at its threads. Most instants are over before that.
     """
 
     def __init__(self, node: Threads, now_s: float) -> None:
@@ -55,7 +55,7 @@ class TickPatience:
         self._ask_s = now_s + ASK_EVERY_S
 
     def ended(self, now_s: float) -> bool:
-        """Whether the node has worked too long; counts from the first time that its CPU time is asked for."""
+        """Return whether the node worked too long. The CPU time counts from the first call that reads it."""
         if now_s < self._ask_s:
             return False
         self._ask_s = now_s + ASK_EVERY_S

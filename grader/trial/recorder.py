@@ -1,4 +1,4 @@
-"""Record every topic of a running ROS graph, and the graph itself. Runs in the conductor, beside the simulator."""
+"""Recorder: it records every topic of the ROS graph and the graph itself, in the process of the conductor."""
 
 from __future__ import annotations
 
@@ -24,31 +24,31 @@ if TYPE_CHECKING:
 OWN_NAMESPACE = "/_grader"
 OWN_NODES = ("/turtlesim", f"{OWN_NAMESPACE}/recorder")
 NAMESAKE = " (not the simulator)"
-"""Added to the name of a student's node that is called as one of ours."""
+"""The suffix for a node of the student that has the name of one of ours."""
 _TYPE = re.compile(r"([a-z][a-z0-9_]*)/msg/([A-Z][A-Za-z0-9]*)")
 _LEVELS = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
 
-# A node that makes topics or messages without end must not fill the grader's memory.
+# A node that creates topics or messages without end must not fill the memory of the grader.
 MOST_TOPICS = 100
 MOST_TYPES = 200
-"""Types on one topic."""
+"""The most types on one topic."""
 MOST_NODES = 100
 MOST_SEEN = 50_000
-"""Nodes and endpoints in all snapshots together."""
+"""The most nodes and endpoints in all snapshots together."""
 MOST_MESSAGES = 20_000
 MOST_BYTES = 32 * 1024 * 1024
 
 
 class Recorder(Node):
-    """A hidden node that subscribes to what appears in the graph."""
+    """A hidden node that subscribes to every topic in the graph."""
 
     def __init__(
         self, now: Callable[[], float], prefixes: list[Path], simulated: dict[str, str], judged: Collection[str] = ()
     ) -> None:
-        """`now` is the trial's clock (s); `prefixes` hold the installed message types.
+        """`now` returns the time of the trial (s); `prefixes` hold the installed message types.
 
-        `simulated` topics (name -> type) are those that the simulator tells of itself. What is on `judged` topics is
-        recorded however many others there are.
+        The simulator itself reports what it sends on the `simulated` topics (name -> type). `judged` topics are always
+        recorded, however many others there are.
         """
         super().__init__("recorder", namespace=OWN_NAMESPACE, start_parameter_services=False, enable_rosout=False)
         self.now = now
@@ -61,7 +61,7 @@ class Recorder(Node):
         self.graph_dropped = 0
         self._judged = frozenset(judged)
         self._subscribed: Counter[str] = Counter()
-        """Types by judged topic; of all other topics together, by the empty string."""
+        """The types of each judged topic. The empty string stands for all other topics together."""
         self._told: set[tuple[str, str, str]] = set()
         self._prefixes = prefixes
         self._simulated = simulated
@@ -71,7 +71,7 @@ class Recorder(Node):
         self._participant = self._own_participant()
 
     def keep(self, topic: str, type_name: str, data: bytes) -> bool:
-        """Keep a message that arrived now; false when the recording is full."""
+        """Keep a message that arrived now; return False if the recording is full."""
         if len(self.messages) >= MOST_MESSAGES or self._bytes + len(data) > MOST_BYTES:
             self.dropped += 1
             return False
@@ -80,7 +80,7 @@ class Recorder(Node):
         return True
 
     def keep_command(self, topic: str, data: bytes, twist: Any) -> None:  # noqa: ANN401 - a ROS message
-        """Keep a Twist as the turtle got it."""
+        """Keep a Twist that the turtle received."""
         if self.keep(topic, "geometry_msgs/msg/Twist", data) and topic == "/turtle1/cmd_vel":
             last = self.messages[-1]
             linear = (twist.linear.x, twist.linear.y, twist.linear.z)
@@ -88,13 +88,13 @@ class Recorder(Node):
             self.commands.append(Command(last.t_s, last.mono_s, linear, angular))
 
     def nodes(self) -> list[str]:
-        """Full names of the nodes in the graph but this one: the simulator's, and the student's, namesakes too."""
+        """Return the full names of all nodes in the graph but this one. A name that is taken twice is there twice."""
         found = [f"{space.rstrip('/')}/{name}" for name, space in self.get_node_names_and_namespaces()]
         found.remove(self.get_fully_qualified_name())
         return found
 
     def follow_graph(self) -> bool:
-        """Subscribe to topics that are new; true when there were any."""
+        """Subscribe to new topics; return whether there were any."""
         fresh = False
         for topic, types in self.get_topic_names_and_types():
             if topic not in self.topics and len(self.topics) >= 10 * MOST_TOPICS and topic not in self._judged:
@@ -109,7 +109,7 @@ class Recorder(Node):
 
     def snapshot(self) -> None:
         """Add the graph as it is now."""
-        # What is judged first: nobody shall push it out with a hundred others.
+        # Judged topics first: a hundred others must not push them out.
         topics = sorted((topic not in self._judged, topic) for topic, _ in self.get_topic_names_and_types())
         shown = [topic for beside, topic in topics if not beside]
         shown += [topic for beside, topic in topics if beside][:MOST_TOPICS]
@@ -136,7 +136,7 @@ class Recorder(Node):
         judged = [end for end in graph.endpoints if end.topic in self._judged]
         self._seen += len(graph.nodes) + len(graph.endpoints)
         if self._seen > MOST_SEEN:
-            # Full. What has not been on a judged topic yet is kept for ever; there is little of that.
+            # Full. Types that are new on a judged topic are still kept; these are few.
             self.graph_dropped += 1
             fresh = tuple(end for end in judged if (end.kind, end.topic, end.type) not in self._told)
             graph = Graph(graph.t_s, (), fresh)
@@ -147,7 +147,7 @@ class Recorder(Node):
     def _endpoints(
         self, kind: Literal["publisher", "subscription"], topic: str, found: list[TopicEndpointInfo]
     ) -> set[Endpoint]:
-        """The endpoints without this node's. Whose they are is told by the participant, since names can be taken."""
+        """Return the endpoints of other nodes. The participant tells whose they are, since names can be faked."""
         own_name = self.get_fully_qualified_name()
         result = set()
         for info in found:
@@ -161,7 +161,7 @@ class Recorder(Node):
         return result
 
     def _own_participant(self) -> bytes:
-        """Asked before the student's node is there, so that nobody else can answer."""
+        """Return our own participant. No other node can answer, since the student's node does not exist yet."""
         topic = f"{OWN_NAMESPACE}/whoami"
         publisher = self.create_publisher(Log, topic, 1)
         found = self.get_publishers_info_by_topic(topic)
@@ -173,8 +173,8 @@ class Recorder(Node):
         if self._subscribed[group] >= most:
             return False
         if topic == "/turtle1/cmd_vel" and type_name == "geometry_msgs/msg/Twist":
-            return False  # the simulator's own subscription tells it: what is judged is what moved the turtle
-        # The simulator tells what it sends itself; a subscription is for those who forge it.
+            return False  # the simulator itself reports it: checks judge what moved the turtle
+        # The simulator reports what it sends; the subscription is for messages of others on its topics.
         return self._simulated.get(topic) != type_name or bool(self.count_publishers(topic) > 1)
 
     def _subscribe(self, topic: str, type_name: str) -> bool:
@@ -206,7 +206,7 @@ class Recorder(Node):
 
 
 def _each_type_first(endpoints: set[Endpoint]) -> list[Endpoint]:
-    """One endpoint of each type, then the others: nobody shall push a type out with a hundred of another."""
+    """Return one endpoint of each type first: a hundred endpoints of one type must not push out another type."""
     ordered = sorted(endpoints, key=str)
     first = list({end.type: end for end in reversed(ordered)}.values())
     return first + [end for end in ordered if end not in first]
@@ -218,7 +218,7 @@ def _participant(info: TopicEndpointInfo) -> bytes:
 
 
 def _matching(offers: list[TopicEndpointInfo]) -> QoSProfile:
-    # As `ros2 bag record` does: ask for no more than every publisher offers, and for all of it.
+    # As `ros2 bag record`: request all that every publisher offers, and no more.
     reliable = bool(offers) and all(o.qos_profile.reliability == ReliabilityPolicy.RELIABLE for o in offers)
     local = bool(offers) and all(o.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for o in offers)
     return QoSProfile(

@@ -1,4 +1,4 @@
-"""Recording: all that a trial saw, in memory."""
+"""Recording: all that was observed in a trial, in memory."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     Floats = npt.NDArray[np.float64]
 
 AFTER_STALL_S = 0.05
-"""How long after a stall things still catch up (s)."""
+"""How long arrivals are late after a stall (s)."""
 
 ClockName = Literal["simulated", "wall"]
 
@@ -95,9 +95,9 @@ class Graph:
 
 @dataclass(frozen=True)
 class Frames:
-    """turtle1, one row a frame of the simulator (16 ms), from inside the simulator; arrays of shape (N,).
+    """The state of turtle1 in the simulator, one row per frame (16 ms); arrays of shape (N,).
 
-    `t_s` s; `x`, `y` m; `theta` rad; `linear` m/s; `angular` rad/s; `wall` true where the frame was clamped.
+    `t_s` s; `x`, `y` m; `theta` rad; `linear` m/s; `angular` rad/s; `wall` is whether the position was clamped.
     """
 
     t_s: Floats
@@ -113,7 +113,7 @@ class Frames:
 class Output:
     """What a process wrote on one stream, decoded with replacement; `dropped` bytes beyond the cap were not kept.
 
-    `times` are the arrivals of the lines of `text` on the trial's clock (s), one a line.
+    `times` are the arrivals of the lines of `text` on the trial's clock (s), one per line.
     """
 
     text: str
@@ -125,9 +125,9 @@ class Output:
 class ProcessEnd:
     """How the node's process ended.
 
-    `by` says what it took: "itself" (before the scenario was over), or the signal after which it was gone.
-    `out_of`: the grader ended it, since it held more "memory", "processes" or "files" than a node may.
-    `stop_s` is the time from SIGINT to its end (s of wall time), None when it ended by itself; `t_s` is the end on
+    `by` is what ended it: "itself" (before the scenario was over), or a signal.
+    `out_of`: the grader ended it, since it used more "memory", "processes" or "files" than a node may.
+    `stop_s` is the time from SIGINT to the end (s of wall time), None if it ended by itself; `t_s` is the end on
     the trial's clock. `exit_code` is negative for a signal, as in subprocess.
     """
 
@@ -140,7 +140,7 @@ class ProcessEnd:
 
 @dataclass(frozen=True)
 class Recording:
-    """All that one trial saw. `why` tells in words for a beginner why this clock judged."""
+    """All that was observed in one trial. `why` tells a beginner why this clock was used."""
 
     clock: ClockName
     why: str
@@ -150,55 +150,55 @@ class Recording:
     sigint_t_s: float
     messages: tuple[Message, ...]
     dropped: int
-    """Messages beyond what a recording keeps."""
+    """The number of messages that were too many to keep."""
     commands: tuple[Command, ...]
     frames: Frames
     log: tuple[LogLine, ...]
     graphs: tuple[Graph, ...]
     topics: dict[str, tuple[str, ...]]
-    """Every topic of the graph with its types, whether messages could be recorded or not."""
+    """Every topic of the graph with its types, even if its messages could not be recorded."""
     stdout: Output
     stderr: Output
     end: ProcessEnd
     own_nodes: tuple[str, ...] = ("/turtlesim",)
     """The grader's nodes; every other node of the graph belongs to the submission."""
     interventions: tuple[str, ...] = ()
-    """Services and actions of the simulator that somebody called, in order: "reset", "spawn", "teleport_absolute".
+    """The services and actions of the simulator that were called, in order: "reset", "spawn", "teleport_absolute".
 
-    Of very many the first are kept, and of the rest each name once.
+    If they are very many, the first are kept, and each name of the others once.
     """
     interventions_dropped: int = 0
-    """Calls beyond those."""
+    """The number of calls that were too many to keep."""
     graph_dropped: int = 0
-    """Topics, nodes and endpoints beyond what a snapshot of the graph keeps, and snapshots beyond those kept."""
+    """The number of topics, nodes, endpoints and snapshots of the graph that were too many to keep."""
     doubts: tuple[str, ...] = ()
-    """Why simulated time may have judged wrongly here; empty when it may be trusted."""
+    """Why simulated time may misjudge this node; empty if it can be trusted."""
     seconds: dict[str, float] = field(default_factory=dict)
-    """Wall time of the trial's parts: discovery, run, stop (s)."""
+    """Wall time of each part of the trial: discovery, run, stop (s)."""
     stalls: tuple[tuple[float, float], ...] = ()
-    """When the machine gave simulator or node no time to run in a wall-clock trial: (from, to) on its clock (s)."""
+    """When the machine gave simulator or node no processor in a trial in wall time: (from, to) on its clock (s)."""
     crowded: bool = False
-    """Whether others used the machine so much in a wall-clock trial that simulator and node often had to wait."""
+    """Whether other programs used the processors so much that simulator and node often had to wait (wall time)."""
 
     @property
     def stalled_s(self) -> float:
-        """How long all stalls were together (s)."""
+        """The length of all stalls together (s)."""
         return sum(end - begin for begin, end in self.stalls)
 
     def stalled(self, t_s: float) -> bool:
-        """Whether an arrival at this time says nothing about the node: it fell in a stall, or right after one."""
+        """Whether an arrival at this time says nothing about the node, since it was in a stall or right after one."""
         return any(begin <= t_s <= end + AFTER_STALL_S for begin, end in self.stalls)
 
 
 def frames_of(rows: Iterable[tuple[float, float, float, float, float, float, bool]]) -> Frames:
-    """Make Frames of rows (t_s, x, y, theta, linear, angular, wall)."""
+    """Make Frames from rows (t_s, x, y, theta, linear, angular, wall)."""
     table = np.array([tuple(map(float, row)) for row in rows], dtype=np.float64).reshape(-1, 7)
     t_s, x, y, theta, linear, angular, wall = table.T
     return Frames(t_s, x, y, theta, linear, angular, wall.astype(np.bool_))
 
 
 def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
-    """Make plain data of a recording; without the messages where a bag beside it holds them."""
+    """Convert a recording to plain data; without the data of the messages if a bag holds them."""
     plain = {**recording.__dict__, "frames": None, "messages": None}
     data: dict[str, Any] = asdict(Recording(**plain))
     frames = recording.frames
@@ -211,7 +211,7 @@ def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
 
 
 def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> Recording:
-    """Make a recording of what `to_json` gave; `payloads` are the messages' data where they were left out."""
+    """Make a recording from the result of `to_json`. `payloads` is the data of the messages if it was left out."""
     contents = iter(payloads) if payloads is not None else (base64.b64decode(row[2]) for row in data["messages"])
     frames = data["frames"]
     wall = np.array(frames["wall"], dtype=np.bool_)

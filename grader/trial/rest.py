@@ -1,9 +1,8 @@
-"""Rest: whether a process has done all it can do for now, told from /proc without disturbing it.
+"""Rest: whether a process has nothing left to do for now. /proc tells, without disturbing the process.
 
-Simulated time moves on only when the node rests: every thread sleeps, and none has run between two looks. A thread
-that was woken, ran and slept again between the looks has another count in its schedstat; one that was woken and
-has not run yet is in state R. So two equal looks are enough where the kernel counts, and the first of them needs no
-states; where it does not, more are needed.
+Simulated time advances only when the node rests: every thread sleeps, and none ran between two looks. A thread that
+ran between two looks has another count in its schedstat. A thread that was woken and did not run yet is in state R. So
+two equal looks are enough if the kernel counts, and the first look needs no states. Otherwise, more looks are needed.
 """
 
 from __future__ import annotations
@@ -17,13 +16,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 DDS = "dds."
-"""How Fast DDS begins the names of its threads."""
+"""The prefix of the names of the threads of Fast DDS."""
 _DDS_TIMERS = "dds.ev"
-"""The thread of its timers: it sends what is due, and receives nothing."""
+"""The thread for its timers: it sends, and receives nothing."""
 _SLEEPING = ord("S")
-# x86-64 numbers of the system calls in which a thread waits for a time to pass.
+# The system calls that wait for a time to pass, by their numbers on x86-64.
 _SLEEPS = {35: "nanosleep", 230: "clock_nanosleep"}
-# Which argument is the time-out (the system call's number itself is word 0), and what it is when there is none.
+# The word that holds the time-out (word 0 is the number of the system call), and its value without a time-out.
 _FOREVER = {0xFFFFFFFF, 0xFFFFFFFFFFFFFFFF}
 _MAY_END = {
     202: ("futex", 4, {0}),
@@ -41,12 +40,12 @@ class GoneError(Exception):
 
 
 class DoubtError(Exception):
-    """The process may follow wall time, so that its rest says nothing; the text says why."""
+    """The process may follow wall time, so its rest means nothing. The message says why."""
 
 
 @dataclass(frozen=True)
 class Look:
-    """One look at some threads: whether all sleep, and how often each has run."""
+    """One look at some threads: whether all of them sleep, and how often each ran."""
 
     asleep: bool
     runs: tuple[bytes, ...]
@@ -59,7 +58,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Wait:
-    """What a thread waits for: the name of a system call (or "futex", "running", ...), and whether time ends it."""
+    """What a thread waits for: the name of a system call (or "futex", "running", ...), and whether it is timed."""
 
     tid: int
     thread: str
@@ -68,27 +67,27 @@ class Wait:
 
 
 def of_dds(thread: str) -> bool:
-    """Whether a thread of this name is one of Fast DDS's."""
+    """Return whether a thread of this name belongs to Fast DDS."""
     return thread.startswith(DDS)
 
 
 def not_of_dds(thread: str) -> bool:
-    """Whether a thread of this name is the program's own."""
+    """Return whether a thread of this name belongs to the program itself."""
     return not of_dds(thread)
 
 
 def receives(thread: str) -> bool:
-    """Whether what arrives may come through a thread of this name."""
+    """Return whether a thread of this name may receive messages."""
     return of_dds(thread) and not thread.startswith(_DDS_TIMERS)
 
 
 def only_sends(thread: str) -> bool:
-    """Whether a thread of this name is one of Fast DDS's through which nothing arrives."""
+    """Return whether a thread of this name belongs to Fast DDS and receives nothing."""
     return of_dds(thread) and not receives(thread)
 
 
 class Threads:
-    """The threads of a process, or those whose names are `wanted`, read through kept descriptors."""
+    """The threads of a process, or only those with `wanted` names. Their files in /proc stay open."""
 
     def __init__(self, pid: int, wanted: Callable[[str], bool] = lambda _: True) -> None:
         self.pid = pid
@@ -100,7 +99,7 @@ class Threads:
         self._refresh()
 
     def close(self) -> None:
-        """Close the kept descriptors."""
+        """Close these files."""
         for pair in self._files.values():
             for fd in pair:
                 os.close(fd)
@@ -118,20 +117,20 @@ class Threads:
             try:
                 asleep, runs = True, []
                 for stat, schedstat in self._files.values():
-                    # In this order: who says S and is only just falling asleep has another count a moment later.
+                    # The state first: a thread in state S that is just falling asleep has another count a moment later.
                     asleep &= _state(os.pread(stat, 64, 0)) == _SLEEPING
                     runs.append(os.pread(schedstat, 64, 0))
-            except ProcessLookupError:  # a thread ended meanwhile
+            except ProcessLookupError:  # a thread has ended meanwhile
                 self._count = b""
                 continue
             return Look(asleep, tuple(runs))
         raise GoneError
 
     def runs(self) -> tuple[bytes, ...]:
-        """How often each thread of the last look has run: what a look can be compared with, at a third of its price."""
+        """Return how often each thread of the last look ran. This costs a third of a look."""
         try:
             return tuple([os.pread(schedstat, 64, 0) for _, schedstat in self._files.values()])
-        except ProcessLookupError:  # a thread has ended, or all of them: no look says the same
+        except ProcessLookupError:  # a thread has ended, or all have: this equals no look
             return ()
 
     def main_asleep(self) -> bool:
@@ -150,7 +149,7 @@ class Threads:
         return sum(int(run.split()[0]) for run in self.look().runs) / 1e9
 
     def waits(self) -> list[Wait]:
-        """Tell what every thread but Fast DDS's waits for right now; a running one waits for nothing."""
+        """Return what each thread waits for now, without those of Fast DDS. A running thread waits for nothing."""
         self._refresh()
         found = []
         for tid in self._files:
@@ -202,7 +201,7 @@ class Threads:
 
 
 def _read(path: str) -> str:
-    # Not pathlib's way: it costs ten times as much, and what a node waits for is read many times in a trial.
+    # Not with pathlib: it takes ten times as long, and this is called many times in a trial.
     fd = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
     try:
         return os.read(fd, 512).decode("utf-8", "replace")
@@ -211,7 +210,7 @@ def _read(path: str) -> str:
 
 
 def _state(stat: bytes) -> int:
-    # A thread may call itself anything, ") R" too, in 15 bytes: what follows the last parenthesis is the kernel's.
+    # A thread can have any name of 15 bytes, even ") R". The fields of the kernel follow the last parenthesis.
     return stat[stat.rindex(b")") + 2]
 
 

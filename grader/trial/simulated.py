@@ -1,8 +1,8 @@
-"""A trial under simulated time: /clock moves on only when the node rests.
+"""A trial in simulated time: /clock advances only when the node rests.
 
-The clock stands at 0 until both sides have found each other (the handshake), then goes in frames of 16 ms. What
-follows wall time instead shows in its threads; every such sign becomes a doubt, and a doubt makes a trial in wall
-time (docs/design.md, decision 3).
+The clock is held at 0 until both sides have found each other (the handshake). Then it advances in frames of 16 ms. The
+threads of a node show whether it follows wall time. Each such sign is a doubt, and a doubt leads to a trial in wall
+time (grading/clock.py; docs/design.md, decision 3).
 """
 
 from __future__ import annotations
@@ -30,20 +30,20 @@ if TYPE_CHECKING:
     from grader.trial.recording import Pose
 
 QUIET_S = 0.02
-"""How long discovery must be silent before it counts as over: less than half the time between two announcements
-(fastdds.xml). With more, those of simulator and node can fall so that there is no silence for many seconds."""
+"""How long discovery must be silent before it counts as over (s): less than half the time between two announcements
+(fastdds.xml). If it were longer, the announcements of simulator and node could leave no silence for many seconds."""
 WAKE_S = 1.0
-"""How long to wait for the node to notice /clock: a create_rate node never wakes at 0."""
+"""How long to wait until the node notices /clock (s): a node with create_rate never wakes at 0."""
 MOST_CPU = 2.0
-"""A node that needs this times the scenario in CPU time cannot keep up with the wall either: let it show there."""
+"""A node that needs this many times the duration in CPU time cannot keep up in wall time either. Wall time decides."""
 GRAPH_EVERY = 31
-"""Frames between two looks at the graph, and at what it does not suit (events of DDS): half a second."""
+"""Frames between two looks at the graph and at the events of DDS: half a second."""
 OWN_EVERY = 5
-"""Frames between two rounds for what nothing from outside announces: our own log lines, the steps of an action."""
+"""Frames between two rounds for work that no message announces: our own log lines, the steps of an action."""
 WAITS_EVERY = 7
-"""Frames between two looks at what the threads wait for."""
+"""Frames between two looks at what the threads of the node wait for."""
 ENDING_S = 0.5
-"""How long a node that sleeps may take to turn out to be ending (s of wall time)."""
+"""How long a sleeping node may take to end, before the sleep counts (s of wall time)."""
 _POLL_S = 0.00005
 
 
@@ -74,7 +74,7 @@ class SimulatedTrial(Simulation):
         """Run the scenario; return when SIGINT was sent, on the trial's clock (s).
 
         Raises:
-            DoubtError: the node may follow wall time, and the trial was asked to stop at a doubt.
+            DoubtError: the node may follow wall time, and the plan says `stop_at_doubt`.
         """
         try:
             self.lap("start")
@@ -110,7 +110,7 @@ class SimulatedTrial(Simulation):
             raise DoubtError(why)
 
     def tick(self, now_s: float) -> None:
-        """Make one frame and tell the node its time."""
+        """Make one frame and publish its time."""
         self._now_s = now_s
         self.frame(now_s)
         self._publish_clock(now_s)
@@ -130,11 +130,11 @@ class SimulatedTrial(Simulation):
         self._handled: tuple[bytes, ...] = ()
 
     def _rest(self, patience: TickPatience) -> bool:
-        """Wait until nothing more can happen at this instant; false when the node never rests."""
+        """Wait until nothing more can happen at this instant; return False if the node never rests."""
         before: tuple[bytes, ...] | None = None
         equal = 0
         while True:
-            # The main thread works longest as a rule: as long as it does, the others need no look.
+            # The main thread usually works longest. While it works, the other threads need no look.
             if not self._node.main_asleep():
                 before = None
                 time.sleep(_POLL_S)
@@ -155,19 +155,19 @@ class SimulatedTrial(Simulation):
                 before, equal = runs, 0
                 if not asleep:
                     time.sleep(_POLL_S)
-            # Threads that wake and sleep without end are seen asleep each time.
+            # Threads that wake and sleep without end look asleep each time.
             if patience.ended(time.monotonic()):
                 return False
 
     def _settle(self) -> None:
         """Let the node and the simulator answer each other until both rest."""
         patience = TickPatience(self._node, time.monotonic())
-        time.sleep(_POLL_S)  # the clock has just ticked: before the node has woken, a look would be in vain
+        time.sleep(_POLL_S)  # the clock has just advanced: before the node wakes, a look would tell nothing
         while True:
             if not self._rest(patience):
                 self._doubt("the node never comes to rest: it works without waiting")
                 return
-            # They have not run since the last time: nothing has come that is not handled yet.
+            # They did not run since the last time, so no new message has arrived.
             if self._received == self._handled:
                 return
             self._handled = self._received
@@ -175,11 +175,11 @@ class SimulatedTrial(Simulation):
                 return
 
     def _take_in(self) -> bool:
-        """Handle what has arrived; whether the node may go on because of it."""
+        """Handle what has arrived; return whether the node may continue because of it."""
         if not self.may_ask():
             self.hear()
             return False
-        # Nobody answers a message, nor an acknowledgement, which is handled by nothing: the node rests on.
+        # A message has no answer, and neither has an acknowledgement: the node continues to rest.
         return not all(isinstance(source, Subscription) for source in self.spin())
 
     # --- handshake --------------------------------------------------------------------------------------------
@@ -195,7 +195,7 @@ class SimulatedTrial(Simulation):
             if patience.ended(time.monotonic(), asleep=asleep, wrote=wrote, worked_s=worked_s):
                 self._doubt("the node did not come to rest before the clock could start")
                 return
-        self._watch()  # threads name themselves only once they run
+        self._watch()  # threads get their names when they first run
         self._wake()
         if len(self.recorder.commands) >= 2:
             self._doubt("the node published again and again while the clock stood still")
@@ -205,7 +205,7 @@ class SimulatedTrial(Simulation):
         self.tick(0.0)
 
     def _found_each_other(self) -> bool:
-        """Wait for a silence of QUIET_S; true when the node waits for its clock and discovery is silent."""
+        """Wait QUIET_S; return whether discovery was silent and the node waits for its clock."""
         quiet = Threads(self.node.pid, of_dds)
         try:
             before = quiet.look().runs
@@ -225,7 +225,7 @@ class SimulatedTrial(Simulation):
         return waits and bool(self.students_nodes()) and self._clock.get_subscription_count() > 0
 
     def _wake(self) -> None:
-        """Publish time 0 until the node has woken twice for it: then both sides know each other."""
+        """Publish time 0 until the node has woken twice. Then both sides have found each other."""
         rest = Threads(self.node.pid, not_of_dds)
         try:
             before = rest.look().runs
@@ -251,7 +251,7 @@ class SimulatedTrial(Simulation):
             self._doubt("the node waits for wall time")
 
     def _is_ending(self) -> bool:
-        """Whether the node is gone in a moment: while rclpy is taken apart after an exception, threads sleep, too."""
+        """Return whether the node ends in a moment. Threads also sleep while rclpy shuts down after an exception."""
         deadline = time.monotonic() + ENDING_S
         while time.monotonic() < deadline:
             self.node.read_output(self._now_s)

@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 COMMANDS = "/turtle1/cmd_vel"
 PUBLISHED = {"/turtle1/pose": "turtlesim/msg/Pose", "/turtle1/color_sensor": "turtlesim/msg/Color"}
 _MOST_AT_ONCE = 2000
-"""Callbacks handled before the trial looks at its clock again: a flood must not stop time."""
+"""The most callbacks before the trial looks at its clock again: a flood of messages must not stop time."""
 _MOST_AT_ONCE_S = 0.5
 _MOST_INTERVENTIONS = 1000
-"""Interventions in order; of those after that each name is kept once, and the others are counted."""
+"""The most interventions that are kept in order. After these, each name is kept once, and the others are counted."""
 
 
 class Simulation:
@@ -44,9 +44,9 @@ class Simulation:
     def __init__(
         self, node: NodeProcess, start: Pose, prefixes: list[Path], inputs: Inputs, judged: Collection[str] = ()
     ) -> None:
-        """`judged` are the topics that a check asks for."""
-        # Our own log lines go to /rosout, where the recorder hears them, not to disk: whoever makes the simulator talk
-        # must not fill it.
+        """`judged` are the topics that a check needs."""
+        # Our own log lines go to /rosout, for the recorder, and not to disk: a node that makes the simulator log must
+        # not fill it.
         rclpy.init(args=["--ros-args", "--disable-external-lib-logs", "--disable-stdout-logs"])
         self.node = node
         self.inputs = inputs
@@ -76,7 +76,7 @@ class Simulation:
         self._services: list[str] = []
 
     def lap(self, part: str) -> None:
-        """Note how long the part took that ends now."""
+        """Keep the duration of the part that ends now."""
         now = time.monotonic()
         self.seconds[part] = now - self._since
         self._since = now
@@ -90,15 +90,15 @@ class Simulation:
         raise NotImplementedError
 
     def crowded(self) -> bool:
-        """Whether other programs kept simulator and node from running; in simulated time that changes nothing."""
+        """Return whether other programs kept simulator and node from running; simulated time does not care."""
         return False
 
     def worked_for_node_s(self, begin_s: float, end_s: float) -> float:
-        """CPU time that the simulator spent for the node between two times on the trial's clock, in wall time (s)."""
+        """Return the CPU time that the simulator spent for the node between two times on the trial's clock (s)."""
         return 0.0 if self.watch is None else self.watch.worked_for_node_s(begin_s, end_s)
 
     def frame(self, now_s: float) -> None:
-        """Let the simulator make one frame, and keep it."""
+        """Make one frame of the simulator, and keep it."""
         drive = self.inputs.drive(now_s)
         if drive is not None and self.turtlesim.turtle_state("turtle1") is not None:
             self.turtlesim.world.command("turtle1", drive[0], 0.0, drive[1])
@@ -110,29 +110,29 @@ class Simulation:
             )
 
     def spin(self, timeout_s: float = 0.0) -> list[object]:
-        """Handle all that has arrived, waiting up to `timeout_s` for the first of it; return what it came by.
+        """Handle all that has arrived, and wait up to `timeout_s` for the first. Return the entities that it came by.
 
-        That is a subscription for one or more messages, a service for each request, and so on.
+        An entity is a subscription for one or more messages, a service for each request, and so on.
         """
         handled: list[object] = []
         until = time.monotonic() + timeout_s + _MOST_AT_ONCE_S
         while time.monotonic() < until and len(handled) < _MOST_AT_ONCE:
             some = self._handle_ready(0.0 if handled else timeout_s)
             handled += some
-            # While a request is answered, the simulator may say something that the recorder hears.
+            # While the simulator answers a request, it may log something for the recorder.
             if all(isinstance(source, Subscription) for source in some):
                 break
         return handled
 
     def may_ask(self) -> bool:
-        """Whether somebody has a client of a service or an action of ours."""
+        """Return whether any node has a client of one of our services or actions."""
         if not self._services:
             self._services = [
                 name
                 for node in (self.turtlesim, self.recorder)
                 for name, _ in node.get_service_names_and_types_by_node(node.get_name(), node.get_namespace())
             ]
-        # Not Node.count_clients: it looks each time whether the name is a name, which takes four times as long.
+        # Not Node.count_clients: it validates the name each time, which takes four times as long.
         count = self.turtlesim.handle.get_count_clients
         return any(count(name) for name in self._services)
 
@@ -143,7 +143,7 @@ class Simulation:
                 _handle_messages(subscription)
 
     def _handle_ready(self, timeout_s: float) -> list[object]:
-        """Handle what is ready now, or else the first within `timeout_s`, and what more came by the same topics."""
+        """Handle what is ready now, or the first within `timeout_s`, and further messages on the same topics."""
         handled: list[object] = []
         with suppress(TimeoutException):
             while len(handled) < _MOST_AT_ONCE:
@@ -154,24 +154,24 @@ class Simulation:
                 if isinstance(source, Subscription):
                     _handle_messages(source)  # the executor takes one at a time
                 else:
-                    self._services = []  # a turtle may have come, or gone
+                    self._services = []  # a turtle may have been added or removed
         return handled
 
     def students_nodes(self) -> list[str]:
-        """Return the nodes in the graph that are not ours; a namesake of ours is none."""
+        """Return the nodes in the graph that are not ours, by name."""
         others: list[str] = self.recorder.nodes()
         others.remove(self.turtlesim.get_fully_qualified_name())
         return others
 
     def _intervened(self, name: str) -> None:
-        # Whoever calls a harmless service a thousand times must not have the next teleport forgotten.
+        # A thousand calls of a harmless service must not hide the next teleport.
         if len(self.interventions) < _MOST_INTERVENTIONS or name not in self.interventions:
             self.interventions.append(name)
         else:
             self.interventions_dropped += 1
 
     def wind_down(self) -> None:
-        """Press Ctrl-C on the node and go on, at the pace of the wall, until it is gone."""
+        """Send Ctrl-C to the node and continue, in wall time, until it has ended."""
         self.node.interrupt()
         begun, from_s = time.monotonic(), self.now()
         frames = 0
@@ -191,7 +191,7 @@ class Simulation:
 
 
 def _handle_messages(subscription: Subscription) -> None:
-    """Hand over the messages that wait to be taken."""
+    """Pass the waiting messages to their callbacks."""
     with subscription.handle:
         for _ in range(_MOST_AT_ONCE):
             taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
@@ -201,9 +201,9 @@ def _handle_messages(subscription: Subscription) -> None:
 
 
 def leave_out_events(node: Node) -> None:
-    """Do not wait for mismatches (of types, of QoS) on a node's topics, except on the turtle's, where a check asks.
+    """Do not wait for events (other types, other QoS) on the topics of a node, except on those of the turtle.
 
-    rclpy hands every source of events to every wait anew. Topics that the node joins later keep theirs.
+    rclpy passes every source of events to every wait. Topics that the node joins later keep their events.
     """
     for endpoint in (*node.publishers, *node.subscriptions):
         if not endpoint.topic_name.startswith("/turtle1/"):

@@ -1,4 +1,4 @@
-"""Where the turtle starts: turtlesim's own place, or one drawn from a seed."""
+"""Where the turtle starts: the start of turtlesim, or a pose drawn from a seed."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from grader.trial.recording import Pose
 from grader.turtlesim.turtle import SIDE_M, Start
 
 MARGIN_M = 0.5
-"""How far the ideal path keeps from every wall."""
+"""The least distance of the ideal path from a wall (m)."""
 
 
 def start_pose(seed: int | None, radius_m: float) -> Pose:
-    """Return turtlesim's start without a seed, else a pose from which a circle on either side stays clear of the walls.
+    """Return a start pose with room for a circle on either side; without a seed, the start of turtlesim.
 
-    `radius_m` is the ideal circle's; both sides, so that a turtle that turns the wrong way fails for that alone.
+    `radius_m` is the radius of the ideal circle. There is room on both sides, so that a turtle that turns in the wrong
+    direction does not hit a wall too.
     """
     if seed is None:
         return Pose(*Start())

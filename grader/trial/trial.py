@@ -41,7 +41,7 @@ MOST_ANSWER = 256 * bubblewrap.MIB
 
 @dataclass(frozen=True)
 class Plan:
-    """What a trial does: under which clock, from where (m, m, rad), for how long (s)."""
+    """What happens in a trial: the clock, the start pose (m, m, rad), the duration (s)."""
 
     clock: ClockName
     start: Pose
@@ -50,23 +50,23 @@ class Plan:
     stop_at_doubt: bool = True
     inputs: Inputs = field(default_factory=Inputs)
     alone: bool = False
-    """The simulator by itself, without a node."""
+    """Whether the simulator runs without a node."""
     judged: tuple[str, ...] = ()
-    """Topics that a check asks for: they are recorded, however many others there are."""
+    """The topics that a check needs: they are recorded, however many others there are."""
 
 
 def last_words(stderr: bytes) -> str:
-    """What a program of ours said before it ended, without the frames of a traceback."""
+    """Return the last output of one of our programs, without the frames of a traceback."""
     output = stderr.decode("utf-8", "replace").strip()
     return output.splitlines()[-1] if "Traceback (most recent call last)" in output else output
 
 
 class WallTimeNeeded(Exception):  # noqa: N818 - not an error
-    """Simulated time may misjudge this node; the text says why."""
+    """Simulated time may misjudge this node. The message says why."""
 
 
 class OverwhelmedError(Exception):
-    """The node has brought the simulator down, or would not let the trial end (`hung`); the text says how."""
+    """The node brought the simulator down, or kept the trial from ending (`hung`). The message says how."""
 
     def __init__(self, how: str, *, hung: bool = False) -> None:
         super().__init__(how)
@@ -75,14 +75,14 @@ class OverwhelmedError(Exception):
 
 @cache
 def compile_conductor() -> None:
-    """Compile what the conductor imports, where that is out of date: in its room it cannot keep what it compiles."""
+    """Compile the imports of the conductor if they changed: in its room, it cannot keep compiled files."""
     if not sys.dont_write_bytecode:
         for folder in (_FOLDER, *(_FOLDER / room for room in CONDUCTORS_ROOMS)):
             compileall.compile_dir(folder, maxlevels=0, quiet=2)
 
 
 class Trial:
-    """A context manager: entering starts simulator and launcher, so that both are ready when the build is done."""
+    """A context manager. Entering it starts simulator and launcher, so that both are ready when the build is done."""
 
     def __init__(self, plan: Plan, ros: installation.Ros, *, in_cell: bool) -> None:
         self._plan = plan
@@ -104,7 +104,7 @@ class Trial:
         self._stack.close()
 
     def start(self) -> None:
-        """Start simulator and launcher now rather than on entering; who does so must enter later, or `close`."""
+        """Start simulator and launcher before entering. The caller must enter later, or call `close`."""
         if self._started:
             return
         self._started = True
@@ -115,23 +115,23 @@ class Trial:
             raise
 
     def close(self) -> None:
-        """End all that was started."""
+        """End all processes of the trial."""
         self._stack.close()
 
     def await_ready(self) -> None:
-        """Wait until simulator and launcher want their node.
+        """Wait until simulator and launcher are ready for the node.
 
         Raises:
-            MachineError: they failed.
+            MachineError: simulator or launcher failed.
         """
         if not self._ready:
             self._limit()
             self._answer("ready")
-            self._timer.cancel()  # its turn to run may come late
+            self._timer.cancel()  # the node may be started much later
             self._ready = True
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
-        """Run the executable of the install tree (a tar stream) through the whole plan.
+        """Run the executable of the install tree (a tar stream), and return the recording.
 
         Raises:
             WallTimeNeeded: simulated time may misjudge this node.
@@ -160,10 +160,10 @@ class Trial:
         return recording
 
     def run_alone(self) -> Recording:
-        """Return what the simulator did by itself, where the plan says `alone`.
+        """Return the recording of the simulator without a node, for a plan that is `alone`.
 
         Raises:
-            MachineError: it failed.
+            MachineError: the simulator failed.
         """
         self._limit()
         return from_json(self._answer("recording"))
@@ -181,11 +181,13 @@ class Trial:
             self._domain = self._own_domain()
         self._errors: IO[bytes] = self._stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
         env = installation.environment(self._ros, home=self._home, domain=self._domain)
-        env["ROS_PYTHON_CHECK_FIELDS"] = "0"  # for beginners; ours would pay for it in each frame
+        env["ROS_PYTHON_CHECK_FIELDS"] = (
+            "0"  # this check is for beginners; it would slow the simulator down in each frame
+        )
         argv, env = interpreter("-m", "grader.trial.conductor", python=str(self._ros.python), env=env, searches=True)
         if self._in_cell:
             view = bubblewrap.ros_view(self._ros, _FOLDER)
-            # What a node sends fills the memory of whoever listens; the conductor itself needs 1 GiB of addresses.
+            # Messages of the node fill the memory of the conductor, which itself needs 1 GiB of addresses.
             argv = ["prlimit", f"--as={MOST_MEMORY}:", "--", *argv]
             self._group = self._stack.enter_context(control_group(bubblewrap.NODE_LIMITS))
             user = self._stack.enter_context(cell_user())
@@ -200,7 +202,7 @@ class Trial:
         self._send(json.dumps({**plan, **where, **underlay}).encode() + b"\n")
 
     def _limit(self) -> None:
-        # Whatever happens inside, the grader does not wait for ever; the trial's own deadlines are much tighter.
+        # The grader never waits for ever. The limits of the trial itself are much lower.
         self._timer.cancel()
         self._timer = Timer(120.0 + 6.0 * self._plan.duration_s, self._kill)
         self._timer.daemon = True
@@ -208,7 +210,7 @@ class Trial:
         self._stack.callback(self._timer.cancel)
 
     def _kill(self) -> None:
-        # All of its group: a bubblewrap that is just starting has a child that does not yet die with it.
+        # The whole process group: while bubblewrap starts, it has a child that does not die with it yet.
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
 
@@ -226,7 +228,7 @@ class Trial:
             self._process.stdin.write(data)
             self._process.stdin.flush()
         except BrokenPipeError:
-            pass  # it ended; what it said is told by `_answer`
+            pass  # it has ended; `_answer` reports why
 
     def _answer(self, key: str) -> Any:  # noqa: ANN401 - JSON
         assert self._process.stdout is not None
@@ -237,7 +239,7 @@ class Trial:
         if key in answer:
             return answer[key]
         if self._node_runs:
-            # The simulator was well until the node began, and nothing else was.
+            # The simulator worked until the node started, so the node is the cause.
             if "overwhelmed" in answer:
                 raise OverwhelmedError(answer["overwhelmed"])
             if "fault" in answer:
@@ -259,8 +261,8 @@ class Trial:
         return OverwhelmedError(f"it ended with exit code {code}")
 
     def _own_domain(self) -> int:
-        """A ROS domain that no other trial of this machine uses now, for where there is no network of its own."""
-        # Above 101 a domain's ports would lie among those that Linux gives to anybody.
+        """Return a ROS domain that no other trial on this machine uses now, for a trial without its own network."""
+        # The ports of higher domains are among those that Linux gives to any program.
         for domain in range(1, 102):
             path = Path(tempfile.gettempdir()) / f"grader-domain-{os.getuid()}-{domain}.lock"
             file = self._stack.enter_context(path.open("w"))

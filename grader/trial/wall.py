@@ -1,4 +1,4 @@
-"""A trial in wall time: the reference, and the only judge of a node that does not follow ROS time."""
+"""A trial in wall time: the reference, and the only clock for a node that does not follow ROS time."""
 
 from __future__ import annotations
 
@@ -55,13 +55,13 @@ class WallTrial(Simulation):
         return stopped_s
 
     def crowded(self) -> bool:
-        """Whether other programs used the machine so much that simulator and node often had to wait."""
+        """Return whether other programs used the processors so much that simulator and node often had to wait."""
         return self._crowded
 
     def _discover(self) -> None:
-        """Let the clock start when the node is in the graph and its topics are recorded, or when it has ended.
+        """Wait until the node is in the graph and its topics are recorded, or until it has ended.
 
-        At once with its first command: the turtle moves from then on, whoever else has not been found yet.
+        The first command ends the wait at once, since the turtle moves from then on.
         """
         deadline = time.monotonic() + DISCOVERY_S
         found = False
@@ -71,6 +71,6 @@ class WallTrial(Simulation):
             if self.recorder.commands:
                 return
             found = bool(self.students_nodes()) and not self.recorder.follow_graph()
-        # What has come by now came before the clock starts, and is in no interval; a look at the graph takes a while.
+        # Take what arrived before the clock starts, so that no interval contains it: a look at the graph takes a while.
         self.spin()
         self.node.read_output(self.now())

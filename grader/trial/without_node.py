@@ -1,4 +1,4 @@
-"""A trial without a node: the simulator by itself, frame after frame, as fast as it goes."""
+"""A trial without a node: the simulator runs frame after frame, as fast as it can."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Pose
 
 GRAPH_S = 5.0
-"""How long to wait until the simulator has found its own topics in the graph."""
+"""How long to wait until the simulator finds its own topics in the graph (s)."""
 
 
 class AloneTrial(Simulation):
@@ -25,7 +25,7 @@ class AloneTrial(Simulation):
 
     def __init__(self, start: Pose, prefixes: list[Path], inputs: Inputs) -> None:
         self._now_s = 0.0
-        # There is no process, and nothing here asks for it.
+        # There is no process, and no method here uses it.
         super().__init__(cast("NodeProcess", None), start, prefixes, inputs)
         self._start = start
 
@@ -34,7 +34,7 @@ class AloneTrial(Simulation):
         return self._now_s
 
     def record(self, duration_s: float, seed: int | None) -> Recording:
-        """Run the scenario, and return what was seen."""
+        """Run the scenario, and return its recording."""
         deadline = time.monotonic() + GRAPH_S
         while not self.recorder.follow_graph() and time.monotonic() < deadline:
             self.spin(0.01)
