@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor, TimeoutException
+from rclpy.service import Service
 from rclpy.subscription import Subscription
 
 from grader.trial.recorder import Recorder
@@ -71,6 +72,8 @@ class Simulation:
         self.doubts: list[str] = []
         self.stalls: list[tuple[float, float]] = []
         self.watch: Stalls | None = None
+        self.requests = 0
+        """How many requests of services and actions were answered."""
         self.seconds: dict[str, float] = {}
         self._since = time.monotonic()
         self._services: list[str] = []
@@ -154,6 +157,7 @@ class Simulation:
                 if isinstance(source, Subscription):
                     _handle_messages(source)  # the executor takes one at a time
                 else:
+                    self.requests += isinstance(source, Service)
                     self._services = []  # a turtle may have been added or removed
         return handled
 

@@ -137,8 +137,8 @@ def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch:
 class Busy:
     """A node whose processes have worked so long, and a stage whose simulator has, whenever one asks."""
 
-    def __init__(self, node_s: float, simulator_s: float) -> None:
-        self._node_s, self._simulator_s = node_s, simulator_s
+    def __init__(self, node_s: float, simulator_s: float, requests: int = 0) -> None:
+        self._node_s, self._simulator_s, self.requests = node_s, simulator_s, requests
 
     def worked_s(self, *_: float) -> float:
         return self._node_s
@@ -157,4 +157,12 @@ def test_a_stall_while_node_and_its_requests_take_the_time_is_the_nodes(
     node_s: float, simulator_s: float, *, own: bool
 ) -> None:
     of: Any = Busy(node_s, simulator_s)
+    assert conductor._own_doing((1.0, 1.1), of, of) == own
+
+
+@pytest.mark.parametrize(("requests", "own"), [(1900, False), (5000, True)])
+def test_stalls_beside_thousands_of_requests_are_the_nodes_however_little_time_both_got(
+    requests: int, *, own: bool
+) -> None:
+    of: Any = Busy(0.0, 0.0, requests)
     assert conductor._own_doing((1.0, 1.1), of, of) == own
