@@ -91,6 +91,10 @@ def check(
     confined: Annotated[
         bool, typer.Option("--sandbox", help="Run only in a sandbox. By default, the sandbox is used if possible.")
     ] = False,
+    explain: Annotated[
+        bool,
+        typer.Option("--explain", help="For instructors: change each cause in a copy, run it, and show the change."),
+    ] = False,
     verbose: Verbose = False,
 ) -> None:
     """Build and run one submission, and print what is right and what is wrong."""
@@ -107,7 +111,8 @@ def check(
     if recording:
         archive.check_free(recording)
     asked, opened = _opened(submission, exercise)
-    options = Options(in_cell=bubblewrap.require() if confined else bubblewrap.usable(), clock=clock.value, seed=seed)
+    in_cell = bubblewrap.require() if confined else bubblewrap.usable()
+    options = Options(in_cell, clock.value, seed, explain)
     with progress() as tell:
         graded = grade(asked, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)))
         if recording:
@@ -115,7 +120,7 @@ def check(
     from grader.learner import steps
 
     following = steps.note(asked, opened.package_dir, graded.report)
-    _show(graded.report, graded.evidence, json, image, html, verbose=verbose, following=following)
+    _show(graded.report, graded.evidence, json, image, html, verbose=verbose, following=following, changes=explain)
 
 
 @app.command(rich_help_panel=TEACH, epilog="Example: grader regrade my-recording --image path.png")
@@ -231,6 +236,7 @@ def _show(
     *,
     verbose: bool,
     following: str = "",
+    changes: bool = False,
 ) -> None:
     from rich.console import Console
 
@@ -251,6 +257,8 @@ def _show(
         save_html(evidence, report, html)
     console = Console(highlight=False)
     terminal.render(report, console, verbose=verbose)
+    if changes:
+        terminal.changes(evidence.tries, console)
     if following:
         console.print(following, soft_wrap=True)
     raise typer.Exit(report.exit_code)

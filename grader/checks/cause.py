@@ -7,17 +7,26 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from grader.checks.diagnosis import Diagnosis
+    from grader.checks.edit import Edit
     from grader.submission.where import Where
 
 
 @dataclass(frozen=True)
 class Cause:
-    """A diagnosis id, the cause in words (empty if the observation says enough), and the place to look at."""
+    """A diagnosis id, the cause in words (empty if the observation says enough), and the place to look at.
+
+    `fix` is the smallest change that would mend it, if that is known. It is tried, and never shown to a student.
+    """
 
     diagnosis: Diagnosis
     text: str = ""
     where: Where | None = None
+    fix: tuple[Edit, ...] = ()
 
     def at(self, where: Where | None) -> Cause:
         """Return the cause with this place to look at, unless it names a better one itself."""
         return self if self.where is not None else replace(self, where=where)
+
+    def mended_by(self, edits: tuple[Edit, ...]) -> Cause:
+        """Return the cause with the change that would mend it."""
+        return replace(self, fix=edits)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from grader.checks.cause import Cause
+    from grader.checks.edit import Edit
     from grader.submission.where import Where
 
 
@@ -35,10 +36,14 @@ class Finding:
     diagnosis: str | None = None
     where: Where | None = None
     near_edge: bool = False
+    fix: tuple[Edit, ...] = ()
+    """What would mend the cause, to be tried; never shown to a student."""
+    tried: str = ""
+    """What came of trying it, in a sentence."""
 
     def because(self, cause: Cause) -> Finding:
         """Return the finding with this cause instead of its own."""
-        return replace(self, diagnosis=cause.diagnosis, cause=cause.text, where=cause.where)
+        return replace(self, diagnosis=cause.diagnosis, cause=cause.text, where=cause.where, fix=cause.fix)
 
 
 def passed(observed: str, *, near_edge: bool = False) -> Finding:
@@ -48,7 +53,8 @@ def passed(observed: str, *, near_edge: bool = False) -> Finding:
 
 def failed(observed: str, expected: str, cause: Cause, *, near_edge: bool = False) -> Finding:
     """Return the finding of a check that failed because of the student's work."""
-    return Finding(Status.FAILED, observed, expected, cause.text, cause.diagnosis, cause.where, near_edge)
+    finding = Finding(Status.FAILED, observed, expected, near_edge=near_edge)
+    return finding.because(cause)
 
 
 @dataclass(frozen=True)

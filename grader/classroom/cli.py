@@ -89,6 +89,13 @@ def grade(
     ] = None,
     clock: Annotated[Clock, typer.Option(help="auto: simulated time, and wall time in doubtful cases.")] = Clock.auto,
     seed: Annotated[Optional[int], typer.Option(help="Seed for a random start pose of the turtle.")] = None,  # noqa: UP045
+    explain: Annotated[
+        bool,
+        typer.Option(
+            "--explain/--no-explain",
+            help="Prove the causes of failed checks: change them in a copy, and run it again.",
+        ),
+    ] = True,
     trusted: Annotated[
         bool,
         typer.Option(
@@ -114,6 +121,7 @@ def grade(
         clock.value,
         seed,
         trusted=trusted,
+        explain=explain,
         repository_folder=repository_folder,
     )
     try:

@@ -46,6 +46,7 @@ class Request:
     clock: ClockChoice = "auto"
     seed: int | None = None
     trusted: bool = False
+    explain: bool = True
     repository_folder: str = ""
 
 
@@ -75,6 +76,7 @@ def grade_found(
         ros=_ros(local=local, tell=tell),
         clock=request.clock,
         seed=request.seed,
+        explain=request.explain,
         # Each Dask worker tests its own machine.
         in_cell=bubblewrap.require(trusted=request.trusted) if local else not request.trusted,
         trusted=request.trusted,

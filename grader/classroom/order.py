@@ -34,6 +34,8 @@ class Order:
     ros: str
     clock: ClockChoice = "auto"
     seed: int | None = None
+    explain: bool = True
+    """Whether causes are proved by trying to mend them."""
     in_cell: bool = True
     """Whether there is a sandbox. It is False only if the submissions are trusted."""
     trusted: bool = False
@@ -52,7 +54,8 @@ class Order:
             exercise=exercise.digest,
             grader=grader_key(),
             ros=self.ros,
-            options=f"clock {self.clock}, seed {self.seed}, {'confined' if self.in_cell else 'not confined'}",
+            options=f"clock {self.clock}, seed {self.seed}, {'confined' if self.in_cell else 'not confined'}"
+            + ("" if self.explain else ", not explained"),
         )
 
     def task(self, found: Found) -> Task:
@@ -95,6 +98,7 @@ class Order:
             executable=executable,
             clock=self.clock,
             seed=self.seed,
+            explain=self.explain,
             trusted=self.trusted,
             grader=grader_key(),
         )

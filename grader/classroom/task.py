@@ -53,6 +53,7 @@ class Task:
     executable: frozenset[str] = frozenset()
     clock: ClockChoice = "auto"
     seed: int | None = None
+    explain: bool = True
     trusted: bool = False
     grader: str = ""
 
@@ -106,7 +107,7 @@ def perform(
                 now("works")
 
     # Other submissions keep the processors busy, and memory is planned per submission.
-    options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed, trials_at_once=1)
+    options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed, explain=task.explain, trials_at_once=1)
     try:
         return _with_page(grade(exercise, _submission(task), options, tell, trial=Waiting))
     except MachineError as error:  # the submission cannot be read here, but the next one may work

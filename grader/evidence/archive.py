@@ -2,6 +2,7 @@
 
     trials/ID/       of each trial: bag/, the messages, a rosbag2 folder (MCAP), and trial.json, the rest
     build.json       what colcon made
+    tries.json       what came of trying to mend the causes; for instructors, since it gives solutions away
     submission.json  name, digest and paths
     source/          the submission's files
     exercise/        the exercise as it was: exercise.toml
@@ -21,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 from grader.colcon.build import Build
 from grader.errors import MachineError, UsageError
 from grader.evidence.evidence import Evidence, Fault, Run
+from grader.evidence.tries import Tries, Try
 from grader.exercise.model import FILE_NAME
 from grader.submission.package import Submission, open_answers, open_submission, write_copy
 from grader.submission.search import IGNORE_MARKER
@@ -63,6 +65,8 @@ def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -
         _write(folder / "submission.json", _about(evidence, ros))
         if evidence.build is not None:
             _write(folder / "build.json", {"schema": _SCHEMA, **asdict(evidence.build)})
+        if evidence.tries != Tries():
+            _write(folder / "tries.json", {"schema": _SCHEMA, **asdict(evidence.tries)})
         for trial, run in evidence.runs.items():
             if run.recording is not None:
                 _save_recording(folder / "trials" / trial, run.recording, prefixes)
@@ -120,6 +124,7 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
         )
         build = _build(_read(folder / "build.json")) if (folder / "build.json").exists() else None
         fault = Fault(**about["fault"]) if about["fault"] else None
+        tries = _tries(_read(folder / "tries.json")) if (folder / "tries.json").exists() else Tries()
         runs = {
             trial.id: Run(_load_recording(folder / "trials" / trial.id), about["runs"][trial.id]["overwhelmed"])
             for trial in kept.trials
@@ -129,7 +134,7 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
         why = f"{type(error).__name__}: {error}"
         message = f"{folder} cannot be read as a recording, as `grader check --recording {folder}` writes one ({why})."
         raise UsageError(message) from error
-    return Archived(Evidence(kept, submission, build, runs, fault), about["ros"])
+    return Archived(Evidence(kept, submission, build, runs, fault, tries), about["ros"])
 
 
 def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
@@ -151,6 +156,10 @@ def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
 def _build(data: dict[str, Any]) -> Build:
     lists = {name: tuple(data[name]) for name in ("installed", "executables")}
     return Build(**{**data, **lists})
+
+
+def _tries(data: dict[str, Any]) -> Tries:
+    return Tries(**{**data, "made": tuple(Try(**each) for each in data["made"])})
 
 
 def _write(file: Path, data: dict[str, Any]) -> None:

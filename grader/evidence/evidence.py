@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from grader.evidence import activity
 from grader.evidence.arrivals import Measured, measure_arrivals
 from grader.evidence.trajectory import Trajectory, trajectory_of
+from grader.evidence.tries import Tries
 from grader.submission.answers import Answers, read_answers
 from grader.submission.code import Code, module_file, read_code
 from grader.submission.package_xml import Manifest, read_manifest
@@ -60,6 +61,8 @@ class Evidence:
     runs: Mapping[str, Run] = field(default_factory=dict)
     """What came of the trials, by their ids; those that were not made yet are left out."""
     fault: Fault | None = None
+    tries: Tries = field(default_factory=Tries)
+    """What came of trying to mend the causes."""
     trial_id: str = ""
     """The trial that it is looked at from; empty for the exercise's first."""
 

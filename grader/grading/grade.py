@@ -8,10 +8,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from grader.checks.judge import in_words
+from grader.checks.outcome import Status
 from grader.colcon import runner
+from grader.colcon.rebuild import Rebuild
 from grader.common.refusal import refusal
 from grader.errors import MachineError
 from grader.evidence.evidence import Evidence, Fault
+from grader.grading.explain import explain
 from grader.grading.judging import Judging
 from grader.grading.stopwatch import Stopwatch
 from grader.grading.trials import Trials
@@ -63,8 +66,36 @@ def grade(
     `grader watch` passes builds and trials that it began before.
     """
     turns = Turns(turns_folder())
+    rebuild = Rebuild(build) if options.explain else build
     with turns.shared():
-        return _Grading(exercise, submission, options, tell, early, build, trial, turns).run()
+        graded = _Grading(exercise, submission, options, tell, early, rebuild, trial, turns).run()
+    return _explained(graded, options, tell, rebuild, trial) if options.explain else graded
+
+
+def _explained(
+    graded: Graded,
+    options: Options,
+    tell: Callable[[str], None],
+    build: Callable[..., runner.Built],
+    trial: Callable[..., Trial],
+) -> Graded:
+    """Return the grading with the causes proved by trying to mend them, if the first trial was in simulated time."""
+    report, evidence = graded.report, graded.evidence
+    if report.clock == "wall" or not report.with_status(Status.FAILED):
+        return graded
+    again = dataclasses.replace(options, clock="simulated", explain=False)
+
+    def regrade(exercise: Exercise, submission: Submission) -> tuple[Outcome, ...]:
+        tell("Trying what would mend the cause")
+        return grade(exercise, submission, again, build=build, trial=trial).report.outcomes
+
+    begun = time.monotonic()
+    evidence = dataclasses.replace(
+        evidence, tries=explain(evidence, report.outcomes, report.seconds.get("build", 0.0), regrade)
+    )
+    seconds = {**report.seconds, "explain": time.monotonic() - begun}
+    told = report_of(evidence, report.outcomes, report.ros, seconds, confined=report.confined)
+    return dataclasses.replace(graded, report=told, evidence=evidence)
 
 
 @dataclass

@@ -20,4 +20,6 @@ class Options:
     in_cell: bool
     clock: ClockChoice = "auto"
     seed: int | None = None
+    explain: bool = False
+    """Whether causes are proved by trying to mend them."""
     trials_at_once: int = field(default_factory=lambda: len(os.sched_getaffinity(0)))

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Literal
 
 from watchfiles import DefaultFilter, watch
 
+from grader.colcon.rebuild import Rebuild
 from grader.errors import UsageError
 from grader.grading.grade import Graded, grade
-from grader.learner.rebuild import Rebuild
 from grader.submission.package import open_answers, open_submission
 from grader.trial.trial import Plan, Trial
 

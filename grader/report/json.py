@@ -12,7 +12,8 @@ Schema 3. Every key is always present. Strings are never null unless stated belo
     points, max   sums over the outcomes; a check with status "error" counts 0 points
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
                   cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,
-                  advice: true if it has no points and never fails a run, near_edge}]
+                  advice: true if it has no points and never fails a run, near_edge,
+                  tried: what came of trying to mend the cause, empty if that was not tried}]
     seconds       {stage: wall time in s}; differs from run to run
     recordings    [paths of the recordings that were kept]
 """
@@ -73,6 +74,7 @@ def _outcome(outcome: Outcome) -> dict[str, Any]:
         "hidden": outcome.hidden,
         "advice": outcome.advice,
         "near_edge": finding.near_edge,
+        "tried": finding.tried,
     }
 
 
@@ -132,6 +134,7 @@ def _read_outcome(data: dict[str, Any]) -> Outcome:
         diagnosis=data["diagnosis"],
         where=None if where is None else Where(where["file"], where["line"]),
         near_edge=data["near_edge"],
+        tried=data.get("tried", ""),
     )
     return Outcome(
         id=data["id"],

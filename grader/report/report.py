@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import grader
 from grader.checks.outcome import Status
+from grader.common.words import count
 
 if TYPE_CHECKING:
     from grader.checks.outcome import Outcome
     from grader.evidence.evidence import Evidence
+    from grader.evidence.tries import Tries
 
 
 @dataclass(frozen=True)
@@ -86,10 +88,29 @@ def report_of(
         clock_why=_why_this_clock(evidence),
         seed=recording.seed if recording else None,
         confined=confined,
-        outcomes=outcomes,
+        outcomes=tuple(_with_try(outcome, evidence.tries) for outcome in outcomes),
         seconds=seconds,
         exercise_digest=evidence.exercise.digest,
     )
+
+
+PASSES = "With that changed in a copy, this check passes."
+FURTHER = "With that changed in a copy, the node gets further."
+REFUTED = "What seemed to be the cause was changed in a copy, and this check failed all the same."
+
+
+def _with_try(outcome: Outcome, tries: Tries) -> Outcome:
+    """Return the outcome with what came of trying to mend its cause. A cause that was refuted is not told."""
+    finding = outcome.finding
+    made = tries.of(outcome.id, finding.diagnosis) if outcome.status is Status.FAILED else None
+    if made is None:
+        return outcome
+    if made.result == "refuted":
+        return replace(outcome, finding=replace(finding, cause="", tried=REFUTED))
+    tried = PASSES if made.result == "passes" else FURTHER
+    if tries.behind and made is next(each for each in tries.made if each.result != "refuted"):
+        tried += f" Behind it, {count(tries.behind, 'more mistake')} showed."
+    return replace(outcome, finding=replace(finding, tried=tried))
 
 
 def _why_this_clock(evidence: Evidence) -> str:

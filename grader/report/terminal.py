@@ -20,8 +20,10 @@ if TYPE_CHECKING:
 
     from rich.console import Console
 
+    from grader.evidence.tries import Tries
     from grader.report.report import Report
 
+RESULTS = {"passes": "it passes then", "further": "the node gets further", "refuted": "it fails all the same"}
 NARROW = 50
 """Columns. On a narrower terminal, texts are not indented under their labels."""
 
@@ -60,6 +62,18 @@ def early(outcomes: Sequence[Outcome]) -> list[str]:
     return [printable(f"Already wrong in the files: {line}") for line in lines]
 
 
+def changes(tries: Tries, console: Console) -> None:
+    """Print what was changed in copies of the submission to prove the causes. It gives solutions away."""
+    if tries.made or tries.stopped:
+        console.print()
+    for each in tries.made:
+        _line(console, Text(f"Tried for {each.check} ({each.diagnosis}): {RESULTS[each.result]}", style="bold"))
+        for line in each.difference.splitlines():
+            _line(console, Text(f"    {printable(line)}"))
+    if tries.stopped:
+        _line(console, Text(f"Not all causes were tried: {tries.stopped}.", style="dim"))
+
+
 def _look(outcome: Outcome) -> str:
     """Return the status of the outcome, or "advice" for advice that was not followed."""
     if outcome.advice and outcome.status is Status.FAILED:
@@ -84,7 +98,13 @@ def _check(outcome: Outcome, console: Console, shown: str) -> None:
         _details(console, [("", finding.observed)])
         return
     where = str(finding.where) if finding.where is not None else ""
-    labels = (("seen", finding.observed), ("expected", finding.expected), ("why", finding.cause), ("where", where))
+    labels = (
+        ("seen", finding.observed),
+        ("expected", finding.expected),
+        ("why", finding.cause),
+        ("where", where),
+        ("tried", finding.tried),
+    )
     _details(console, [(label, text) for label, text in labels if text])
 
 

@@ -65,6 +65,16 @@ def single_names(tree: ast.AST) -> Names:
     return names
 
 
+def written(node: ast.expr | None, names: Names) -> ast.expr | None:
+    """Return the expression, or the one that is assigned to the name that it is."""
+    for _ in range(MAX_DEPTH):
+        value = names.get(dotted(node) or "") if isinstance(node, ast.Name | ast.Attribute) else None
+        if value is None:
+            break
+        node = value
+    return node
+
+
 def evaluate(node: ast.expr | None, names: Names, depth: int = 0) -> Constant | None:
     """The number or text that the expression always is; None when that cannot be told."""
     if node is None or depth > MAX_DEPTH or not names.spend():

@@ -11,10 +11,10 @@ from rich.console import Console
 
 from grader.checks.exercises import find_exercise
 from grader.colcon import runner
+from grader.colcon.rebuild import renewed
 from grader.errors import UsageError
 from grader.grading.grade import grade
 from grader.grading.options import Options
-from grader.learner.rebuild import renewed
 from grader.report import terminal
 from grader.report.json import to_data
 from grader.sandbox import bubblewrap

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.edit import at
 from grader.checks.outcome import Finding, failed
 from grader.common.words import shorten
 from grader.submission.where import Where
@@ -17,12 +18,14 @@ def bad_entry_point(point: EntryPoint) -> Finding:
     """Return a failed finding about an entry point that setuptools cannot read."""
     observed = f'setuptools cannot read the entry point "{shorten(point.text)}".'
     expected = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION."
+    where = Where("setup.py", point.line)
     why = Cause("entry-point-format", "Check it character by character: = and : must each appear once.")
     if point.text.count("=") > 1:
         why = Cause("entry-point-comma", "A comma is missing between two strings, so Python joins them into one.")
     elif "/" in point.text:
         why = Cause("entry-point-slash", "This is a file path. A module name has a dot between folder and file.")
+        why = why.mended_by(at(where, "/", "."))
     elif ":" not in point.text:
         text = "It does not name a function. After the module comes a colon, then the function name."
         why = Cause("entry-point-no-function", text)
-    return failed(observed, expected, why.at(Where("setup.py", point.line)))
+    return failed(observed, expected, why.at(where))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes.bad_entry_point import bad_entry_point
+from grader.checks.edit import at
 from grader.checks.outcome import Finding, failed
 from grader.common.words import nearest, shorten
 from grader.submission.code import module_file, read_code
@@ -44,7 +45,8 @@ def no_entry_point(evidence: Evidence) -> Finding:
             where = next((Where("setup.py", point.line) for point in points if point.name == guess), line(evidence))
             text = "Compare the two names letter by letter. The name is the part before the = sign."
             observed = f"There is no executable {executable}, but there is {shorten(guess)}."
-            return failed(observed, expected, Cause("entry-point-name", text, where))
+            why = Cause("entry-point-name", text, where).mended_by(at(where, guess, executable))
+            return failed(observed, expected, why)
         cause = _missing(evidence, points)
     return failed(observed, expected, cause.at(line(evidence)))
 
@@ -109,7 +111,8 @@ def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
             text = (
                 f"The entry point of {file} has another name, {shorten(point.name)}. The name stands before the = sign."
             )
-            return Cause("entry-point-name", text, Where("setup.py", point.line))
+            where = Where("setup.py", point.line)
+            return Cause("entry-point-name", text, where).mended_by(at(where, point.name, executable))
     file = evidence.node_file or _looks_like_a_node(evidence, [point.target for point in points])
     if file is not None:
         text = f"{shorten(file)} is there, but setup.py has no entry point for it."

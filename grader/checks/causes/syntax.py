@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.edit import at
 from grader.checks.outcome import Finding, failed
 from grader.common.words import shorten
 from grader.submission.package_xml import line_of
@@ -13,6 +14,7 @@ from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.checks.diagnosis import Diagnosis
+    from grader.checks.edit import Edit
     from grader.submission.code import Unreadable
 
 NOT_UTF8 = r"codec can't decode|unicode error|[Nn]on-UTF-8|encoding"
@@ -84,15 +86,28 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
         return Cause("bracket-open", text, Where(file, int(other["line"])))
     for pattern, diagnosis, text in CAUSES:
         if re.search(pattern, unreadable.message):
-            return Cause(diagnosis, text)
+            return Cause(diagnosis, text).mended_by(_fix(diagnosis, file, unreadable, data))
     return Cause("syntax-error", OTHERWISE)
+
+
+def _fix(diagnosis: Diagnosis, file: str, unreadable: Unreadable, data: bytes) -> tuple[Edit, ...]:
+    """Return the edit that adds a colon or closes a bracket at the end of the line, if that may be what is missing."""
+    missing = {"colon-missing": ":", "bracket-open": ")"}.get(diagnosis)
+    line = _line(unreadable, data).rstrip()
+    if missing is None or not line.strip():
+        return ()
+    return at(Where(file, unreadable.line), line, line + missing)
+
+
+def _line(unreadable: Unreadable, data: bytes) -> str:
+    """Return the line that Python names, or an empty string."""
+    lines = data.decode("utf-8", "replace").splitlines()
+    return lines[unreadable.line - 1] if unreadable.line and unreadable.line <= len(lines) else ""
 
 
 def _unquoted(unreadable: Unreadable, data: bytes) -> int | None:
     """Return the line of Python's message if it is an entry point without quotation marks, else None."""
-    lines = data.decode("utf-8", "replace").splitlines()
-    line = lines[unreadable.line - 1] if unreadable.line and unreadable.line <= len(lines) else ""
-    return unreadable.line if ENTRY_POINT.fullmatch(line) else None
+    return unreadable.line if ENTRY_POINT.fullmatch(_line(unreadable, data)) else None
 
 
 def unreadable_observed(file: str, unreadable: Unreadable) -> str:

@@ -6,10 +6,14 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.submission.constants import number
+from grader.checks.edit import at
+from grader.submission.constants import number, written
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from grader.checks.edit import Edit
     from grader.evidence.evidence import Evidence
+    from grader.submission.code import Call
 
 
 def timer_fault(evidence: Evidence) -> Cause | None:
@@ -18,14 +22,23 @@ def timer_fault(evidence: Evidence) -> Cause | None:
         period = number(timer.argument(0, "timer_period_sec"), timer.module.names)
         if period is not None and period >= evidence.recording.duration_s:
             text = f"The timer waits {period:g} s before its first call. The period is in seconds, not milliseconds."
-            return Cause("timer-milliseconds", text, timer.where)
+            return Cause("timer-milliseconds", text, timer.where).mended_by(_in_seconds(timer, period))
         if _is_call(timer.argument(1, "callback")):
             text = (
                 "create_timer needs the method itself. "
                 "With () after its name, it gets only the return value of the method."
             )
-            return Cause("callback-called", text, timer.where)
+            called = timer.argument(1, "callback")
+            assert isinstance(called, ast.Call)
+            name = ast.unparse(called.func)
+            fix = at(Where(timer.module.file, called.lineno), f"{name}()", name)
+            return Cause("callback-called", text, timer.where).mended_by(fix)
     return None
+
+
+def _in_seconds(timer: Call, period: float) -> tuple[Edit, ...]:
+    node = written(timer.argument(0, "timer_period_sec"), timer.module.names)
+    return at(Where(timer.module.file, node.lineno), ast.unparse(node), f"{period / 1000.0:g}") if node else ()
 
 
 def _is_call(argument: ast.expr | None) -> bool:

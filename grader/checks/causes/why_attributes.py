@@ -13,6 +13,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
 from grader.checks.causes.why_calls import CREATE_OBJECT
+from grader.checks.edit import at
 from grader.common.words import a_list, nearest, shorten
 from grader.submission.constants import dotted
 
@@ -48,7 +49,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
         return None
     name = match["name"]
     if match["module"]:
-        return _of_module(match["module"], name)
+        return _of_module(scene, match["module"], name)
     owner = match["object"] or match["type"]
     if owner in ("property", "function", "method", "builtin_function_or_method", "NoneType"):
         return _of_a_wrong_thing(scene, owner, name)
@@ -60,9 +61,10 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
         fields = ros_names.FIELDS[owner]
         guess = nearest(name, fields)
         more = f" Did you mean {guess}?" if guess else ""
-        return Cause("message-field", f"A {owner} has {a_list(fields)}.{more}")
+        fix = at(scene.crash.where, name, guess) if guess else ()
+        return Cause("message-field", f"A {owner} has {a_list(fields)}.{more}").mended_by(fix)
     if owner in ros_names.OTHERS:
-        return _misspelt(name, ros_names.OTHERS[owner]) or Cause(
+        return _misspelt(scene, name, ros_names.OTHERS[owner]) or Cause(
             "attribute-missing", f"A {owner} has no attribute or method with that name."
         )
     if owner in PLAIN:
@@ -70,27 +72,26 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
     return None
 
 
-def _of_module(module: str, name: str) -> Cause | None:
+def _of_module(scene: CrashScene, module: str, name: str) -> Cause | None:
     if module == "rclpy" and name in ros_names.MODULE_OF:
         return Cause("import-wrong-place", f"{name} is in the module {ros_names.MODULE_OF[name]}.")
     known: Iterable[str] = (
         ros_names.RCLPY if module == "rclpy" else dir(MODULES_READ[module]) if module in MODULES_READ else ()
     )
-    return _misspelt(name, known) or Cause(
+    return _misspelt(scene, name, known) or Cause(
         "attribute-missing", f"The module {shorten(module)} has nothing with that name."
     )
 
 
-def _misspelt(name: str, known: Iterable[str]) -> Cause | None:
+def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | None:
     plain = {each.lower(): each for each in known}
     guess = plain.get(name.lower()) or nearest(
         name, [each for each in known if abs(len(each) - len(name)) <= MOST_LETTERS]
     )
     if guess is None:
         return None
-    return Cause(
-        "attribute-misspelt", f"There is {guess}. Compare the two letter by letter, including upper and lower case."
-    )
+    text = f"There is {guess}. Compare the two letter by letter, including upper and lower case."
+    return Cause("attribute-misspelt", text).mended_by(at(scene.crash.where, name, guess))
 
 
 def _class_for_object(name: str) -> Cause:
@@ -134,7 +135,9 @@ def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
         base = [node for node in ast.walk(made) if isinstance(node, ast.Call) and (_attr(node.func) == "__init__")]
         if not base:
             text = "__init__ never calls super().__init__, which creates the node."
-            return Cause("super-init-missing", text, scene.at(made))
+            line = f'{" " * made.body[0].col_offset}super().__init__("{scene.evidence.trial.node}")'
+            first = scene.at(made.body[0])
+            return Cause("super-init-missing", text, scene.at(made)).mended_by(at(first, "", line))
         text = "super().__init__ creates the node. You cannot use the node before that line."
         return Cause("super-init-late", text)
     lines = [line for attribute, line in attributes_set(own) if attribute == name]
@@ -150,11 +153,15 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
         return Cause("attribute-too-early", text)
     compared = [each for each in scene.on_line if isinstance(each, ast.Expr) and isinstance(each.value, ast.Compare)]
     if compared:
-        return Cause("equals", "== compares two values. = gives a value to a name.", scene.at(compared[0]))
+        place = scene.at(compared[0])
+        return Cause("equals", "== compares two values. = gives a value to a name.", place).mended_by(
+            at(place, "==", "=")
+        )
     local = [node for node in ast.walk(own) if isinstance(node, ast.Name) and _is_store(node) and node.id == name]
     if local:
         text = f"Line {local[0].lineno} sets {name} without self, so it is not an attribute. Write self.{name} there."
-        return Cause("missing-self", text, scene.at(local[0]))
+        place = scene.at(local[0])
+        return Cause("missing-self", text, place).mended_by(at(place, name, f"self.{name}"))
     outside = next((each for each in scene.top_functions() if each.name == name), None)
     if outside is not None:
         text = f"{name} is outside the class. Indent it like the other methods."
@@ -165,7 +172,7 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
         return Cause("method-in-method", text, scene.at(inside))
     if name == "publish":
         return Cause("node-publishes", "A node has no method publish. Call publish on the publisher instead.")
-    return _misspelt(name, {*ros_names.NODE, *_members(scene, own)}) or Cause(
+    return _misspelt(scene, name, {*ros_names.NODE, *_members(scene, own)}) or Cause(
         "attribute-missing", f"Nothing sets self.{shorten(name)}, and the class has no method with that name."
     )
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import attributes_set, methods
+from grader.checks.edit import at
 from grader.common.words import a_list, shorten
 from grader.submission.constants import dotted
 
@@ -47,7 +48,8 @@ def callback_called(scene: CrashScene) -> Cause | None:
             given = call.args[place] if len(call.args) > place else _keyword(call, "callback")
             if isinstance(given, ast.Call) and (dotted(given.func) or "").startswith("self."):
                 text = f"{name} needs the method itself. With () after its name, the method is called immediately."
-                return Cause("callback-called", text, scene.at(call))
+                fix = at(scene.at(given), f"{ast.unparse(given.func)}()", ast.unparse(given.func))
+                return Cause("callback-called", text, scene.at(call)).mended_by(fix)
     return None
 
 
@@ -109,7 +111,8 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
         name = ast.unparse(spun.args[0]) if spun is not None and spun.args else "It"
         set_to = scene.module.names.get(name) if scene.module is not None else None
         text = f"rclpy.spin was called with {shorten(name)}, which is a class. {CREATE_OBJECT}"
-        return Cause("class-for-object", text, scene.at(set_to))
+        fix = at(scene.at(set_to), ast.unparse(set_to), f"{ast.unparse(set_to)}()") if set_to is not None else ()
+        return Cause("class-for-object", text, scene.at(set_to)).mended_by(fix)
     if "descriptor '__init__'" in text and "'super'" in text:
         return Cause("not-called", "super is a function. Write super().__init__, with parentheses after super.")
     if STRING_AND_NUMBER.search(text):
@@ -146,7 +149,8 @@ def _init_misspelt(scene: CrashScene) -> Cause | None:
                 f"The class has a method {found[0]}, but Python only runs __init__ when it creates the object: "
                 "init with two underscores on each side."
             )
-            return Cause("init-misspelt", text, scene.at(names[found[0]]))
+            place = scene.at(names[found[0]])
+            return Cause("init-misspelt", text, place).mended_by(at(place, found[0], "__init__"))
     return None
 
 
@@ -156,11 +160,14 @@ def _too_many(scene: CrashScene, function: str) -> Cause | None:
         first = [each.arg for each in (*own[0].args.posonlyargs, *own[0].args.args)][:1]
         inside = any(own[0] in methods(each) for each in scene.classes)
         if inside and first != ["self"]:
+            place, more = scene.at(own[0]), ", " if first else ""
+            fix = at(place, f"{function}(", f"{function}(self{more}")
             return Cause(
-                "self-parameter", f"{function} is a method, so its first parameter must be self.", scene.at(own[0])
-            )
+                "self-parameter", f"{function} is a method, so its first parameter must be self.", place
+            ).mended_by(fix)
         text = f"{function} is called with an argument but has no parameter for it. A subscription passes the message."
-        return Cause("callback-parameters", text, scene.at(own[0]))
+        place = scene.at(own[0])
+        return Cause("callback-parameters", text, place).mended_by(at(place, "(self)", "(self, _)"))
     if function in ros_names.OTHERS["RcutilsLogger"]:
         return Cause(
             "log-arguments",
@@ -215,7 +222,10 @@ def why_refused(scene: CrashScene) -> Cause | None:
     if "callback should be either be callable" in text:
         return callback_called(scene) or _no_message(scene)
     if "timer period must be non-negative" in text:
-        return Cause("timer-period-negative", "The period is a time in seconds, so it cannot be negative.")
+        made = next(iter(scene.calls_on_line("create_timer")), None)
+        fix = at(scene.at(made), "(-", "(") if made is not None else ()
+        text = "The period is a time in seconds, so it cannot be negative."
+        return Cause("timer-period-negative", text).mended_by(fix)
     return None
 
 

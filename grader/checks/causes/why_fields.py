@@ -7,10 +7,12 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.edit import at
 from grader.submission.constants import dotted
 
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
+    from grader.checks.edit import Edit
 
 FIELD = re.compile(r"The '(?P<field>\w+)' field must be (?:of|a sub message of) type '(?P<type>\w+)'")
 FLOAT = ("float", "double")
@@ -29,7 +31,20 @@ def why_field(scene: CrashScene) -> Cause | None:
     if wanted not in FLOAT:
         return Cause("field-type", f"The field {field} is a {wanted} with its own fields. Set those.")
     value = _assigned(scene, field)
-    return _why_no_float(field, value and _resolved(scene, value))
+    resolved = value and _resolved(scene, value)
+    cause = _why_no_float(field, resolved)
+    if isinstance(resolved, ast.Constant) and resolved is value:
+        return cause.mended_by(_as_float(scene, resolved))
+    return cause
+
+
+def _as_float(scene: CrashScene, value: ast.Constant) -> tuple[Edit, ...]:
+    try:
+        number = float(value.value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return ()
+    quoted = f'"{value.value}"' if isinstance(value.value, str) else str(value.value)
+    return at(scene.at(value), quoted, str(number))
 
 
 def _why_no_float(field: str, value: ast.expr | None) -> Cause:

@@ -7,11 +7,18 @@ from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
+from grader.checks.edit import at
 from grader.common.words import nearest, shorten
 
 if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
+NOT_HERE = {
+    "tkinter": "tkinter is Python's own module for windows.",
+    "_tkinter": "tkinter is Python's own module for windows.",
+    "example_interfaces": "example_interfaces is a package of ROS 2.",
+}
+"""Modules that a right program may import, and that are not where the grader runs it."""
 NO_MODULE = re.compile(r"No module named '(?P<name>[\w.]+)'")
 NO_NAME = re.compile(r"cannot import name '(?P<name>\w+)' from '(?P<module>[\w.]+)'")
 
@@ -22,7 +29,7 @@ def why_no_import(scene: CrashScene) -> Cause | None:
     module, name = NO_MODULE.search(text), NO_NAME.search(text)
     if module is not None:
         return _no_module(scene, module["name"])
-    return _no_name(name["name"], name["module"]) if name is not None else None
+    return _no_name(scene, name["name"], name["module"]) if name is not None else None
 
 
 def _no_module(scene: CrashScene, name: str) -> Cause:
@@ -33,27 +40,37 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
         return Cause(
             "turtlesim-msgs",
             "Newer ROS 2 distributions have these messages in turtlesim_msgs. In Jazzy they are in turtlesim.",
-        )
+        ).mended_by(at(scene.crash.where, "turtlesim_msgs", "turtlesim"))
+    if top in NOT_HERE:
+        return Cause("module-missing", f"{NOT_HERE[top]} This grader does not have it, so it cannot run this node.")
     files = scene.evidence.submission.files
+    if f"{top}.py" in files:
+        text = f"{top}.py is beside setup.py, so it is not installed. It belongs in the folder with the other modules."
+        return Cause("sibling-import", text)
     beside = next((path for path in sorted(files) if path.endswith(f"/{top}.py")), None)
     if beside is not None:
         text = f"{beside} exists, but you must import it with its package name: FOLDER.{top}."
         return Cause("sibling-import", text)
-    guess = nearest(name, ros_names.MODULES)
+    guess = nearest(name, ros_names.MODULES, alike=0.8)
     if guess is not None:
-        return Cause("module-misspelt", f"There is a module {guess}. Compare the two names letter by letter.")
+        text = f"There is a module {guess}. Compare the two names letter by letter."
+        return Cause("module-misspelt", text).mended_by(at(scene.crash.where, name, guess.partition(".")[0]))
     return Cause(
         "module-missing",
-        f"No installed package has a module {shorten(name)}. This exercise needs only the modules of ROS 2 and Python.",
+        f"No installed package has a module {shorten(name)}. Compare the name letter by letter.",
     )
 
 
-def _no_name(name: str, module: str) -> Cause:
+def _no_name(scene: CrashScene, name: str, module: str) -> Cause:
     plain = {each.lower(): each for each in ros_names.MODULE_OF}
     known = plain.get(name.lower())
     if known is not None and ros_names.MODULE_OF[known] == module:
-        return Cause("import-name", f"In this module it is called {known}. Upper and lower case matter.")
+        text = f"In this module it is called {known}. Upper and lower case matter."
+        return Cause("import-name", text).mended_by(at(scene.crash.where, name, known))
     if known is not None:
-        return Cause("import-wrong-place", f"{known} is in the module {ros_names.MODULE_OF[known]}.")
+        right = ros_names.MODULE_OF[known]
+        fix = at(scene.crash.where, f"from {module} ", f"from {right} ")
+        return Cause("import-wrong-place", f"{known} is in the module {right}.").mended_by(fix)
     guess = nearest(name, [each for each, place in ros_names.MODULE_OF.items() if place == module])
-    return Cause("import-name", f"The module {shorten(module)} has {guess or 'nothing with that name'}.")
+    fix = at(scene.crash.where, name, guess) if guess else ()
+    return Cause("import-name", f"The module {shorten(module)} has {guess or 'nothing with that name'}.").mended_by(fix)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import Function, attributes_set, methods
+from grader.checks.edit import Edit, at
 from grader.common.words import nearest, shorten
 
 if TYPE_CHECKING:
@@ -58,7 +59,8 @@ def _of_self(scene: CrashScene, name: str) -> Cause | None:
         return None
     known = {*(each.name for each in methods(own)), *(each for each, _ in attributes_set(own))}
     if name in known or (name in ros_names.NODE and _is_called(scene, name)):
-        return Cause("missing-self", f"{name} belongs to the object. Inside a method, write self.{name}.")
+        text = f"{name} belongs to the object. Inside a method, write self.{name}."
+        return Cause("missing-self", text).mended_by(at(scene.crash.where, name, f"self.{name}"))
     return None
 
 
@@ -69,16 +71,27 @@ def _is_called(scene: CrashScene, name: str) -> bool:
 def _of_import(scene: CrashScene, name: str) -> Cause | None:
     if name in ros_names.MODULE_OF:
         module = ros_names.MODULE_OF[name]
-        return Cause("missing-import", f"The file does not import {name}. It is in the module {module}.")
+        text = f"The file does not import {name}. It is in the module {module}."
+        return Cause("missing-import", text).mended_by(_import(scene, f"from {module} import {name}"))
     if name in WELL_KNOWN:
-        return Cause("missing-import", f"The file does not import the module {name}.")
+        text = f"The file does not import the module {name}."
+        return Cause("missing-import", text).mended_by(_import(scene, f"import {name}"))
     for module, members in MEMBERS.items():
         if name in members:
             if module in _imported(scene):
-                return Cause("module-prefix", f"{name} belongs to the module {module}. Write {module}.{name}.")
+                text = f"{name} belongs to the module {module}. Write {module}.{name}."
+                return Cause("module-prefix", text).mended_by(at(scene.crash.where, name, f"{module}.{name}"))
             if module != "rclpy":
-                return Cause("missing-import", f"The file does not import {name}. It is in the module {module}.")
+                text = f"The file does not import {name}. It is in the module {module}."
+                return Cause("missing-import", text).mended_by(_import(scene, f"from {module} import {name}"))
     return None
+
+
+def _import(scene: CrashScene, line: str) -> tuple[Edit, ...]:
+    """Return the edit that puts an import before the first one of the file."""
+    places = [node.lineno for node in scene.nodes if isinstance(node, ast.Import | ast.ImportFrom)]
+    where = scene.crash.where
+    return (Edit(where.file, min(places), "", line),) if where is not None and places else ()
 
 
 def _bound_elsewhere(scene: CrashScene, name: str) -> Cause | None:
@@ -104,13 +117,15 @@ def _stores(scene: CrashScene, name: str) -> Iterator[tuple[int, Function | None
 
 def _alike(scene: CrashScene, name: str) -> Cause | None:
     if name in CONSTANTS:
-        return Cause("name-misspelt", f"Python spells it {CONSTANTS[name]}. Upper and lower case matter.")
+        text = f"Python spells it {CONSTANTS[name]}. Upper and lower case matter."
+        return Cause("name-misspelt", text).mended_by(at(scene.crash.where, name, CONSTANTS[name]))
     guess = nearest(name, _bound(scene) - {name}, alike=0.8)
     if guess is None and _is_called(scene, name):
         plain = {each.lower(): each for each in _bound(scene)}
         guess = plain.get(name.lower())
     if guess is not None:
-        return Cause("name-misspelt", f"There is a name {shorten(guess)}. Compare the two names letter by letter.")
+        text = f"There is a name {shorten(guess)}. Compare the two names letter by letter."
+        return Cause("name-misspelt", text).mended_by(at(scene.crash.where, name, guess))
     return None
 
 
@@ -134,7 +149,8 @@ def why_unbound(scene: CrashScene) -> Cause:
     name = match["name"] if match is not None else ""
     own = scene.own_class
     if own is not None and name in {each for each, _ in attributes_set(own)}:
-        return Cause("missing-self", f"{name} belongs to the object. Inside a method, write self.{name}.")
+        text = f"{name} belongs to the object. Inside a method, write self.{name}."
+        return Cause("missing-self", text).mended_by(at(scene.crash.where, name, f"self.{name}"))
     stores = list(_stores(scene, name))
     local = sorted(line for line, function in stores if function is not None and function is scene.function)
     if name in _imported(scene) and local:

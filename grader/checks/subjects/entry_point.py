@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.no_entry_point import FORM, line, no_entry_point
 from grader.checks.causes.syntax import unreadable_finding
+from grader.checks.edit import at
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.building import INSTALLED_MODULE, is_linked
@@ -80,12 +81,14 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
     expected = "A module name has the form FOLDER.FILE."
     if module_name.endswith(".py"):
         cause = "Write the module name without the ending .py."
-        return failed(observed, expected, Cause("entry-point-py", cause, line(evidence)))
+        why = Cause("entry-point-py", cause, line(evidence))
+        return failed(observed, expected, why.mended_by(at(why.where, ".py:", ":")))
     outer, _dot, last = module_name.rpartition(".")
     file = module_file(outer, files) if outer else None
     if file is not None and any(_bindings(read_module(file, files[file]), last)):
         cause = f"{shorten(last)} is a function in {file}. Between module and function there is a colon, not a dot."
-        return failed(observed, f"{FORM}.", Cause("entry-point-no-function", cause, line(evidence)))
+        why = Cause("entry-point-no-function", cause, line(evidence))
+        return failed(observed, f"{FORM}.", why.mended_by(at(why.where, module_name, f"{outer}:{last}")))
     if module_name in evidence.exercise.package or "." not in module_name:
         cause = "Write the folder first, then a dot, then the file name without .py."
     else:
@@ -93,7 +96,9 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
         cause = f"There is a module {shorten(guess)}." if guess else "Compare it with the names of your files."
         if f"{last}.py" in files:
             cause = f"{last}.py is beside setup.py. It belongs in the folder {shorten(outer)}."
-    return failed(observed, expected, Cause("entry-point-module", cause, line(evidence)))
+    right = nearest(module_name, modules, alike=0.7)
+    fix = at(line(evidence), module_name, right) if right is not None else ()
+    return failed(observed, expected, Cause("entry-point-module", cause, line(evidence)).mended_by(fix))
 
 
 def _is_installed(evidence: Evidence, file: str) -> bool:
@@ -148,7 +153,9 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
     cause = "Nothing at the top level of the file has that name."
     if guess or len(top) == 1:
         cause = f"It has a function {shorten(guess or top[0])}."
-    return failed(observed, expected, Cause("entry-point-function", cause, line(evidence)))
+    right = guess or (top[0] if len(top) == 1 else None)
+    fix = at(line(evidence), f":{name}", f":{right}") if right is not None else ()
+    return failed(observed, expected, Cause("entry-point-function", cause, line(evidence)).mended_by(fix))
 
 
 def _is_top_level(module: Module, call: ast.Call) -> bool:

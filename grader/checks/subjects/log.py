@@ -12,6 +12,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_silent import why_nothing, why_qos
+from grader.checks.edit import at
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.rate import Rate, Subject, rate_of
@@ -82,7 +83,8 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
     pattern = lines.Format(params.format).pattern()
     if re.search(r"\{[\w.:]+\}", line):
         text = "The braces are in the line as they are in the code. Only in an f-string do they stand for a value."
-        why = Cause("log-numbers", text)
+        where = evidence.place(*LEVELS)
+        why = Cause("log-numbers", text, where).mended_by(at(where, '("', '(f"'))
     elif re.fullmatch(pattern.pattern, line, re.IGNORECASE | re.ASCII):
         why = Cause("log-capitals", "Upper and lower case matter.")
     elif re.search(rf"{pattern.pattern}(?!\.?\d)", line, re.ASCII):  # (not only the first digits of a number)
@@ -161,7 +163,8 @@ def _thrown_away(evidence: Evidence) -> Cause | None:
         for node in module.nodes:
             if isinstance(node, ast.Expr) and isinstance(node.value, ast.BinOp | ast.Compare):
                 text = f"This line calculates {shorten(ast.unparse(node.value), 40)} and keeps the result nowhere."
-                return Cause("counter-stuck", text, Where(module.file, node.lineno))
+                where = Where(module.file, node.lineno)
+                return Cause("counter-stuck", text, where).mended_by(at(where, " + ", " += "))
     return None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_rate import why_often, why_publishers_grow, why_timers_grow
+from grader.checks.edit import at
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.requested import Interval, Requested
@@ -17,8 +19,11 @@ from grader.checks.tolerance import Band
 from grader.common.words import count
 from grader.evidence import activity
 from grader.submission.constants import number as constant
+from grader.submission.constants import written
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from grader.checks.edit import Edit
     from grader.evidence.arrivals import Measured
     from grader.evidence.evidence import Evidence
     from grader.submission.code import Call
@@ -131,7 +136,8 @@ def _slow_timer(evidence: Evidence, params: Rate, amount: int) -> Cause | None:
     """Return the cause if a timer is so slow that no more than this amount can have arrived, else None."""
     for timer, period in _timers(evidence):
         if period is not None and abs(evidence.recording.duration_s / period - amount) <= 1.0:
-            return _period_cause(Cause("timer-period", PERIOD, timer.where), period, params)
+            why = Cause("timer-period", PERIOD, timer.where).mended_by(_right_period(timer, params))
+            return _period_cause(why, period, params)
     return None
 
 
@@ -140,7 +146,15 @@ def _period_cause(cause: Cause, period: float, params: Rate) -> Cause:
     if abs(period - params.rate_hz) > SAME * params.rate_hz:
         return cause
     text = "create_timer takes the period in seconds, not the rate. The period is 1 divided by the rate."
-    return Cause("rate-for-period", text, cause.where)
+    return Cause("rate-for-period", text, cause.where, cause.fix)
+
+
+def _right_period(timer: Call, params: Rate) -> tuple[Edit, ...]:
+    """Return the edit that gives a timer the period of the exercise, where the source has it as a constant."""
+    node = written(timer.argument(0, "timer_period_sec"), timer.module.names)
+    if node is None:
+        return ()
+    return at(Where(timer.module.file, node.lineno), ast.unparse(node), f"{1.0 / params.rate_hz:g}")
 
 
 def _few(evidence: Evidence, params: Rate, what: Subject, measured: Measured, expected: str) -> Finding:
@@ -181,7 +195,7 @@ def _wrong_mean(
         observed = f"{what.plural} arrived every {mean:.2f} s ({1.0 / mean:.1f} Hz)."
     if often is not None:
         return failed(observed, expected, often, near_edge=near_edge)
-    why = _why_mean(evidence, what, mean)
+    why = _why_mean(evidence, what, mean, params)
     if why.diagnosis == "timer-period":
         why = _period_cause(why, mean, params)
     return failed(observed, expected, why, near_edge=near_edge)
@@ -193,13 +207,13 @@ def _timers(evidence: Evidence) -> list[tuple[Call, float | None]]:
     return [(call, constant(call.argument(0, "timer_period_sec"), call.module.names)) for call in calls]
 
 
-def _why_mean(evidence: Evidence, what: Subject, mean: float) -> Cause:
+def _why_mean(evidence: Evidence, what: Subject, mean: float, params: Rate) -> Cause:
     """Return the cause: a timer or a sleep with that period, or neither."""
     code = evidence.code
     timers = _timers(evidence)
     for timer, period in timers:
         if period is not None and abs(period - mean) <= SAME * mean:
-            return Cause("timer-period", PERIOD, timer.where)
+            return Cause("timer-period", PERIOD, timer.where).mended_by(_right_period(timer, params))
     for sleep in code.calls("sleep"):
         length = constant(sleep.argument(0, "secs"), sleep.module.names)
         if timers and length is not None:

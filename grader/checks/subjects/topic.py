@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,15 +11,17 @@ from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_silent import why_nothing, why_qos
+from grader.checks.edit import at
 from grader.checks.kind import Kind, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
 from grader.evidence import activity
-from grader.submission.constants import evaluate
+from grader.submission.constants import evaluate, written
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from grader.checks.edit import Edit
     from grader.evidence.evidence import Evidence
-    from grader.submission.where import Where
     from grader.trial.recording import Endpoint
 
 
@@ -78,6 +81,7 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     shown = [guess] if guess is not None else topics
     observed = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but no turtle subscribes to that."
     why = _why_topic(params.topic, shown[0])
+    why = why.mended_by(_right_name(evidence, "create_publisher", shown[0], params.topic))
     return failed(observed, _expected(params), why.at(_publisher_line(evidence, shown[0])))
 
 
@@ -100,6 +104,15 @@ def _why_topic(wanted: str, topic: str) -> Cause:
     return Cause(
         "wrong-topic", "The topic name is the second argument of create_publisher. Compare it letter by letter."
     )
+
+
+def _right_name(evidence: Evidence, maker: str, topic: str, wanted: str) -> tuple[Edit, ...]:
+    """Return the edit that puts the right name in the place of a topic's, where the source has it as a string."""
+    for call in evidence.code.calls(maker):
+        node = written(call.argument(1, "topic"), call.module.names)
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and topic.endswith(node.value.strip("/")):
+            return at(Where(call.module.file, node.lineno), node.value, wanted)
+    return ()
 
 
 def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
@@ -187,7 +200,9 @@ def subscribes(evidence: Evidence, params: Topic) -> Finding:
     if found:
         observed = f"The node subscribes to {a_list(sorted({shorten(each.topic) for each in found}))}."
         cause = "The topic name is the second argument of create_subscription. Compare it letter by letter."
-        return failed(observed, expected, Cause("wrong-topic", cause, where))
+        fixes = [_right_name(evidence, "create_subscription", each.topic, params.topic) for each in found]
+        why = Cause("wrong-topic", cause, where).mended_by(next(filter(None, fixes), ()))
+        return failed(observed, expected, why)
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)

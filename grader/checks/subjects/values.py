@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.edit import Edit, at
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.requested import Requested
@@ -76,6 +78,8 @@ def values(evidence: Evidence, params: Values) -> Finding:
     why, field = _why(first, params.wanted, off)
     if why.diagnosis == "wrong-value" and bad < total:
         why = Cause("values-change", "The other commands were right. Something changes the values while the node runs.")
+    if bad == total and alike:
+        why = why.mended_by(_right_values(evidence, params.wanted, off))
     return failed(observed, expected, why.at(_line(evidence, field)), near_edge=near)
 
 
@@ -91,6 +95,31 @@ def _field(index: int, value: str) -> str:
 
 def _all_hold(bands: tuple[Band, ...], six: Six) -> bool:
     return all(band.holds(value) for band, value in zip(bands, six, strict=True))
+
+
+def _right_values(evidence: Evidence, wanted: Six, off: list[int]) -> tuple[Edit, ...]:
+    """Return the edits that assign the right value to each wrong field, where the source assigns it alone on a line."""
+    edits: list[Edit] = []
+    sets: list[tuple[Where, str]] = []
+    for index, field in enumerate(FIELDS):
+        where = evidence.code.assigned(*field.split("."))
+        line = _text(evidence, where)
+        found = re.match(rf"\s*[\w.]*\b{re.escape(field)}\s*=\s*(?P<value>[^=#;]+?)\s*(?:#.*)?$", line)
+        if where is not None and found is not None:
+            sets.append((where, line[: line.index(field)]))
+        if index in off and found is not None:
+            edits += at(where, found["value"], str(wanted[index]))
+        elif index in off and wanted[index] and sets and where is None:
+            place, begin = sets[0]
+            edits += at(place, "", f"{begin}{field} = {wanted[index]}")
+    return tuple(edits)
+
+
+def _text(evidence: Evidence, where: Where | None) -> str:
+    if where is None or where.line is None:
+        return ""
+    lines = evidence.submission.files[where.file].decode("utf-8", "replace").splitlines()
+    return lines[where.line - 1] if where.line <= len(lines) else ""
 
 
 def _line(evidence: Evidence, field: str) -> Where | None:

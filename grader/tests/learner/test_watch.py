@@ -16,9 +16,9 @@ import pytest
 from rich.console import Console
 
 from grader.checks.exercises import find_exercise
+from grader.colcon.rebuild import Rebuild
 from grader.errors import UsageError
 from grader.grading.options import Options
-from grader.learner.rebuild import Rebuild
 from grader.learner.screen import _Screen
 from grader.learner.watch import Events, Watched
 from grader.ros.installation import find_ros

@@ -23,10 +23,11 @@ if TYPE_CHECKING:
 
 
 class Rebuild:
-    """A replacement for `workspace.build`; `runs` counts how many times colcon ran."""
+    """Stands in for `runner.build`; `runs` counts how often a new build was needed, which `build` then makes."""
 
-    def __init__(self) -> None:
+    def __init__(self, build: Callable[..., runner.Built] = runner.build) -> None:
         self.runs = 0
+        self._build = build
         self._last: tuple[Submission, runner.Built] | None = None
 
     def __call__(
@@ -43,7 +44,7 @@ class Rebuild:
             tell("Using the last build with the changed modules")
         else:
             self.runs += 1
-            built = runner.build(submission, ros, in_cell=in_cell, tell=tell)
+            built = self._build(submission, ros, in_cell=in_cell, tell=tell)
         self._last = (submission, built)
         return built
 

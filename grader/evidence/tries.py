@@ -1,0 +1,38 @@
+"""Try: what came of changing a copy of a submission where a check had said that the cause is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Result = Literal["passes", "further", "refuted"]
+"""The check passes then; it fails for another reason, so the run gets further; nothing changes."""
+
+
+@dataclass(frozen=True)
+class Try:
+    """One try: the check and the diagnosis that it was about, its result, and the difference that was tried.
+
+    `difference` is a unified diff. It is for instructors: it gives the solution away.
+    """
+
+    check: str
+    diagnosis: str
+    result: Result
+    difference: str
+
+
+@dataclass(frozen=True)
+class Tries:
+    """All tries of one submission. `behind` counts the causes that showed only when others had been mended.
+
+    `stopped` says why not all was tried that could have been; empty if all was.
+    """
+
+    made: tuple[Try, ...] = ()
+    behind: int = 0
+    stopped: str = ""
+
+    def of(self, check: str, diagnosis: str | None) -> Try | None:
+        """Return the try about this check with this diagnosis, or None."""
+        return next((each for each in self.made if (each.check, each.diagnosis) == (check, diagnosis)), None)

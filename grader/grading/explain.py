@@ -1,0 +1,140 @@
+"""Prove causes: change a copy of the submission where a failed check says that the cause is, and run it again.
+
+A mended cause stays mended while the next one is looked for, so mistakes behind mistakes show, too. The copy is built
+and run like the submission itself: in the cell, in simulated time.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from grader.checks.edit import applied, difference
+from grader.checks.outcome import Status
+from grader.evidence.tries import Tries, Try
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from grader.checks.outcome import Outcome
+    from grader.evidence.evidence import Evidence
+    from grader.evidence.tries import Result
+    from grader.exercise.model import CheckSpec, Exercise
+    from grader.submission.package import Submission
+
+    Regrade = Callable[[Exercise, Submission], Sequence[Outcome]]
+    Key = tuple[str, str | None, str]
+
+MOST_TRIES = 6
+MOST_F = 1.5
+"""All tries of a submission take no more than this many times the bare build and run of its package."""
+BARE_NODE_S = 0.35
+"""A bare process with one node (s)."""
+ENOUGH = f"only {MOST_TRIES} changes are tried"
+TOO_LONG = "there was no time to try more"
+
+
+def explain(evidence: Evidence, outcomes: Sequence[Outcome], build_s: float, regrade: Regrade) -> Tries:
+    """Try to mend the causes of the failed outcomes. `build_s` is how long the build took."""
+    return _Explaining(evidence, outcomes, MOST_F * (build_s + BARE_NODE_S), regrade).run()
+
+
+def part_of(exercise: Exercise, check: str) -> Exercise:
+    """Return the exercise with only the trial of this check, and only the checks of that trial and what they need."""
+    specs = {spec.id: spec for spec in exercise.checks}
+    trial = specs[check].trial
+    wanted: dict[str, CheckSpec] = {}
+    waiting = [spec for spec in exercise.checks if spec.trial == trial]
+    while waiting:
+        spec = waiting.pop()
+        wanted[spec.id] = spec
+        waiting += [specs[need] for need in spec.needs if need not in wanted]
+    kept = {spec.trial for spec in wanted.values()}
+    return replace(
+        exercise,
+        checks=tuple(spec for spec in exercise.checks if spec.id in wanted),
+        trials=tuple(each for each in exercise.trials if each.id in kept),
+    )
+
+
+@dataclass
+class _Explaining:
+    evidence: Evidence
+    outcomes: Sequence[Outcome]
+    seconds: float
+    regrade: Regrade
+    made: list[Try] = field(default_factory=list)
+    behind: set[Key] = field(default_factory=set)
+
+    def run(self) -> Tries:
+        begun = time.monotonic()
+        longest = 0.0
+        files: Mapping[str, bytes] = self.evidence.submission.files
+        current = {outcome.id: outcome for outcome in self.outcomes}
+        known = {_key(outcome) for outcome in self.outcomes}
+        tried: set[Key] = set()
+        stopped = ""
+        while True:
+            target = next((each for each in current.values() if _may_be_tried(each) and _key(each) not in tried), None)
+            if target is None:
+                break
+            tried.add(_key(target))
+            changed = applied(files, target.finding.fix)
+            if changed is None or changed == files:
+                continue
+            if len(self.made) == MOST_TRIES or time.monotonic() - begun + longest > self.seconds:
+                stopped = ENOUGH if len(self.made) == MOST_TRIES else TOO_LONG
+                break
+            at = time.monotonic()
+            copy = replace(self.evidence.submission, files=changed, digest="")
+            found = {each.id: each for each in self.regrade(part_of(self.evidence.exercise, target.id), copy)}
+            longest = max(longest, time.monotonic() - at)
+            result = _result(target, current, found)
+            self.made.append(Try(target.id, target.finding.diagnosis or "", result, difference(files, changed)))
+            if result != "refuted":
+                tried |= self._share(target, found, difference(files, changed))
+                files = changed
+                current |= found
+                self.behind |= {_key(each) for each in found.values() if _failed(each)} - known
+        return Tries(tuple(self.made), len(self.behind), stopped)
+
+    def _share(self, target: Outcome, found: Mapping[str, Outcome], diff: str) -> set[Key]:
+        """Note the result for the other checks that failed for the same cause; return what needs no try any more."""
+        same = [
+            each
+            for each in self.outcomes
+            if _failed(each) and each.id != target.id and each.id in found and _cause(each) == _cause(target)
+        ]
+        for each in same:
+            result = _result(each, {each.id: each}, found)
+            if result != "refuted":
+                self.made.append(Try(each.id, each.finding.diagnosis or "", result, diff))
+        return {_key(each) for each in same}
+
+
+def _result(target: Outcome, before: Mapping[str, Outcome], after: Mapping[str, Outcome]) -> Result:
+    now = after.get(target.id)
+    if now is not None and now.status is Status.PASSED:
+        return "passes"
+    passed = [id_ for id_, each in before.items() if each.status is Status.PASSED]
+    lost = any(id_ in after and after[id_].status is not Status.PASSED for id_ in passed)
+    if now is None or lost or now.status is not Status.FAILED or _cause(now) == _cause(target):
+        return "refuted"
+    return "further"
+
+
+def _may_be_tried(outcome: Outcome) -> bool:
+    return _failed(outcome) and bool(outcome.finding.fix)
+
+
+def _failed(outcome: Outcome) -> bool:
+    return outcome.status is Status.FAILED and not outcome.advice
+
+
+def _cause(outcome: Outcome) -> tuple[str | None, str]:
+    return outcome.finding.diagnosis, str(outcome.finding.where)
+
+
+def _key(outcome: Outcome) -> Key:
+    return (outcome.id, *_cause(outcome))

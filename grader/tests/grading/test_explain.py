@@ -1,0 +1,121 @@
+"""Causes are proved by trying to mend them; the runs are made up."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.cause import Cause
+from grader.checks.edit import Edit
+from grader.checks.outcome import Outcome, failed, passed
+from grader.evidence.evidence import Evidence
+from grader.evidence.tries import Tries, Try
+from grader.grading.explain import BARE_NODE_S, ENOUGH, MOST_TRIES, TOO_LONG, explain, part_of
+from grader.report.report import FURTHER, PASSES, REFUTED, report_of
+from grader.submission.where import Where
+from grader.tests.checks.made import NODE_FILE, exercise, submission
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from grader.checks.diagnosis import Diagnosis
+    from grader.exercise.model import Exercise
+    from grader.submission.package import Submission
+
+LONG_S = 1000.0
+RIGHT = "right"
+
+
+def wrong(id_: str, diagnosis: Diagnosis = "crash", line: int = 1, old: str = "a", new: str = RIGHT) -> Outcome:
+    fix = (Edit(NODE_FILE, line, old, new),) if new else ()
+    cause = Cause(diagnosis, "It is so.", Where(NODE_FILE, line), fix)
+    return Outcome(id_, "values", id_, 0.0, 5.0, failed("It fails.", "It passes.", cause))
+
+
+def right(id_: str) -> Outcome:
+    return Outcome(id_, "values", id_, 5.0, 5.0, passed("It passes."))
+
+
+def tries(
+    source: str, judged: Callable[[str], Sequence[Outcome]], build_s: float = LONG_S
+) -> tuple[Tries, dict[str, Outcome]]:
+    """What is tried of a source whose outcomes `judged` makes up; and the outcomes as they are told."""
+    evidence = Evidence(exercise(), submission({NODE_FILE: source}))
+    outcomes = tuple(judged(source))
+
+    def regrade(_: Exercise, copy: Submission) -> Sequence[Outcome]:
+        return judged(copy.files[NODE_FILE].decode())
+
+    found = explain(evidence, outcomes, build_s, regrade)
+    told = report_of(Evidence(exercise(), evidence.submission, tries=found), outcomes, "", {})
+    return found, {outcome.id: outcome for outcome in told.outcomes}
+
+
+def test_a_cause_that_makes_the_check_pass_is_proved() -> None:
+    found, told = tries("a\n", lambda text: [right("values") if RIGHT in text else wrong("values")])
+    assert [each.result for each in found.made] == ["passes"]
+    assert told["values"].finding.tried == PASSES
+    assert "+right" in found.made[0].difference
+
+
+def test_a_cause_that_changes_nothing_is_refuted_and_not_told() -> None:
+    found, told = tries("a\n", lambda _: [wrong("values")])
+    assert [each.result for each in found.made] == ["refuted"]
+    assert (told["values"].finding.cause, told["values"].finding.tried) == ("", REFUTED)
+
+
+def test_a_change_that_breaks_another_check_proves_nothing() -> None:
+    def judged(text: str) -> list[Outcome]:
+        return [wrong("values"), right("rate")] if RIGHT not in text else [wrong("values", line=2), wrong("rate")]
+
+    assert tries("a\na\n", judged)[0].made[0].result == "refuted"
+
+
+def test_mistakes_behind_a_mistake_are_counted_and_proved_in_turn() -> None:
+    def judged(text: str) -> list[Outcome]:
+        at = next((line for line, part in enumerate(text.split(), 1) if part == "a"), 0)
+        return [wrong("start", line=at) if at else right("start")]
+
+    found, told = tries("a\na\na\n", judged)
+    assert [each.result for each in found.made] == ["further", "further", "passes"]
+    assert found.behind == 2
+    assert told["start"].finding.tried == f"{FURTHER} Behind it, 2 more mistakes showed."
+
+
+def test_a_cause_of_several_checks_is_tried_once() -> None:
+    def judged(text: str) -> list[Outcome]:
+        return [right(id_) if RIGHT in text else wrong(id_) for id_ in ("topic", "stop")]
+
+    found, told = tries("a\n", judged)
+    assert [(each.check, each.result) for each in found.made] == [("topic", "passes"), ("stop", "passes")]
+    assert {outcome.finding.tried for outcome in told.values()} == {PASSES}
+
+
+@pytest.mark.parametrize("change", [{"new": ""}, {"old": "not there"}])
+def test_a_cause_without_a_change_that_fits_is_told_as_it_was(change: Mapping[str, str]) -> None:
+    found, told = tries("a\n", lambda _: [wrong("values", **change)])  # type: ignore[arg-type]
+    assert (found, told["values"].finding.cause, told["values"].finding.tried) == (Tries(), "It is so.", "")
+
+
+def test_no_more_than_some_changes_are_tried() -> None:
+    names = [spec.id for spec in exercise().checks][: MOST_TRIES + 2]
+    found, _ = tries("a\n" * len(names), lambda _: [wrong(name, line=line) for line, name in enumerate(names, 1)])
+    assert (len(found.made), found.stopped) == (MOST_TRIES, ENOUGH)
+
+
+def test_without_time_nothing_is_tried() -> None:
+    found, _ = tries("a\n", lambda _: [wrong("values")], build_s=-BARE_NODE_S - 1.0)
+    assert found == Tries(stopped=TOO_LONG)
+
+
+def test_only_the_trial_of_the_check_is_run_again() -> None:
+    part = part_of(exercise(), "values")
+    assert [trial.id for trial in part.trials] == ["circle"]
+    assert {"values", "topic", "start", "entry-point", "build"} <= {check.id for check in part.checks}
+
+
+def test_a_try_is_about_one_check_and_one_diagnosis() -> None:
+    made = Try("values", "crash", "passes", "")
+    assert Tries((made,)).of("values", "crash") is made
+    assert Tries((made,)).of("values", "wrong-value") is None
