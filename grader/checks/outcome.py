@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import TYPE_CHECKING
 
@@ -36,7 +36,7 @@ class Finding:
     diagnosis: str | None = None
     where: Where | None = None
     near_edge: bool = False
-    fix: tuple[Edit, ...] = ()
+    fix: tuple[Edit, ...] = field(default=(), compare=False)
     """What would mend the cause, to be tried; never shown to a student."""
     tried: str = ""
     """What came of trying it, in a sentence."""

@@ -1,8 +1,9 @@
 """Convert a report to JSON and back.
 
-Schema 3. Every key is always present. Strings are never null unless stated below.
+Schema 4. Every key is always present. Strings are never null unless stated below.
 
-    schema        3; schemas 1 and 2 can be read too: 1 has no `confined`; in both, `max` excludes checks with "error"
+    schema        4; schemas 1 to 3 can be read too: 1 has no `confined`; in 1 and 2, `max` excludes checks with
+                  "error"; up to 3, there is no `tried`
     exercise      {id, title, sha256 of exercise.toml}
     submission    {name as the user typed it, sha256 of its files}
     grader, ros   their versions
@@ -28,8 +29,8 @@ from grader.errors import UsageError
 from grader.report.report import Report
 from grader.submission.where import Where
 
-SCHEMA = 3
-READ = (1, 2, SCHEMA)
+SCHEMA = 4
+READ = (1, 2, 3, SCHEMA)
 
 
 def to_json(report: Report) -> str:

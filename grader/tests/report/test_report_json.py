@@ -72,7 +72,7 @@ def test_a_file_name_that_is_not_utf8_makes_valid_json() -> None:
         ("", "not a report of the grader"),
         ("[]", "not a report of the grader"),
         ("{}", "not a report of the grader"),
-        ('{"schema": 4}', "schema 4; this version of the grader reads schemas 1 to 3"),
+        ('{"schema": 5}', "schema 5; this version of the grader reads schemas 1 to 4"),
         ('{"schema": 1}', "damaged"),
     ],
 )
