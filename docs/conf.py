@@ -37,7 +37,7 @@ def add_contents(_: Sphinx, name: str, source: list[str]) -> None:
 
 
 def add_index(app: Sphinx, error: Exception | None) -> None:
-    """Lead whoever opens the folder to README."""
+    """Write an index page that leads to README."""
     if error is None:
         text = f'<!DOCTYPE html><title>{project}</title><meta http-equiv="refresh" content="0; url={root_doc}.html">\n'
         Path(app.outdir, "index.html").write_text(text, encoding="utf-8")

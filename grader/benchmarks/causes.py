@@ -1,4 +1,4 @@
-"""How often a report names the true cause, and how often it says something false: measured on made mistakes.
+"""How often a report names the true cause, and how often it says something false, for generated mistakes.
 
     python -m grader.benchmarks.causes [--count 200] [--seed 1] [--only OPERATOR ...] [--keep FOLDER]
 
@@ -8,9 +8,10 @@ package that passes all the same was not made wrong, and is left out. Printed ar
 
 - first: the first failed check names the cause, at a line that must change;
 - at all: some failed check does;
-- false: a failed check names a cause that is none. A diagnosis that only repeats what was observed is none of them.
+- false: a failed check names a wrong cause. A diagnosis that only repeats what was observed does not count.
 
-What is missed is listed. `--keep` stores the recordings, and `--again` judges them anew without running anything.
+It also lists what the reports missed. `--keep` stores the recordings, and `--again` judges them again without running
+anything.
 """
 
 from __future__ import annotations
@@ -50,12 +51,12 @@ OBSERVATIONS = frozenset(
         "build-failed", "wrong-position", "wrong-distance",
     }
 )  # fmt: skip
-"""Diagnoses that repeat what was observed, and claim no cause."""
+"""Diagnoses that only repeat what was observed, and claim no cause."""
 
 
 @dataclass(frozen=True)
 class Judged:
-    """A made mistake with the outcomes of its checks, and the seconds that took."""
+    """A wrong package with the outcomes of its checks, and the seconds that they took."""
 
     made: Made
     outcomes: tuple[Outcome, ...]
@@ -63,27 +64,27 @@ class Judged:
 
     @property
     def failed(self) -> list[Outcome]:
-        """The failed checks in the order of the report, advice left out."""
+        """Return the failed checks in the order of the report, without advice."""
         return [each for each in self.outcomes if each.status is Status.FAILED and not each.advice]
 
     @property
     def first(self) -> bool:
-        """Whether the first failed check names the cause."""
+        """Return whether the first failed check names the cause."""
         return names(self.failed[0], self.made)
 
     @property
     def at_all(self) -> bool:
-        """Whether some failed check does."""
+        """Return whether any failed check names the cause."""
         return any(names(outcome, self.made) for outcome in self.failed)
 
     @property
     def false(self) -> list[Outcome]:
-        """The failed checks that say something false."""
+        """Return the failed checks that say something false."""
         return [outcome for outcome in self.failed if is_false(outcome, self.made)]
 
 
 def names(outcome: Outcome, made: Made) -> bool:
-    """Whether an outcome names one of the mistakes, at a line that must change."""
+    """Return whether an outcome names one of the mistakes, at a line that must change."""
     finding = outcome.finding
     for operator, change in made.mistakes:
         where = finding.where
@@ -94,7 +95,7 @@ def names(outcome: Outcome, made: Made) -> bool:
 
 
 def is_false(outcome: Outcome, made: Made) -> bool:
-    """Whether an outcome claims a cause that is none of the mistakes, or says what is false about one of them."""
+    """Return whether an outcome claims a cause that is not one of the mistakes, or a false detail about a mistake."""
     finding = outcome.finding
     text = f"{finding.observed} {finding.cause}"
     if any(operator.never and re.search(operator.never, text) for operator, _ in made.mistakes):
@@ -122,7 +123,7 @@ def judged(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judge
 
 
 def again(kept: Path) -> Judged:
-    """Judge a stored recording anew."""
+    """Judge a stored recording again."""
     made, mistakes, evidence = pickle.loads(kept.read_bytes())
     known = {operator.name: operator for operator in OPERATORS}
     made = dataclasses.replace(made, mistakes=tuple((known[name], change) for name, change in mistakes))
@@ -131,7 +132,7 @@ def again(kept: Path) -> Judged:
 
 
 def tell(all_: Iterable[Judged]) -> None:
-    """Print what was missed, and the figures."""
+    """Print what the reports missed, and the figures."""
     every = list(all_)
     wrong = [each for each in every if each.failed]
     for each in wrong:
@@ -160,14 +161,14 @@ def tell(all_: Iterable[Judged]) -> None:
 
 
 def main() -> None:
-    """Make, judge, print."""
+    """Make the wrong packages, judge them, and print the result."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--count", type=int, default=200, help="how many wrong packages")
     parser.add_argument("--seed", type=int, default=1, help="which ones")
-    parser.add_argument("--only", nargs="*", default=[], help="names of operators; all when left out")
+    parser.add_argument("--only", nargs="*", default=[], help="names of operators (default: all)")
     parser.add_argument("--keep", type=Path, help="a folder for the recordings")
-    parser.add_argument("--again", type=Path, help="such a folder, to be judged anew")
-    parser.add_argument("--workers", type=int, default=2, help="how many are judged side by side")
+    parser.add_argument("--again", type=Path, help="a folder of recordings to judge again")
+    parser.add_argument("--workers", type=int, default=2, help="how many packages are judged at once")
     wanted = parser.parse_args()
     operators = [operator for operator in OPERATORS if not wanted.only or operator.name in wanted.only]
     with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(wanted.workers) as pool:

@@ -9,7 +9,7 @@ import resource
 from typing import Optional
 
 OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
-"""What a disk answers when it is full or has failed, whatever is written; any other refusal is about one file."""
+"""Errors of a disk that is full or broken; any other error is about a single file."""
 ROOM = "free some space there, or set another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
 _NOT_ALLOWED = "see what `grader doctor` says"

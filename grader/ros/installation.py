@@ -187,13 +187,13 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
 
 
 def who_hears(env: Mapping[str, str]) -> str:
-    """In which domain the nodes of an environment are, and who hears them, for whoever starts one."""
+    """Return a message for the user: the domain of the nodes in an environment, and who can reach them."""
     domain = env.get("ROS_DOMAIN_ID") or "0"
     reach = env.get("ROS_AUTOMATIC_DISCOVERY_RANGE") or "SUBNET"
     if reach == "LOCALHOST" or env.get("ROS_LOCALHOST_ONLY") == "1":
-        return f"ROS domain {domain}, heard on this machine only"
+        return f"ROS domain {domain}, reachable only on this machine"
     if reach == "SUBNET":
-        return f"ROS domain {domain}, heard in the whole network (ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST limits it)"
+        return f"ROS domain {domain}, reachable from the network (ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST limits it)"
     return f"ROS domain {domain}, ROS_AUTOMATIC_DISCOVERY_RANGE={reach}"
 
 

@@ -31,7 +31,7 @@ _LOG_LINES = 15
 
 
 def _say_nothing(_: str) -> None:
-    """Nobody is there to read it."""
+    """Discard the message, since nobody reads it."""
 
 
 def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _say_nothing) -> installation.Ros:

@@ -1,4 +1,4 @@
-"""`ros2 doctor` and `ros2 wtf`: what may keep nodes from talking to each other, and a report about the machine."""
+"""`ros2 doctor` and `ros2 wtf`: why nodes may not reach each other, and a report about the machine."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 _SKIPPED = ("/parameter_events", "/rosout")
-_NOT_HERE = "only the course's own packages are here, and their versions stand in requirements.lock"
+_NOT_HERE = "only the course's own packages are installed; their versions are in requirements.lock"
 
 
 @dataclass
 class Examination:
-    """What the checks of one category found."""
+    """The results of the checks of one category."""
 
     category: str
     errors: list[str] = field(default_factory=list)
@@ -89,7 +89,7 @@ def _check_topics(node: Node) -> Examination:
 
 
 def _pairs(node: Node) -> Iterator[tuple[str, Any, Any, Any, str]]:
-    """Topic, publisher, subscription, whether their QoS fits, and why not."""
+    """Yield topic, publisher, subscription, whether their QoS is compatible, and why not."""
     from rclpy.qos import qos_check_compatible
 
     for topic in _topics(node):
@@ -190,7 +190,7 @@ _REPORTS: dict[str, tuple[str, Callable[[Node], Iterator[tuple[str, object]]]]] 
     "ROS 2 INFORMATION": ("platform", _ros),
     "TOPIC LIST": ("topic", _topic_list),
 }
-"""The title of each report, its category, and what makes its lines."""
+"""The title of each report, its category, and the function that makes its lines."""
 
 
 def _print_reports(node: Node, reports: dict[str, tuple[str, Callable[[Node], Iterator[tuple[str, object]]]]]) -> None:

@@ -1,4 +1,4 @@
-"""Words of `ros2` that need a whole ROS 2: each says so, and what to use here."""
+"""Verbs of `ros2` that need a full ROS 2: each prints this, and what to use here."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ if TYPE_CHECKING:
 
 INSTEAD = {
     "launch": "Start each node in a terminal of its own with: ros2 run PACKAGE EXECUTABLE",
-    "security": "The nodes of this course talk on this machine only, so they need no keys.",
+    "security": "The nodes of this course communicate only on this machine, so they need no keys.",
     "hello": "The nodes of this course talk on this machine only; `ros2 doctor` looks at it.",
-    "load": "Start a node by itself with: ros2 run PACKAGE EXECUTABLE",
+    "load": "Start a node alone with: ros2 run PACKAGE EXECUTABLE",
     "unload": "End a node with Ctrl-C in its terminal.",
-    "standalone": "Start a node by itself with: ros2 run PACKAGE EXECUTABLE",
+    "standalone": "Start a node alone with: ros2 run PACKAGE EXECUTABLE",
 }
-"""What to do instead of each of them."""
+"""What to do instead of each verb."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
-    """Take whatever is typed."""
+    """Accept any arguments."""
     parser.add_argument("argv", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
     parser.set_defaults(words=parser.prog)
 
 
 def run(args: argparse.Namespace) -> NoReturn:
-    """Say it.
+    """Print the message.
 
     Raises:
         Ros2Error: always.
     """
-    message = f"`{args.words}` needs a whole ROS 2: docs.ros.org/en/jazzy/Installation.html\n"
+    message = f"`{args.words}` needs a full ROS 2: docs.ros.org/en/jazzy/Installation.html\n"
     raise Ros2Error(message + INSTEAD[args.words.split()[-1]])

@@ -236,7 +236,7 @@ def look_at_node(ros: Ros, *, confined: bool = True) -> Line:
     todo = "please report this with all these lines"
     if closed and os.getuid() == 0:
         todo += f"; it may help to let other users enter {closed}, which contains this Python"
-    return Line("a node", f"is not heard{' from a cell' if confined else ''}: {why}", "broken", todo)
+    return Line("a node", f"its messages do not arrive{' from a cell' if confined else ''}: {why}", "broken", todo)
 
 
 def _distribution() -> str:

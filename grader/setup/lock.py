@@ -69,7 +69,7 @@ def parse(text: str) -> dict[str, list[Entry]]:
         elif line.startswith("#") or not line.strip():
             continue
         elif not sections:
-            message = f"requirements.lock: this line stands before the first '{_MARK}NAME': {line.strip()}"
+            message = f"requirements.lock: this line is before the first '{_MARK}NAME': {line.strip()}"
             raise UsageError(message)
         elif match := _NAME.match(line):
             sections[-1][1].append(Entry(match.group(1), match.group(2), line))

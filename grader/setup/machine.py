@@ -32,9 +32,10 @@ CONTAINER = """\
 
 LEFT_TO_ROS = {"numpy": "python3-numpy", "em": "python3-empy", "lark": "python3-lark"}
 """Modules that the set-up leaves to a sourced ROS 2 (lock.SOURCED_BRINGS and its part `ros`), and the Debian packages
-that bring them."""
+that contain them.
+"""
 _OLDEST_NUMPY = "1.25"
-"""What matplotlib, which draws the pictures, takes."""
+"""The oldest numpy that matplotlib supports, which draws the pictures."""
 _IMPORTS = f"""
 import importlib, json, sys
 def lacks(name):
@@ -112,7 +113,7 @@ def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Opti
     else:
         return ""
     return (
-        "The course brings ROS 2 as packages that exist for Linux on x86-64 with glibc 2.28 or newer (Debian 10, "
+        "The course installs ROS 2 from packages for Linux on x86-64 with glibc 2.28 or newer (Debian 10, "
         f"Ubuntu 20.04 or later). This is {seen}.\nYou can use one of these instead:\n{CONTAINER}"
     )
 
@@ -162,7 +163,7 @@ def for_ros(python: Python, ros: SourcedRos) -> Python:
     """The same interpreter with what it lacks for this ROS 2; one of another version is not asked."""
     if python.version[:2] != ros.python or not python.cpython:
         return python
-    # As in .venv, which sees the system's packages and nobody's own.
+    # As in .venv, which sees the system's packages, but not those in a user's home.
     env = {**os.environ, "PYTHONNOUSERSITE": "1"}
     asking = interpreter("-c", _IMPORTS, *LEFT_TO_ROS, python=python.path, env=env, searches=True)
     try:

@@ -1,4 +1,4 @@
-"""Let a node talk to another, as in a trial: interpreter, ROS 2, network and interfaces are tried at once."""
+"""Let one node publish to another, as in a trial: tests the interpreter, ROS 2, the network and the interfaces."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ node.create_subscription(String, "doctor", heard.append, 10)
 deadline = time.monotonic() + 20.0
 while not heard and time.monotonic() < deadline:
     rclpy.spin_once(node, timeout_sec=0.5)
-sys.exit(None if heard else "nothing was heard of it within 20 s")
+sys.exit(None if heard else "no message arrived from it within 20 s")
 """
 DOMAIN = 101
-"""ROS domain of the nodes without a cell: the last that a trial would take."""
+"""The ROS domain of the nodes without a cell: the last one that a trial would use."""
 
 
 def why_not_heard(ros: Ros, *, confined: bool) -> str | None:
-    """Let a node talk for up to 20 s; None if the other heard it, else the last that was said.
+    """Let a node publish for up to 20 s; return None if the other received a message, else the last line of output.
 
-    `confined`: it is in a cell, and the other outside of it.
+    With `confined`, the publisher is in a cell, and the other node is outside.
     """
     with tempfile.TemporaryDirectory(prefix="grader-") as home, cell_user() as user:
         if confined:
@@ -70,7 +70,7 @@ def _talk_from_a_cell(ros: Ros, user: int | None) -> list[str]:
     view = bubblewrap.ros_view(ros, FASTDDS_PROFILE)
     talker, listener = _talker_and_listener(ros, env)
     confined = bubblewrap.cell(talker, view, env=env, network=True)
-    # The talker goes when the listener does: cells die with their parent.
+    # The talker ends with the listener: cells die with their parent.
     script = f"{shlex.join(confined)} & exec {shlex.join(listener)}"
     return bubblewrap.room(["sh", "-c", script], view, env=env, user=user)
 

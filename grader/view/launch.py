@@ -57,7 +57,7 @@ class View:
         elif wanted in ("pause", "resume") and self.paused != (wanted == "pause"):
             self.paused = wanted == "pause"
             node.get_logger().info(
-                "Paused in the view: no turtle moves, no pose is published." if self.paused else "Going on."
+                "Paused in the view: no turtle moves, no pose is published." if self.paused else "Resumed."
             )
 
 

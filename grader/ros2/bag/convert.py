@@ -1,4 +1,4 @@
-"""The verb `bag convert`: write bags anew, with other topics, another storage or another compression."""
+"""The verb `bag convert`: write bags again with other topics, another storage or another compression."""
 
 from __future__ import annotations
 
@@ -92,11 +92,11 @@ def _options(file: Any) -> list[dict[str, Any]]:  # noqa: ANN401
 
 
 def _unreadable(file: Any) -> Ros2Error:  # noqa: ANN401
-    return Ros2Error(f"[ERROR] [ros2bag]: {file.name} does not hold the options of the new bags; {_EXAMPLE}")
+    return Ros2Error(f"[ERROR] [ros2bag]: {file.name} does not contain the options of the new bags; {_EXAMPLE}")
 
 
 def _typed(found: Iterator[tuple[str, int, bytes]], kinds: dict[str, str]) -> Iterator[tuple[int, str, str, bytes]]:
-    """The messages with their types, the stamp first."""
+    """Yield the messages with their types; the stamp comes first."""
     for topic, stamp, data in found:
         yield stamp, topic, kinds[topic], data
 
@@ -110,7 +110,7 @@ def _compression(options: dict[str, Any]) -> str:
 
 
 def _chosen(options: dict[str, Any], topic: str) -> bool:
-    """Whether a new bag gets a topic; without any choice it gets all."""
+    """Return whether a new bag gets a topic; without any selection, it gets all."""
     topics, regex = absolute(options.get("topics") or []), options.get("regex") or ""
     if options.get("exclude_regex") and re.search(options["exclude_regex"], topic):
         return False

@@ -16,15 +16,15 @@ _BYTES = {b" ": SPACE, b"\x1b[C": RIGHT, b"\x1b[A": UP, b"\x1b[B": DOWN}
 
 
 def available() -> bool:
-    """Whether keys can be pressed here: standard input is a terminal."""
+    """Return whether standard input is a terminal, so that a user can press keys."""
     return is_terminal()
 
 
 @contextmanager
 def pressed(*, enabled: bool) -> Iterator[Callable[[float], str]]:
-    """Give a function that waits for a key for so many seconds, and returns its name; empty if none was pressed.
+    """Yield a function that waits this many seconds for a key, and returns its name; empty if no key was pressed.
 
-    Without a terminal, or where keys are not `enabled`, the function waits only.
+    Without a terminal, or if the keys are not `enabled`, the function only waits.
     """
     if not enabled or not available():
 
@@ -39,7 +39,7 @@ def pressed(*, enabled: bool) -> Iterator[Callable[[float], str]]:
         def key(timeout_s: float) -> str:
             sent = read(max(0.0, timeout_s))
             if sent == b"":
-                # The terminal has gone; the process goes on without it.
+                # The terminal has gone; the process continues without it.
                 time.sleep(max(0.0, timeout_s))
             return _BYTES.get(sent or b"", "")
 

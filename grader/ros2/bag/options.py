@@ -26,14 +26,14 @@ def add_bag(parser: argparse.ArgumentParser) -> None:
 
 
 def add_log_level(parser: argparse.ArgumentParser) -> None:
-    """Add the option that decides which messages are printed."""
+    """Add the option for which messages are printed."""
     parser.add_argument(
         "--log-level", default="info", choices=LEVELS, help="print messages of this level and above (default: info)"
     )
 
 
 def existing_path(text: str) -> Path:
-    """A path that exists, for argparse."""
+    """Return an existing path, for argparse."""
     path = Path(text)
     if not path.exists():
         message = f"Bag path '{text}' does not exist!"
@@ -42,7 +42,7 @@ def existing_path(text: str) -> Path:
 
 
 def above_zero(text: str) -> float:
-    """A number above 0, for argparse."""
+    """Return a number above 0, for argparse."""
     value = _number(text)
     if not 0 < value < float("inf"):
         message = f"{text} is not in the valid range (> 0.0)"
@@ -51,7 +51,7 @@ def above_zero(text: str) -> float:
 
 
 def not_negative(text: str) -> float:
-    """A number from 0 on, for argparse."""
+    """Return a number of at least 0, for argparse."""
     value = _number(text)
     if not 0 <= value < float("inf"):
         message = f"Value {text} is less than zero."
@@ -68,5 +68,5 @@ def _number(text: str) -> float:
 
 
 def absolute(names: Iterable[str]) -> list[str]:
-    """Names of topics with the slash that they begin with."""
+    """Return the names of topics with a slash at the beginning."""
     return [name if name.startswith("/") else f"/{name}" for name in names]

@@ -1,4 +1,4 @@
-"""The verb `bag play`: publish the messages of a bag as they came."""
+"""The verb `bag play`: publish the messages of a bag at their times."""
 
 from __future__ import annotations
 
@@ -73,10 +73,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Play it to its end, or until Ctrl-C.
+    """Play the bag to its end, or until Ctrl-C.
 
     Raises:
-        Ros2Error: it is not a bag, it is damaged, or no topic of it can be published here.
+        Ros2Error: it is not a bag, the bag is damaged, or no topic of it can be published here.
     """
     rules = remapping(args.remap)
     from grader.graph.discovery import cli_node
@@ -90,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def wanted(args: argparse.Namespace, topic: str) -> bool:
-    """Whether the options choose a topic of the bag."""
+    """Return whether the options select a topic of the bag."""
     excluded = absolute(args.exclude_topics) + (["/clock"] if args.clock else [])
     if topic in excluded or (args.exclude_regex and re.search(args.exclude_regex, topic)):
         return False
@@ -100,10 +100,10 @@ def wanted(args: argparse.Namespace, topic: str) -> bool:
 
 
 def remapping(rules: Iterable[str]) -> dict[str, str]:
-    """The new name of each topic that is named in rules such as "/pose:=/old_pose".
+    """Return the new name of each topic in rules such as "/pose:=/old_pose".
 
     Raises:
-        Ros2Error: a rule has not this form.
+        Ros2Error: a rule does not have this form.
     """
     found = {}
     for rule in rules:

@@ -1,4 +1,4 @@
-"""The node that plays: publishes recorded messages at the pace in which they came."""
+"""The node that plays: it publishes recorded messages at the pace of the recording."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from rosbags.rosbag2 import Reader
 
 _ACKNOWLEDGED_S = 2.0
-"""How long the last messages have to arrive before the node leaves."""
+"""How long the node waits at the end, so that the last messages arrive."""
 _STEP_S = 0.1
 
 
 class Player:
-    """Plays a bag with the options of `bag play`; the keys pause it, step through it and change its rate."""
+    """Plays a bag with the options of `bag play`; keys pause it, step through it and change its rate."""
 
     def __init__(
         self,
@@ -48,7 +48,7 @@ class Player:
         self._clock = Clock(node, args.clock) if args.clock else None
 
     def run(self) -> None:
-        """Play to the end, or for ever with --loop.
+        """Play the bag to its end, or for ever with --loop.
 
         Raises:
             Ros2Error: the bag is damaged.
@@ -62,7 +62,7 @@ class Player:
                 self._log.info("Press CURSOR_RIGHT for Play Next Message")
                 self._log.info("Press CURSOR_UP for Increase Rate 10%")
                 self._log.info("Press CURSOR_DOWN for Decrease Rate 10%")
-            # Who listens already hears the first message too.
+            # The subscriptions that exist already should get the first message, too.
             settle(self._node)
             self._log.info(f"Playback until timestamp: {self._until() or -1}")
             while True:
@@ -92,7 +92,7 @@ class Player:
         return made
 
     def _until(self) -> int | None:
-        """The stamp (ns) at which to end, if one was asked for."""
+        """Return the stamp (ns) of the requested end; None if there is none."""
         ends = []
         if self._args.playback_duration >= 0:
             ends.append(self._begin() + round(self._args.playback_duration * 1e9))
@@ -104,7 +104,7 @@ class Player:
         return int(self._reader.start_time) + round(float(self._args.start_offset) * 1e9)
 
     def _play(self, key: Callable[[float], str]) -> None:
-        """Publish all messages once, from the offset on."""
+        """Publish all messages once, starting at the offset."""
         played, until = self._begin(), self._until()
         found = messages(self._reader, self._args.bag_path, set(self._publishers), self._begin())
         for topic, stamp, data in found:
@@ -114,7 +114,7 @@ class Player:
             self._publishers[topic].publish(data)
 
     def _wait(self, key: Callable[[float], str], played: int, stamp: int) -> int:
-        """Let the time of the recording pass from `played` to `stamp` (ns), at the rate; returns `stamp`."""
+        """Let the recording's time pass from `played` to `stamp` (ns) at the rate; return `stamp`."""
         while played < stamp or self._paused:
             begun = time.monotonic()
             left_s = _STEP_S if self._paused else min(_STEP_S, (stamp - played) / 1e9 / self._rate)
@@ -128,7 +128,7 @@ class Player:
         return stamp
 
     def _press(self, name: str) -> bool:
-        """Do what a key asks for; returns whether the next message is to be published at once."""
+        """Handle a key; return whether to publish the next message at once."""
         if name == keys.SPACE:
             self._paused = not self._paused
             self._log.info("Pausing play." if self._paused else "Resuming play.")

@@ -1,4 +1,4 @@
-"""QoS of recorded topics: what publishers offered, as rosbags stores it, and what fits when it is read or played."""
+"""QoS of recorded topics: the publishers' QoS as rosbags stores it, and suitable QoS for recording and playing."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 DEPTH = 1000
-"""Messages that wait until this process takes them. Python is slower than C++: rosbag2 waits with 10."""
+"""The depth of the queue. Python is slower than C++, so it is larger than rosbag2's, which is 10."""
 
 
 def offered(publishers: Sequence[Any]) -> list[Qos]:
-    """What the publishers of a topic offer; `publishers` are rclpy's TopicEndpointInfo."""
+    """Return the QoS that the publishers of a topic offer; `publishers` are rclpy's TopicEndpointInfo."""
     return list(dict.fromkeys(_stored(publisher.qos_profile) for publisher in publishers))
 
 
 def adapted(publishers: Sequence[Any]) -> QoSProfile:
-    """A profile that hears every publisher: as strict as the least strict of them."""
+    """Return a profile that matches every publisher: it is as strict as the least strict of them."""
     profiles = [publisher.qos_profile for publisher in publishers]
     return _common(
         [profile.reliability == QoSReliabilityPolicy.RELIABLE for profile in profiles],
@@ -32,7 +32,7 @@ def adapted(publishers: Sequence[Any]) -> QoSProfile:
 
 
 def to_play(recorded: Sequence[Qos]) -> QoSProfile:
-    """A profile that every subscription hears that heard the recorded publishers."""
+    """Return a profile that matches every subscription that matched the recorded publishers."""
     return _common(
         [profile.reliability is QosReliability.RELIABLE for profile in recorded],
         [profile.durability is QosDurability.TRANSIENT_LOCAL for profile in recorded],
@@ -50,7 +50,7 @@ def _common(reliable: list[bool], kept: list[bool]) -> QoSProfile:
 
 def _stored(profile: QoSProfile) -> Qos:
     return Qos(
-        # The history of another process is not known (DDS does not announce it).
+        # The history setting of another process is unknown (DDS does not announce it).
         history=QosHistory.UNKNOWN,
         depth=0,
         reliability=QosReliability[profile.reliability.name],

@@ -1,4 +1,4 @@
-"""Reading a bag: of any storage, made by rosbag2 or by our own `ros2 bag`."""
+"""Read a bag with any storage, made by rosbag2 or by the course's `ros2 bag`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def open_bag(path: Path) -> Iterator[Reader]:
-    """Open a bag: its folder, or a file of it.
+    """Open a bag by its folder or by one of its files.
 
     Raises:
         Ros2Error: it is not a bag, or it is damaged.
@@ -25,12 +25,12 @@ def open_bag(path: Path) -> Iterator[Reader]:
         files = [file for ending in ("*.mcap", "*.db3") for file in path.glob(ending)]
         text = f"[ERROR] [ros2bag]: No metadata.yaml in '{path}'."
         if files:
-            text += f"\nThe recording did not end in order. Type: ros2 bag reindex {path}"
+            text += f"\nThe recording was interrupted. Type: ros2 bag reindex {path}"
         raise Ros2Error(text)
     try:
         reader = Reader(path)
         reader.open()
-    except Exception as error:  # a damaged file shows itself in any way: as a bad offset, text or checksum
+    except Exception as error:  # a damaged file can cause any error: a bad offset, string or checksum
         raise _damaged(path, error) from error
     try:
         yield reader
@@ -41,7 +41,7 @@ def open_bag(path: Path) -> Iterator[Reader]:
 def messages(
     reader: Reader, path: Path, topics: set[str], start: int | None = None
 ) -> Iterator[tuple[str, int, bytes]]:
-    """Topic, stamp (ns since the epoch) and data of the messages on `topics`, in order, from a stamp on.
+    """Yield topic, stamp (ns since the epoch) and data of the messages on `topics`, in order, starting at a stamp.
 
     Raises:
         Ros2Error: the bag is damaged.

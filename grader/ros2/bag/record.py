@@ -1,4 +1,4 @@
-"""The verb `bag record`: write what arrives on topics into a new bag."""
+"""The verb `bag record`: write the messages on topics into a new bag."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NOT_HERE = (
     "qos_profile_overrides_path",
     "custom_data",
 )
-"""Options that are known, and not done here; docs/ros2-differences.md has the reasons."""
+"""Options that are not supported here; docs/ros2-differences.md has the reasons."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -143,7 +143,7 @@ def run(args: argparse.Namespace) -> int:
     """Record until Ctrl-C.
 
     Raises:
-        Ros2Error: nothing is to be recorded, the folder is there already, or the disk is full.
+        Ros2Error: no topic is selected, the folder exists already, or the disk is full.
     """
     folder = Path(args.output or time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     args.topics = absolute(args.topics or args.topics_positional)
@@ -162,7 +162,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def wanted(args: argparse.Namespace) -> Callable[[str, str], bool]:
-    """Whether a topic with its type is one of those that the options choose.
+    """Return whether the options select a topic with this type.
 
     Raises:
         Ros2Error: a regular expression cannot be read.
@@ -189,11 +189,11 @@ def _compiled(pattern: str) -> re.Pattern[str] | None:
 
 
 def _validate(args: argparse.Namespace, folder: Path) -> None:
-    """Raise what the real one prints for options that do not go together."""
+    """Raise Ros2Error with the real message if options do not fit together."""
     selects = any(getattr(args, name) for name in _SELECTS)
     unknown = " ".join(f"--{name.replace('_', '-')}" for name in NOT_HERE if getattr(args, name) is not None)
     rules: dict[str, object] = {
-        f"{unknown} needs a whole ROS 2; this is the course's own ros2 bag": unknown,
+        f"{unknown} needs a full ROS 2; this is the course's own ros2 bag": unknown,
         "Need to specify at least one option out of --all, --all-topics, --all-services, --services, --topics, "
         "--topic-types or --regex": not selects and not args.topics,
         "--exclude-regex argument requires either --all, --all-topics, --topic-types, --all-services or "

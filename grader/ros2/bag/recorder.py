@@ -1,4 +1,4 @@
-"""The node that records: subscribes to topics as they appear, and writes what arrives as it was sent."""
+"""The node that records: it subscribes to topics when they appear, and writes the messages as they were sent."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Recorder:
         return not others and self._topics.issuperset(args.topics)
 
     def _discover(self) -> None:
-        """Subscribe to the topics that are wanted and new."""
+        """Subscribe to the new topics that the options select."""
         for topic, kinds in sorted(self._node.get_topic_names_and_types()):
             if topic in self._topics or topic in self._refused or not self._may_be_recorded(topic, kinds[0]):
                 continue
@@ -130,7 +130,7 @@ class Recorder:
         return write
 
     def _write(self, act: Callable[[], None]) -> None:
-        """Write, unless the disk was full before."""
+        """Write a message, unless the disk was full before."""
         if self._full is not None:
             return
         try:
@@ -139,10 +139,10 @@ class Recorder:
             self._full = error
 
     def _drain(self) -> None:
-        """Write what had arrived at the end and was not yet taken.
+        """Write the messages that had arrived at the end but were not handled yet.
 
-        It is taken from the subscriptions themselves: an executor handles whatever is ready, in no promised order.
-        No more can wait than the depth of the queue.
+        They are taken from the subscriptions directly, since an executor handles what is ready in any order. At most as
+        many messages as the depth of the queue can wait.
         """
         for subscription in self._node.subscriptions:
             for _ in range(qos.DEPTH):
@@ -159,7 +159,7 @@ class Recorder:
 def _ending(end: Callable[[], None]) -> Iterator[None]:
     """Let Ctrl-C and SIGTERM call `end` instead of raising an exception, which would cut a message in half.
 
-    They are ignored from then on, so that the bag is finished.
+    Later signals are ignored, so that the bag can be finished.
     """
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda *_: end())

@@ -1,4 +1,4 @@
-"""What can still be read of a bag whose recording was killed, written as a whole bag."""
+"""Recover a bag whose recording was killed: write everything that can still be read as a whole bag."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def _mcap(file: Path) -> Iterator[Saved]:
 def _sqlite(file: Path) -> Iterator[Saved]:
     query = "SELECT timestamp, name, type, data FROM messages JOIN topics ON topics.id = topic_id ORDER BY timestamp"
     try:
-        # Opening it undoes what was half written.
+        # Opening the database undoes an incomplete write.
         with closing(sqlite3.connect(file)) as database:
             yield from (Saved(*row) for row in database.execute(query))
     except sqlite3.Error as error:

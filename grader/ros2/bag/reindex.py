@@ -1,4 +1,4 @@
-"""The verb `bag reindex`: make a bag readable whose recording did not end in order."""
+"""The verb `bag reindex`: make a bag readable after an interrupted recording."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the metadata again, and the end of a file that was cut off.
+    """Write the metadata again, and repair the end of an incomplete file.
 
     Raises:
         Ros2Error: it is not the folder of a bag, or nothing of it can be read.

@@ -1,4 +1,4 @@
-"""Messages of the recorder and the player, in the form of rclcpp's logger on standard error."""
+"""Messages of the recorder and the player on standard error, in the format of rclcpp's logger."""
 
 from __future__ import annotations
 
@@ -42,6 +42,6 @@ class Logger:
         seconds, nanoseconds = divmod(time.time_ns(), 10**9)
         line = f"[{level}] [{seconds}.{nanoseconds:09}] [{self.name}]: {text}"
         colour = _COLOURS.get(level, "") if sys.stderr.isatty() else ""
-        # A bag is finished although nobody reads the messages any more.
+        # Finish the bag even if nobody reads the messages any more.
         with suppress(BrokenPipeError):
             print(f"{colour}{line}\033[0m" if colour else line, file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""Writing a bag as rosbag2 does, so that it can be read whenever the writer ends, killed or not."""
+"""Write a bag as rosbag2 does, so that it can be read even if the writer was killed."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
     from rosbags.interfaces import Connection, Qos
 
 _VERSION: Literal[9] = 9
-"""Of rosbag2's metadata: what Jazzy reads and writes."""
+"""The version of rosbag2's metadata that Jazzy reads and writes."""
 _INFORMATION = "rosbag2_bagfile_information"
 _KEEP_S = 1.0
-"""How often what has arrived is handed to the file: what a killed recorder can lose."""
+"""How often messages are written to the file: a killed recorder loses at most the messages of this time."""
 _ENDINGS = {"mcap": ".mcap", "sqlite3": ".db3"}
 
 
 class BagWriter:
-    """A new bag as a context manager; leaving it writes what is left and the metadata.
+    """A new bag as a context manager; leaving it writes the remaining messages and the metadata.
 
     Args:
         folder: The folder of the bag; it must not exist.
@@ -41,7 +41,7 @@ class BagWriter:
         compression: "none", "file", "message" or "storage" (inside of the MCAP file).
 
     Raises:
-        Ros2Error: the folder cannot be made.
+        Ros2Error: the folder cannot be created.
     """
 
     def __init__(self, folder: Path, storage: str, compression: str = "none") -> None:
@@ -61,7 +61,7 @@ class BagWriter:
             raise Ros2Error(message) from error
 
     def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = ()) -> None:
-        """Add a topic; messages of it may be written then.
+        """Add a topic, so that its messages can be written.
 
         Raises:
             Ros2Error: its type is not installed here.
@@ -88,7 +88,7 @@ class BagWriter:
         self._writer.write(self._connections[topic, kind], stamp_ns, data)
 
     def keep(self) -> None:
-        """Hand to the file what was written, at most once per second; then it outlives this process."""
+        """Flush the messages to the file, at most once per second; then they are safe if this process is killed."""
         if time.monotonic() - self._kept_at < _KEEP_S:
             return
         self._kept_at = time.monotonic()
@@ -111,14 +111,14 @@ class BagWriter:
             _as_rosbag2_names_it(self.folder, _ENDINGS[self._storage])
         except OSError as failure:
             text = f"[ERROR] [ros2bag]: {self.folder}: {failure.strerror}."
-            text += f"\nWhat was written before is in it. When there is room, type: ros2 bag reindex {self.folder}"
+            text += f"\nThe earlier messages are in it. When there is disk space, type: ros2 bag reindex {self.folder}"
             raise Ros2Error(text) from failure
 
 
 def _as_rosbag2_names_it(folder: Path, ending: str) -> None:
     """Name the file and the distribution as rosbag2 does: bag/bag_0.mcap, jazzy.
 
-    The metadata is replaced last: without it, `ros2 bag reindex` makes it again.
+    The metadata is replaced last; if it is missing, `ros2 bag reindex` writes it again.
     """
     metadata = folder / "metadata.yaml"
     data = yaml.safe_load(metadata.read_text("utf-8"))

@@ -1,4 +1,4 @@
-"""The verb `component list`: the containers that run. What is in them can be told by a whole ROS 2 only."""
+"""The verb `component list`: the running containers. Only a full ROS 2 can list the components in them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def run(args: argparse.Namespace) -> int:
     """Print them.
 
     Raises:
-        Ros2Error: there is no such container, or its components were asked for.
+        Ros2Error: there is no such container, or the user asked for its components.
     """
     graph = look(args)
     names = sorted(set(graph.node_names()))
@@ -38,6 +38,6 @@ def run(args: argparse.Namespace) -> int:
         text = f"Unable to find container node '{args.container_node_name}'"
         raise Ros2Error(did_you_mean(args.container_node_name, found, text))
     if not args.containers_only:
-        message = "The components of a container can be listed by a whole ROS 2 only"
+        message = "Only a full ROS 2 can list the components of a container"
         raise Ros2Error(message)
     return 0

@@ -1,4 +1,4 @@
-"""The verb `component types`: the components that are installed, from the ament index."""
+"""The verb `component types`: the installed components, from the ament index."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The verb `lifecycle set`: let a node make a transition."""
+"""The verb `lifecycle set`: trigger a transition of a node."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Ask for it, and print whether it was made.
+    """Request the transition, and print whether it was successful.
 
     Raises:
         Ros2Error: there is no such node, it does not answer, or it cannot make the transition now.

@@ -21,10 +21,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the packet that comes.
+    """Print the packet that arrives.
 
     Raises:
-        Ros2Error: the network does not allow to listen.
+        Ros2Error: the network does not allow listening.
     """
     print("Waiting for UDP multicast datagram...", flush=True)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM, socket.IPPROTO_UDP) as receiver:

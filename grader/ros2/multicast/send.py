@@ -20,10 +20,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Send it.
+    """Send the packet.
 
     Raises:
-        Ros2Error: the network does not take it.
+        Ros2Error: the network refuses the packet.
     """
     print("Sending one UDP multicast datagram...", flush=True)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM, socket.IPPROTO_UDP) as sender:

@@ -38,13 +38,13 @@ OPERATORS: tuple[Operator, ...] = (
     *places.OPERATORS,
 )
 STEPS = ("01-first-node", "03-circle-publisher", "04-package-files", "06-pose-subscriber")
-"""The solutions that are made wrong; each stands for as many packages as there are unusual ones together."""
+"""The solutions to make wrong; each is used as often as all unusual packages together."""
 TWO_AT_ONCE = 1 / 3
 
 
 @dataclass(frozen=True)
 class Made:
-    """A package made wrong: of which right one, by which operators, and where."""
+    """A wrong package: the correct one it was made from, the operators, and the changed places."""
 
     name: str
     exercise: str
@@ -53,12 +53,12 @@ class Made:
 
     @property
     def operators(self) -> str:
-        """The names of the operators."""
+        """Return the names of the operators."""
         return " + ".join(operator.name for operator, _ in self.mistakes)
 
 
 def bases(folder: Path) -> list[tuple[str, Package]]:
-    """The right packages, each with its exercise: (exercise, package)."""
+    """Return the correct packages with their exercises: (exercise, package)."""
     unusual = [case for case in read_cases(CASES.parent / "unusual") if case.result == "passed"]
     found = [_read(case, folder) for case in unusual if case.exercise and not case.exercise.startswith(("02", "07"))]
     right = [each for each in found if each is not None]
@@ -70,7 +70,7 @@ def bases(folder: Path) -> list[tuple[str, Package]]:
 
 
 def _read(case: Case, folder: Path) -> tuple[str, Package] | None:
-    """The package of a case; None where it follows wall time or is not all text."""
+    """Return the package of a case; None if it follows wall time or has binary files."""
     submission = open_submission(make_submission(case, folder / case.name))
     exercise = find_exercise(case.exercise or case.base)
     evidence = Evidence(exercise, submission)
@@ -85,7 +85,7 @@ def _read(case: Case, folder: Path) -> tuple[str, Package] | None:
 
 
 def make(right: Sequence[tuple[str, Package]], number: int, seed: int, operators: Sequence[Operator]) -> Made:
-    """The wrong package with this number: the same for the same seed."""
+    """Return the wrong package with this number; it is the same for the same seed."""
     draw = random.Random(f"{seed} {number}")
     amount = 2 if draw.random() < TWO_AT_ONCE and len(operators) > 1 else 1
     while True:

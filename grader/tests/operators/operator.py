@@ -1,4 +1,4 @@
-"""Operator: one kind of mistake, which can be made in a right package, with what a report must say about it."""
+"""An operator makes one kind of mistake in a correct package, and says what a report must say about it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Package:
-    """A package as text: path -> content, and the file with the node's code that operators on source change."""
+    """A package as text: path -> content, and the file of the node, which the operators on source code change."""
 
     files: Mapping[str, str]
     source: str
@@ -29,7 +29,7 @@ class Package:
 
 @dataclass(frozen=True)
 class Change:
-    """A package after a mistake, the file to look at, and the lines of it that may be named (none: any line)."""
+    """A package with a mistake, the file with the mistake, and the lines that a report may name (empty: any line)."""
 
     files: Mapping[str, str]
     file: str
@@ -37,14 +37,14 @@ class Change:
 
 
 Make = Callable[[Package, Random], Change | None]
-"""Make the mistake at a place drawn from those that fit; None where the package has no such place."""
+"""Make the mistake at a random suitable place; None if the package has no such place."""
 
 
 @dataclass(frozen=True)
 class Operator:
-    """A kind of mistake: `says` are the diagnoses that name it, `never` a pattern of what would be false about it.
+    """A kind of mistake: `says` are the diagnoses that name it, `never` is a pattern for false statements about it.
 
-    `also` are diagnoses of what follows from it, which are true but do not name it.
+    `also` are the diagnoses of its consequences, which are true but do not name it.
     """
 
     name: str
@@ -58,17 +58,17 @@ Replacement = str | Callable[[re.Match[str]], str]
 
 
 def edited(package: Package, file: str, new: str, *lines: int) -> Change:
-    """The package with a new text of one file."""
+    """Return the package with new content in one file."""
     return Change({**package.files, file: new}, file, frozenset(lines))
 
 
 def line_at(text: str, place: int) -> int:
-    """The number of the line with this character, from 1."""
+    """Return the number of the line with this character, counted from 1."""
     return text.count("\n", 0, place) + 1
 
 
 def replace(pattern: str, by: Replacement, *, file: str = "") -> Make:
-    """An operator that replaces one match of the pattern, drawn from all; in the source, or in the file."""
+    """Return an operator that replaces a random match of the pattern, in the source or in `file`."""
 
     def make(package: Package, draw: Random) -> Change | None:
         path = file or package.source
@@ -97,7 +97,7 @@ def anywhere(make: Make) -> Make:
 
 
 def remove_line(pattern: str, *, file: str = "") -> Make:
-    """An operator that empties one line with the pattern; in the place of a statement stands `pass`, or nothing."""
+    """Return an operator that removes a line with the pattern; `pass` or nothing replaces a statement."""
     is_code = not file
 
     def make(package: Package, draw: Random) -> Change | None:
@@ -116,7 +116,7 @@ def remove_line(pattern: str, *, file: str = "") -> Make:
 
 
 def misspelt(word: str, draw: Random) -> str:
-    """The word with two neighbours exchanged, or one letter left out."""
+    """Return the word with two letters swapped, or one letter missing."""
     pairs = [at for at in range(1, len(word) - 1) if word[at] != word[at + 1] and word[at].isalpha()]
     if not pairs:
         return word[:-1]

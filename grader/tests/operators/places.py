@@ -1,4 +1,4 @@
-"""Files that are missing, empty, or somewhere else."""
+"""Mistakes with files: missing, empty, or in the wrong folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mistakes in calls: arguments, parentheses, what is never called."""
+"""Mistakes in calls: arguments, parentheses, missing calls."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _removes(name: str, pattern: str, *says: Diagnosis, never: str = "") -> Oper
 
 
 def _super_init_last(package: Package, draw: Random) -> Change | None:
-    """super().__init__ changes places with the line after it."""
+    """Swap super().__init__ with the line after it."""
     return replace(r"^( +super\(\)\.__init__\(.*\))\n( +(?!self\.\w+ = (?:None|[\d.]+|\"\w*\")$)self\..*)$", r"\2\n\1")(
         package, draw
     )

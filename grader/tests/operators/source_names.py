@@ -45,7 +45,7 @@ def _misspells(name: str, pattern: str, *says: Diagnosis) -> Operator:
 
 
 def _attribute_without_self(package: Package, draw: Random) -> Change | None:
-    """Where an attribute is used, not where it is set."""
+    """Yield the places where an attribute is used, but not set."""
     text = package.files[package.source]
     stored = set(re.findall(r"^\s+self\.(\w+)(?:: [^=]*)? = ", text, re.MULTILINE))
     uses = [m for m in re.finditer(r"self\.(\w+)(?! *(?:: [^=\n]*)?[-+]?=[^=])", text) if m[1] in stored]
@@ -57,7 +57,7 @@ def _attribute_without_self(package: Package, draw: Random) -> Change | None:
 
 
 def _stored_without_self(package: Package, draw: Random) -> Change | None:
-    """Where an attribute is set that a method uses."""
+    """Yield the places where an attribute is set that a method uses."""
     text = package.files[package.source]
     stores = [
         m
@@ -72,7 +72,7 @@ def _stored_without_self(package: Package, draw: Random) -> Change | None:
 
 
 def _misspelt_attribute(package: Package, draw: Random) -> Change | None:
-    """Where it is used or set; the report may name either of the two places."""
+    """Yield the places where an attribute is used or set; the report may name either place."""
     text = package.files[package.source]
     stores = {m[1]: m for m in re.finditer(r"^\s+self\.(\w+) = ", text, re.MULTILINE)}
     uses = [m for m in re.finditer(r"self\.(\w+)(?! = )", text) if m[1] in stores and len(m[1]) > 3]

@@ -1,4 +1,4 @@
-"""What makes Python refuse the file of a node, and wrong indentation that it accepts."""
+"""Syntax errors in the file of a node, and wrong indentation that Python accepts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _source(name: str, pattern: str, by: Replacement, *says: Diagnosis, never: s
 
 
 def _method_moved(by: int) -> Make:
-    """A method with its whole body, moved by so many columns."""
+    """Indent a method with its whole body by this many columns."""
 
     def make(package: Package, draw: Random) -> Change | None:
         text = package.files[package.source]

@@ -1,4 +1,4 @@
-"""Mistakes in topics, values, periods and log lines: the node runs, and does something else."""
+"""Mistakes in topics, values, periods and log lines: the node runs, but does something wrong."""
 
 from __future__ import annotations
 

@@ -53,10 +53,13 @@ def test_a_sourced_ros_2_stays_where_a_terminal_has_it_in_which_nothing_else_was
 @pytest.mark.parametrize(
     ("env", "told"),
     [
-        ({"ROS_DOMAIN_ID": "5", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, "domain 5, heard on this machine only"),
-        ({"ROS_LOCALHOST_ONLY": "1"}, "domain 0, heard on this machine only"),
-        ({}, "domain 0, heard in the whole network"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, "domain 0, heard in the whole network"),
+        (
+            {"ROS_DOMAIN_ID": "5", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"},
+            "domain 5, reachable only on this machine",
+        ),
+        ({"ROS_LOCALHOST_ONLY": "1"}, "domain 0, reachable only on this machine"),
+        ({}, "domain 0, reachable from the network"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, "domain 0, reachable from the network"),
         ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, "domain 0, ROS_AUTOMATIC_DISCOVERY_RANGE=OFF"),
     ],
 )

@@ -161,7 +161,7 @@ def test_space_pauses_and_the_right_arrow_steps(quiet: World) -> None:
         ("ros2 bag record -o there -a", "Output folder 'there' already exists.", 1),
         ("ros2 bag record -e '('  -o new", "cannot be read", 1),
         ("ros2 bag record -a --use-sim-time --no-discovery", "are incompatible settings", 1),
-        ("ros2 bag record -a --max-bag-size 3", "--max-bag-size needs a whole ROS 2", 1),
+        ("ros2 bag record -a --max-bag-size 3", "--max-bag-size needs a full ROS 2", 1),
         ("ros2 bag record -a -o /proc/bag", "Could not create bag folder '/proc/bag'.", 1),
         ("ros2 bag play nowhere", "Bag path 'nowhere' does not exist!", 2),
         ("ros2 bag play there --rate 0", "0 is not in the valid range (> 0.0)", 2),

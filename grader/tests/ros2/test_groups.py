@@ -1,4 +1,4 @@
-"""The groups of `ros2` beside the daily ones: doctor, lifecycle, multicast, component, and what needs a whole ROS 2."""
+"""The groups of `ros2` beside the daily ones: doctor, lifecycle, multicast, component, and what needs a full ROS 2."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def test_what_needs_a_whole_ros_2_says_so_and_what_to_use(here: World, command: 
     done = here.run(command)
     assert done.code == 1
     first, second = done.stderr.splitlines()
-    assert "needs a whole ROS 2" in first
+    assert "needs a full ROS 2" in first
     assert second in INSTEAD.values()
 
 

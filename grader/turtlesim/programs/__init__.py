@@ -1,1 +1,1 @@
-"""What else the package turtlesim brings to run: turtle_teleop_key, draw_square and mimic. Each a node of its own."""
+"""The other executables of the package turtlesim: turtle_teleop_key, draw_square and mimic. Each is a node."""

@@ -75,7 +75,7 @@ class Teleop(Node):
             self._goal = goal
 
     async def cancel(self) -> None:
-        """Cancel the last goal, if it is still going on."""
+        """Cancel the last goal if it is still active."""
         if self._goal is not None:
             await self._goal.cancel_goal_async()
 
