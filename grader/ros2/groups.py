@@ -10,7 +10,7 @@ class Group:
     """A word after `ros2`.
 
     `verbs` maps the words that may follow it to their help. A group without verbs is a command by itself. `flags` maps
-    options that may stand before the verb to their explanation. With `runs_itself` it does something without a verb, too.
+    options that may come before the verb to their help. With `runs_itself`, the group also works without a verb.
     """
 
     about: str
