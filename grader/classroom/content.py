@@ -85,7 +85,8 @@ def _of_archive(archive: Path) -> str:
     whole = hashlib.sha256(archive.name.encode("utf-8", "surrogateescape") + b"\0")
     try:
         with archive.open("rb") as file:
-            while data := file.read(1024 * 1024):
+            # Of what is too large to be unpacked, so much is enough.
+            while file.tell() <= archives.MOST_PACKED and (data := file.read(1024 * 1024)):
                 whole.update(data)
     except OSError as error:
         whole.update(f"cannot be read: {error.errno}".encode())  # `read` reports it

@@ -15,7 +15,6 @@ import select
 import signal
 import time
 import traceback
-import warnings
 from dataclasses import is_dataclass
 from enum import Enum
 from importlib import import_module
@@ -72,24 +71,29 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
     try:
         answer = _received(receives)
         if answer is not None:
-            status = os.waitpid(child, 0)[1]
+            status = _ended(child)
     finally:
         os.close(receives)
         if status is None:
             os.kill(child, signal.SIGKILL)
-            os.waitpid(child, 0)
+            _ended(child)
     return _value(answer, status)  # type: ignore[no-any-return]
 
 
 def _fork() -> int:
     try:
-        with warnings.catch_warnings():
-            # The child takes no lock that another thread may hold: it reads, computes, and writes into its pipe.
-            warnings.simplefilter("ignore", DeprecationWarning)
-            return os.fork()
+        # The child takes no lock that another thread may hold: it reads, computes, and writes into its pipe.
+        return os.fork()
     except OSError as error:
         message = refusal(error) or str(error)
         raise MachineError(message) from error
+
+
+def _ended(child: int) -> int:
+    try:
+        return os.waitpid(child, 0)[1]
+    except ChildProcessError:
+        return 0  # whoever started us has SIGCHLD ignored: nobody knows
 
 
 def _run(sends: int, function: Callable[[], object]) -> NoReturn:
@@ -173,7 +177,7 @@ def _value(answer: bytes | None, status: int | None) -> Any:  # noqa: ANN401 - w
             raise TooLargeError(_too_much())
         message = f"it could not be read: reading it ended with {signal.Signals(number).name}"
         raise UnreadableError(message)
-    if os.WEXITSTATUS(status) != 0:
+    if os.WEXITSTATUS(status) != 0 or not answer:
         raise TooLargeError(_too_much())  # not even memory for the answer was left
     try:
         fine, value = _Unpacker(io.BytesIO(answer)).load()

@@ -48,6 +48,7 @@ OTHERS = {
     ("relay", "run"): "bubblewrap, with what gradebook.confined._order made inside",
     ("ros2", "_measure"): "our command ros2",
     ("ros2", "main"): "our command ros2",
+    ("reading", "main"): "our command grader",
     ("reader", "_fork"): "this process again, which then only reads",
     ("bubblewrap", "why_unavailable"): "bubblewrap and `true`",
     ("shell", "open_shell"): "the user's shell",

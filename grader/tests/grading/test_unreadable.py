@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import errno
+import os
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import pytest
 
+from grader.checks.judge import judge, judge_so_far
 from grader.checks.outcome import Status
 from grader.colcon.runner import Built
 from grader.errors import MachineError
 from grader.evidence import evidence as of_evidence
 from grader.grading import clock as of_clock
+from grader.grading import judging
 from grader.grading.grade import grade
 from grader.grading.options import Options
 from grader.report import html, html_notebook
+from grader.submission import reader
 from grader.tests.checks.made import BUILD, exercise, good, submission
 from grader.tests.grading.test_starved import Trials
 from grader.tests.no_ros import without_ros
@@ -92,6 +96,37 @@ def test_a_source_that_breaks_its_reader_fails_and_the_node_is_run_in_wall_time(
     assert "could not be read (RecursionError: too deep)" in found.evidence.recording.why
     assert found.report.with_status(Status.ERROR) == ()
     assert told(found)["circle"] == (Status.PASSED, None)
+
+
+def spins(*_: object) -> NoReturn:
+    while True:
+        pass
+
+
+def ends(*_: object) -> NoReturn:
+    os.abort()
+
+
+@pytest.mark.parametrize(("how", "why"), [(spins, "too large to be read"), (ends, "SIGABRT")])
+@pytest.mark.parametrize("when", ["early", "after the build"])
+def test_what_takes_its_reader_along_fails_every_check_and_nothing_more_is_read(
+    monkeypatch: pytest.MonkeyPatch, when: str, how: Callable[..., NoReturn], why: str
+) -> None:
+    monkeypatch.setattr(reader, "CPU_S", 1)
+    monkeypatch.setattr(judging, "judge_early" if when == "early" else "judge_so_far", _in_a_child(how))
+    trials = Trials([good()])
+    found = graded(trial=trials)
+    assert {status for status, _ in told(found).values()} == {Status.FAILED, Status.SKIPPED}
+    first = found.report.outcomes[0].finding
+    assert (first.diagnosis, found.report.points, found.report.max) == ("unreadable", 0.0, 100.0)
+    assert why in first.observed
+    assert found.evidence.runs == {}
+    assert judge(found.evidence) == found.report.outcomes  # as `regrade` does, without reading it
+
+
+def _in_a_child(how: Callable[..., NoReturn]) -> Callable[..., Any]:
+    """The same there; here the real one, which reads nothing of what could not be read."""
+    return lambda *given: how() if reader._Child.inside else judge_so_far(*given)
 
 
 def test_a_page_that_cannot_be_drawn_tells_the_verdict_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,89 @@
+"""What it costs that a child process reads what a student wrote: the reading of one check, in children and without.
+
+    python -m grader.benchmarks.reading [--times N] [--submission FOLDER]
+
+The submission is graded once. Then all that was read of it is read again and again, in both ways by turns. CPU time
+counts: it is the same whoever else uses the machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.benchmarks.bare import bare_costs
+from grader.checks.exercises import load_exercise
+from grader.errors import MachineError
+from grader.evidence import archive
+from grader.exercise.model import course_folder
+from grader.grading.judging import Judging
+from grader.submission import reader
+from grader.submission.package import open_submission
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+_GRADER = str(Path(sys.executable).with_name("grader"))
+_MOST_S = 0.04
+"""What it may cost (s)."""
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--times", type=int, default=20, help="repetitions; medians are printed")
+    parser.add_argument("--submission", type=Path, default=course_folder().parent / "solutions/03-circle-publisher")
+    asked = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        bare = bare_costs(asked.submission, Path(folder))
+        kept = Path(folder) / "recording"
+        argv = [_GRADER, "check", str(asked.submission), "--recording", str(kept)]
+        subprocess.run(argv, check=True, capture_output=True)
+        evidence = archive.load(kept, load_exercise).evidence
+    costs: dict[bool, list[tuple[float, float]]] = {True: [], False: []}
+    for turn in range(2 * (asked.times + 1)):
+        inside = reader._Child.inside = bool(turn % 2)
+        before = _now()
+        _read(asked.submission, evidence)
+        if turn > 1:  # the first of each imports what is imported late
+            after = _now()
+            costs[inside].append((after[0] - before[0], after[1] - before[1]))
+    wall_s, cpu_s = (
+        statistics.median(one[kind] for one in costs[False]) - statistics.median(one[kind] for one in costs[True])
+        for kind in (0, 1)
+    )
+    f_s = bare["colcon build"].wall_s + bare["rclpy node"].wall_s
+    print(f"F = {f_s:.2f} s wall")
+    print(f"reading in children: {1000 * wall_s:+.0f} ms, {wall_s / f_s:+.3f} F, {1000 * cpu_s:+.0f} ms of CPU")
+    if cpu_s > _MOST_S:
+        message = f"Reading in children costs more than the {1000 * _MOST_S:.0f} ms of CPU that it may."
+        raise MachineError(message)
+
+
+def _read(submission: Path, evidence: Evidence) -> None:
+    """All that a check of the submission reads, in the same pieces."""
+    judging = Judging("auto")
+    opened = open_submission(submission)
+    files = dataclasses.replace(evidence, submission=opened, build=None, runs={})
+    judging.early(files)
+    built = dataclasses.replace(files, build=evidence.build)
+    judging.so_far(built, {})
+    judging.so_far(dataclasses.replace(built, runs=evidence.runs), {})
+
+
+def _now() -> tuple[float, float]:
+    """Wall time and CPU time, of this process and its children (s)."""
+    times = os.times()
+    return time.monotonic(), times.user + times.system + times.children_user + times.children_system
+
+
+if __name__ == "__main__":
+    main()
