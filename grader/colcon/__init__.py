@@ -1,1 +1,1 @@
-"""colcon: the workspace that a submission is built in, and what colcon made of it."""
+"""colcon: it builds a submission in a cell, and reads the result."""

@@ -1,4 +1,4 @@
-"""Build: what colcon made of a submission."""
+"""Build: the result of `colcon build`."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Build:
-    """The result of `colcon build`, read from the install tree without running anything of it.
+    """The result of `colcon build`, read from the install tree. None of its code runs for that.
 
-    Paths are POSIX paths relative to install/<package>. `entry_points` are the console_scripts as installed,
+    Paths are POSIX paths relative to install/<package>. `entry_points` are the installed console_scripts,
     name -> "module:attribute".
     """
 
     exit_code: int
     log: str
-    """stdout and stderr of colcon together, capped."""
+    """Standard output and standard error of colcon together, with a limit."""
     package: str | None = None
-    """The name under which colcon installed it; None when nothing was installed."""
+    """The name of the installed package; None if nothing was installed."""
     timed_out: bool = False
     out_of: str | None = None
-    """"disk", "memory", ... when a limit of the sandbox was hit."""
+    """The limit of the sandbox that was reached: "disk", "memory", ...; None if none was."""
     installed: tuple[str, ...] = ()
     executables: tuple[str, ...] = ()
-    """Names of the files in lib/<package>: what `ros2 run` can start."""
+    """The names of the files in lib/<package>, which `ros2 run` can start."""
     entry_points: dict[str, str] = field(default_factory=dict)
     seconds: float = 0.0

@@ -1,7 +1,7 @@
-"""Workspace: build a submission with colcon, in a cell, and read what came out without running any of it.
+"""Runner: it runs `colcon build` on a submission in a cell, and reads the result without running it.
 
-The source goes into the cell as a tar stream and the install tree comes out as one: nothing of the build touches
-this machine's disk, and the same stream goes on into the cell of the trial.
+The source enters the cell as a tar stream, and the install tree leaves it as one. So the build does not touch the disk
+of this machine, and the same stream enters the cell of the trial.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ MOST_LOG = 256 * 1024
 MOST_TREE = 64 * MIB
 MOST_FILES = 20_000
 MOST_ENTRY_POINTS = 100 * 1024
-"""Bytes of an entry_points.txt."""
+"""The largest entry_points.txt (bytes)."""
 
-# Standard output is the install tree's alone: colcon and all that it runs write on standard error. --base-paths, since
-# colcon would look for packages everywhere below; sequential, since there is one package and workers cost time.
+# Standard output holds the install tree only: colcon and its processes write to standard error. --base-paths, since
+# colcon would search every folder below; sequential, since there is one package, and workers take time.
 _SCRIPT = r"""
 echo cell-is-ready >&2
 cd "$WS" && mkdir -p src || exit 90
@@ -51,8 +51,8 @@ code=$?
 [ -d install ] && tar -c --format=gnu -f - -C install .
 exit $code
 """
-# Whether the machine can build is settled before the first byte of the submission is there: from then on nobody's
-# words, nor what they look like, are the machine's.
+# Whether the machine can build is known before the first byte of the submission arrives. Output from after that never
+# counts as a message of the machine.
 _COLCON = r"""
 import os, subprocess, sys
 from colcon_core.command import main
@@ -75,7 +75,7 @@ _LIMITS_HIT = {
 
 @dataclass(frozen=True)
 class Built:
-    """A Build, and the install tree that it describes as a tar stream."""
+    """A Build with its install tree (a tar stream)."""
 
     build: Build
     tree: bytes
@@ -85,7 +85,7 @@ def build(submission: Submission, ros: installation.Ros, *, in_cell: bool, tell:
     """Build the submission's package with this ROS 2. `tell` gets a line about it.
 
     Raises:
-        MachineError: the sandbox or colcon itself does not work here.
+        MachineError: the sandbox or colcon itself does not work.
     """
     tell("Building with colcon")
     with _workspace(in_cell=in_cell) as (workspace, home):
@@ -134,7 +134,7 @@ def _workspace(*, in_cell: bool) -> Iterator[tuple[Path, Path]]:
 
 
 def _pack(submission: Submission) -> bytes:
-    """The submission as a tar stream, below a folder of its own name, the same bytes for the same files."""
+    """Return the submission as a tar stream, in a folder of its own name. The same files give the same bytes."""
     stream = io.BytesIO()
     with tarfile.open(fileobj=stream, mode="w|", format=tarfile.PAX_FORMAT) as tar:
         for path, content in submission.files.items():
@@ -159,9 +159,9 @@ def _read(done: process.Finished) -> Built:
 
 
 def _described(done: process.Finished) -> tuple[Build, bool]:
-    """What the build left, and whether its install tree is not to be used."""
+    """Return what the build left, and whether its install tree must not be used."""
     lines = done.stderr[len(_READY) :].decode("utf-8", "replace").splitlines(keepends=True)
-    # The wheels' prefix is no colcon install tree; that says nothing about the submission.
+    # The prefix of the wheels is not a colcon install tree. This has nothing to do with the submission.
     log = "".join(line for line in lines if "colcon_ros.prefix_path.ament" not in line)
     out_of = next((name for name, signs in _LIMITS_HIT.items() if any(sign in done.stderr for sign in signs)), None)
     cut = done.timed_out or done.too_much or done.out_of is not None
@@ -185,7 +185,7 @@ def _described(done: process.Finished) -> tuple[Build, bool]:
 
 
 def _entry_points(files: dict[PurePosixPath, Member], tree: bytes) -> dict[str, str]:
-    """The console_scripts as they were installed."""
+    """Return the installed console_scripts."""
     for path, member in files.items():
         if path.name != "entry_points.txt" or not path.parent.name.endswith(("egg-info", "dist-info")):
             continue
@@ -197,7 +197,7 @@ def _entry_points(files: dict[PurePosixPath, Member], tree: bytes) -> dict[str, 
 
 
 def read_entry_points(text: str) -> dict[str, str]:
-    """The console_scripts of an entry_points.txt, in one pass: configparser's patterns are quadratic."""
+    """Return the console_scripts of an entry_points.txt, in one pass: the patterns of configparser are quadratic."""
     found: dict[str, str] = {}
     section = ""
     for line in map(str.strip, text.splitlines()):

@@ -1,1 +1,1 @@
-"""Evidence: what the files, the build and the recording say, ready to be judged; and how it is kept on disk."""
+"""Evidence: the files, the build and the recordings, ready to be judged, and their archive on disk."""

@@ -9,33 +9,33 @@ if TYPE_CHECKING:
     from grader.trial.recording import Command, Endpoint, Recording
 
 ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
-"""Every node publishes on these, or the grader does."""
+"""Topics on which every node publishes, or the grader."""
 START_S = 0.2
-"""How long the first moment lasts: a trial's clock may start when the node is known, and its publisher not yet."""
+"""The length of the first moment (s): the clock may start before the publisher of the node is known."""
 
 
 def end_s(recording: Recording) -> float:
-    """When the scenario was over, on the trial's clock (s): SIGINT, or when it would have come."""
+    """Return when the scenario was over, on the trial's clock (s): at SIGINT, or when it was due."""
     if recording.end.by == "itself":
         return max(recording.sigint_t_s, recording.duration_s)
     return recording.sigint_t_s
 
 
 def ended_at_start(recording: Recording) -> bool:
-    """Whether the node ended by itself before it waited for anything.
+    """Return whether the node ended by itself before it waited for anything.
 
-    Simulated time stands until the node waits; the wall's clock starts when the node is in the graph or drives, so one
-    that is about to end may live on for the first moment.
+    Simulated time is held until the node waits. Wall time starts when the node is in the graph or publishes a command,
+    so a node that is about to end may still run for the first moment.
     """
     end = recording.end
     return end.by == "itself" and end.t_s <= (START_S if recording.clock == "wall" else 0.0)
 
 
 def commands(recording: Recording) -> tuple[Command, ...]:
-    """The commands that arrived before SIGINT, by arrival.
+    """Return the commands that arrived before SIGINT, by arrival.
 
-    None, if none came after the first moment: what a node sends before the two sides have found each other is lost as
-    a rule, and heard where the machine happens to delay the node. That must not decide about a report.
+    If all of them arrived in the first moment, none is returned. Commands that are published before discovery is over
+    are usually lost. Whether they arrive depends on the machine, and a report must not depend on it.
     """
     until = end_s(recording)
     found = tuple(command for command in recording.commands if command.t_s < until)
@@ -43,13 +43,13 @@ def commands(recording: Recording) -> tuple[Command, ...]:
 
 
 def nodes(recording: Recording) -> tuple[str, ...]:
-    """Full names of the submission's nodes, in order of the alphabet; a name taken twice is there once."""
+    """Return the full names of the submission's nodes, sorted, each once."""
     own = Counter(recording.own_nodes)
     return tuple(sorted({name for graph in recording.graphs for name in Counter(graph.nodes) - own}))
 
 
 def endpoints(recording: Recording, kind: str) -> tuple[Endpoint, ...]:
-    """The submission's publishers or subscriptions, without those that every node has, each once."""
+    """Return the publishers or subscriptions of the submission, each once, without those that every node has."""
     found = {
         endpoint: None
         for graph in recording.graphs

@@ -1,14 +1,14 @@
-"""Archive: a graded submission as a folder, all that is needed to judge it again without running anything.
+"""Archive: a graded submission as a folder, with all that is needed to judge it again. Nothing has to run for that.
 
-    trials/ID/       of each trial: bag/, the messages, a rosbag2 folder (MCAP), and trial.json, the rest
-    build.json       what colcon made
-    tries.json       what came of trying to mend the causes; for instructors, since it gives solutions away
+    trials/ID/       one folder per trial: bag/ with the messages (rosbag2, MCAP), trial.json with the rest
+    build.json       the result of the build
+    tries.json       the fixes that were tried, with their results; for instructors, since it gives solutions away
     submission.json  name, digest and paths
-    source/          the submission's files
+    source/          the files of the submission
     exercise/        the exercise as it was: exercise.toml
     COLCON_IGNORE    so that colcon never runs the submission's setup.py
 
-trials/ID/ is missing where that trial could not be run, build.json where nothing could be built.
+trials/ID/ is missing if that trial was not run, build.json if nothing was built.
 """
 
 from __future__ import annotations
@@ -40,23 +40,23 @@ _SCHEMA = 2
 
 @dataclass(frozen=True)
 class Archived:
-    """What an archive holds beside the evidence: which ROS 2 ran it (for the report)."""
+    """The evidence of an archive, and the name of the ROS 2 for the report."""
 
     evidence: Evidence
     ros: str
 
 
 def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -> None:
-    """Write `evidence` as the folder, which must not exist or be empty. `prefixes` hold the message types' .msg files.
+    """Write the evidence to a folder, which must be new or empty. `prefixes` hold the .msg files of the message types.
 
     Raises:
-        UsageError: there is something in the folder already.
-        MachineError: it cannot be written.
+        UsageError: the folder is not empty.
+        MachineError: the folder cannot be written.
     """
     check_free(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        # colcon, called in a folder above, would run the submission's setup.py outside of the sandbox.
+        # Without this file, colcon in a folder above would run the submission's setup.py outside the sandbox.
         (folder / IGNORE_MARKER).touch()
         submission = evidence.submission
         write_copy(submission, folder / "source" / submission.package_dir.name)
@@ -76,7 +76,7 @@ def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -
 
 
 def _save_recording(folder: Path, recording: Recording, prefixes: Iterable[Path]) -> None:
-    from grader.evidence.bag import write_bag  # rosbags takes its time: only where a bag is written
+    from grader.evidence.bag import write_bag  # importing rosbags is slow: only if a bag is written
 
     folder.mkdir(parents=True)
     write_bag(folder / "bag", recording.messages, prefixes)
@@ -92,10 +92,10 @@ def _load_recording(folder: Path) -> Recording | None:
 
 
 def check_free(folder: Path) -> None:
-    """See that a recording may be written there, before time is spent on making one.
+    """Check that a recording can be written there, before a trial runs.
 
     Raises:
-        UsageError: it is a file, or there is something in it.
+        UsageError: it is a file, or a folder that is not empty.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         message = f"{folder} is not an empty folder. A recording needs a folder of its own: name a new one."
@@ -103,7 +103,7 @@ def check_free(folder: Path) -> None:
 
 
 def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
-    """Read an archive; `read_exercise` gets the path of the exercise.toml that was kept, and says what judges.
+    """Read an archive. `read_exercise` gets the path of its exercise.toml, and returns the exercise to judge by.
 
     Raises:
         UsageError: the folder is no archive of this version of the grader.
@@ -163,7 +163,7 @@ def _tries(data: dict[str, Any]) -> Tries:
 
 
 def _write(file: Path, data: dict[str, Any]) -> None:
-    # Not UTF-8 in a name becomes an escape: JSON can be read by everybody.
+    # A name that is not UTF-8 becomes an escape sequence, so that every program can read the JSON.
     file.write_text(json.dumps(data, indent=1, ensure_ascii=True) + "\n", encoding="ascii")
 
 

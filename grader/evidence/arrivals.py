@@ -1,4 +1,4 @@
-"""Arrivals of what comes again and again: the intervals between them, without those that the machine spoilt."""
+"""Arrivals of repeated messages: the intervals between them, without those that a stall of the machine changed."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Measured:
-    """Arrivals (s): intervals between them, their mean, the wait before the first and after the last.
+    """Arrivals (s), the intervals between them, their mean, and the time before the first and after the last.
 
-    `intervals` and `mean_s` leave out those that a stall of the machine made longer or shorter, and those that begin at
-    the very start (`seen.START_S`); `trusted` is the share that no stall spoilt.
+    `intervals` and `mean_s` are without those that a stall of the machine changed, and without those that begin in the
+    first moment (`activity.START_S`). `trusted` is the share of intervals that no stall changed.
     """
 
     arrivals: tuple[float, ...]
@@ -32,13 +32,13 @@ class Measured:
 
 
 def measure_arrivals(recording: Recording, times_s: Iterable[float]) -> Measured:
-    """Measure arrivals before SIGINT; the mean is 0 when there are fewer than two."""
+    """Measure arrivals before SIGINT. The mean is 0 if there are fewer than two."""
     arrivals = tuple(times_s)
     until = activity.end_s(recording)
     if not arrivals:
         return Measured((), (), (), 1.0, 0.0, until, until)
     every = list(pairwise(arrivals))
-    # What was sent before the clock started came when the two sides had found each other, and not when it was sent.
+    # Messages from before the start of the clock arrive when discovery is over, and not when they are sent.
     pairs = [pair for pair in every if pair[0] > activity.START_S] or every
     trusted = [pair for pair in pairs if not any(recording.stalled(t_s) for t_s in pair)]
     intervals = tuple(later - earlier for earlier, later in trusted)

@@ -1,4 +1,4 @@
-"""Fit a circle to points, and measure how far along it they go. Pure numbers; lengths in m, angles in rad."""
+"""Fit a circle to points, and count the turns about a centre. Lengths are in m, angles in rad."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats
 
 FLAT = 1e-9
-"""A fit whose quadratic part is smaller than this is a straight line."""
+"""If the quadratic part of a fit is smaller than this, the points are on a straight line."""
 
 
 @dataclass(frozen=True)
@@ -25,12 +25,12 @@ class Circle:
 
 
 def fit_circle(x: Floats, y: Floats) -> Circle | None:
-    """The circle nearest to the points, arrays of shape (N,); None for fewer than three points or points on a line.
+    """Return the circle that fits the points best; None for fewer than three points or points on a line.
 
-    Algebraic fit under Taubin's constraint, which unlike the simpler one of Kasa does not shrink short arcs:
+    `x` and `y` have the shape (N,). An algebraic fit with Taubin's constraint, which does not shrink short arcs:
     G. Taubin, "Estimation of planar curves, surfaces and nonplanar space curves defined by implicit equations",
     IEEE Trans. PAMI 13 (1991) 1115-1138; by singular values as in N. Chernov, "Circular and Linear Regression"
-    (2010), section 5.9-5.10. Raises nothing on NaN: the answer is None.
+    (2010), section 5.9-5.10. The result is None if a coordinate is NaN.
     """
     if len(x) < 3 or not (np.isfinite(x).all() and np.isfinite(y).all()):
         return None
@@ -54,7 +54,7 @@ def fit_circle(x: Floats, y: Floats) -> Circle | None:
 
 
 def turns_about(x: Floats, y: Floats, centre_x: float, centre_y: float) -> float:
-    """How often points in order go round the centre, counter-clockwise positive; steps must be under half a turn."""
+    """Return the number of turns about a centre, positive if counter-clockwise. Each step must be below half a turn."""
     if len(x) < 2:
         return 0.0
     angle = np.unwrap(np.arctan2(y - centre_y, x - centre_x))

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Fault:
-    """Why `stage` and all later ones could not be done: a fault of the machine, and what to do.
+    """Why `stage` and all later stages could not be done: a fault of the machine, and what to do.
 
-    `unreadable`: not the machine's, but what the submission has made could not be read.
+    `unreadable`: the machine is not at fault, but something that the submission produced could not be read.
     """
 
     stage: Stage
@@ -40,57 +40,57 @@ class Fault:
 
 @dataclass(frozen=True)
 class Run:
-    """What came of one trial; nothing as long as it was not made."""
+    """The result of one trial; empty if it was not run."""
 
     recording: Recording | None = None
     overwhelmed: str | None = None
-    """How the node brought the simulator down, twice; then there is no recording."""
+    """How the node brought the simulator down, twice. Then there is no recording."""
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """A submission and what was observed of it; `build` is None as long as it was not made.
+    """A submission and what was observed of it. `build` is None if it was not built.
 
-    A check looks at it from one of the exercise's trials: `trial` says which, `recording` is what that one saw.
-    What the source files say is read on first use, from `submission.files` alone.
+    A check looks at the evidence from one of the exercise's trials: `trial` is that trial, `recording` its recording.
+    The source files are read on first use, from `submission.files`.
     """
 
     exercise: Exercise
     submission: Submission
     build: Build | None = None
     runs: Mapping[str, Run] = field(default_factory=dict)
-    """What came of the trials, by their ids; those that were not made yet are left out."""
+    """The results of the trials that were run, by their ids."""
     fault: Fault | None = None
     tries: Tries = field(default_factory=Tries)
     """What came of trying to mend the causes."""
     trial_id: str = ""
-    """The trial that it is looked at from; empty for the exercise's first."""
+    """The id of the trial from which the evidence is seen; empty for the first trial of the exercise."""
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is handed to another process: not what was read on first use."""
+        """Return the fields alone, without what was read on first use: that is not sent to another process."""
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
     @property
     def trial(self) -> TrialSpec:
-        """The trial that it is looked at from."""
+        """The trial from which the evidence is seen."""
         return self.exercise.trial(self.trial_id) if self.trial_id else self.exercise.trials[0]
 
     @property
     def run(self) -> Run:
-        """What came of this trial."""
+        """The result of this trial."""
         return self.runs.get(self.trial.id, Run())
 
     def from_trial(self, id_: str) -> Evidence:
-        """The same, looked at from this trial."""
+        """Return the same evidence, seen from this trial."""
         return self if id_ == self.trial.id else self._views[id_]
 
     def views(self) -> tuple[Evidence, ...]:
-        """The same, looked at from each trial that was run; from the first in any case."""
+        """Return the evidence as seen from each trial that was run, and from the first trial in any case."""
         ids = [trial.id for trial in self.exercise.trials]
         return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
 
     def with_run(self, run: Run) -> Evidence:
-        """The same, with what came of this trial."""
+        """Return the evidence with the result of this trial."""
         return replace(self, runs={**self.runs, self.trial.id: run})
 
     @cached_property
@@ -99,25 +99,25 @@ class Evidence:
 
     @cached_property
     def manifest(self) -> Manifest | None:
-        """What package.xml says; None when there is no package.xml."""
+        """The content of package.xml; None if there is no package.xml."""
         data = self.submission.files.get("package.xml")
         return None if data is None else read_manifest(data)
 
     @cached_property
     def setup_py(self) -> SetupPy | None:
-        """What setup.py says, read without running it; None when there is no setup.py."""
+        """The content of setup.py, read without running it; None if there is no setup.py."""
         data = self.submission.files.get("setup.py")
         return None if data is None else read_setup_py(data)
 
     @cached_property
     def answers(self) -> Answers | None:
-        """What answers.toml says; None when there is no answers.toml."""
+        """The content of answers.toml; None if there is no answers.toml."""
         data = self.submission.files.get("answers.toml")
         return None if data is None else read_answers(data)
 
     @cached_property
     def node_file(self) -> str | None:
-        """The file of the exercise's node: where the entry point leads, else the file named after the executable."""
+        """The source file of the node: the module of the entry point, else the file named after the executable."""
         target = self.entry_point()
         files = self.submission.files
         if target is not None:
@@ -129,7 +129,7 @@ class Evidence:
 
     @cached_property
     def code(self) -> Code:
-        """What the node's file says, and the files that it imports."""
+        """The code of the node's file and of the files that it imports."""
         return read_code(self.submission.files, first=self.node_file)
 
     @cached_property
@@ -148,7 +148,7 @@ class Evidence:
         return trajectory_of(self.recording)
 
     def entry_point(self) -> str | None:
-        """Return "module:attribute" of the exercise's executable: as installed, else as setup.py says."""
+        """Return the entry point "module:attribute" of the executable: the installed one, else that in setup.py."""
         executable = self.trial.executable
         if self.build is not None and executable in self.build.entry_points:
             return self.build.entry_points[executable]
@@ -157,7 +157,7 @@ class Evidence:
 
     @property
     def recording(self) -> Recording:
-        """What this trial saw; only for checks of the stage "trial", which are not judged without it."""
+        """The recording of this trial. Only checks of the stage "trial" may use it: they are not judged without it."""
         if self.run.recording is None:
             message = "a check of a trial was judged without a recording"
             raise ValueError(message)
@@ -165,14 +165,14 @@ class Evidence:
 
     @property
     def built(self) -> Build:
-        """The build; only for checks of the stages "build" and "trial"."""
+        """The build. Only checks of the stages "build" and "trial" may use it."""
         if self.build is None:
             message = "a check of a build was judged without a build"
             raise ValueError(message)
         return self.build
 
     def place(self, *calls: str) -> Where | None:
-        """Where in the submission one of these functions is called, the first that is; else the node's file."""
+        """Return where the first of these functions that the code calls is called; else the node's file."""
         for name in calls:
             found = self.code.calls(name)
             if found:

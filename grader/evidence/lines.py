@@ -17,12 +17,12 @@ OUR_LOGGERS = ("turtlesim",)
 
 @dataclass(frozen=True)
 class Format:
-    """A line with numbers in it: "Hello {counter}", or "x={x:.2f}" for one with two digits behind the point."""
+    """The format of a line with numbers, such as "Hello {counter}" or "x={x:.2f}" with two decimal places."""
 
     text: str
 
     def pattern(self) -> re.Pattern[str]:
-        """What a whole line must match; the groups are the numbers."""
+        """Return the pattern that a whole line must match. Its groups are the numbers."""
         parts, at = [], 0
         for match in FIELD.finditer(self.text):
             digits = match["digits"]
@@ -32,26 +32,26 @@ class Format:
         return re.compile("".join([*parts, re.escape(self.text[at:])]), re.ASCII)
 
     def example(self, number: float = 0.0) -> str:
-        """A line as it might be, with the same number everywhere."""
+        """Return a line in this format, with the same number everywhere."""
         return FIELD.sub(lambda match: f"{number:.{match['digits'] or 0}f}", self.text)
 
 
 @dataclass(frozen=True)
 class Line:
-    """A line in the format: when it arrived (s), and its numbers."""
+    """A line in the format, with its arrival (s) and its numbers."""
 
     t_s: float
     numbers: dict[str, float]
 
 
 def students(recording: Recording) -> tuple[LogLine, ...]:
-    """What the submission logged before SIGINT, by arrival."""
+    """Return the lines that the submission logged before SIGINT, by arrival."""
     until = activity.end_s(recording)
     return tuple(line for line in recording.log if line.logger not in OUR_LOGGERS and line.t_s < until)
 
 
 def in_format(recording: Recording, text: str) -> tuple[Line, ...]:
-    """The lines that are in the format."""
+    """Return the lines that have the format."""
     pattern = Format(text).pattern()
     found = ((line.t_s, pattern.fullmatch(line.text)) for line in students(recording))
     return tuple(

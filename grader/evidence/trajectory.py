@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 RESTS_M = 1e-9
-"""The turtle rests in a frame in which it moves no further than this."""
+"""The turtle rests in a frame in which it moves at most this far (m)."""
 STRAIGHT_RAD = 1e-9
-"""A step that turns by no more than this is straight."""
+"""A step that turns by at most this is straight (rad)."""
 
 
 @dataclass(frozen=True)

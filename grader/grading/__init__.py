@@ -1,1 +1,1 @@
-"""Grading: all parts in order, from a folder to a report."""
+"""Grading: it puts all parts together, from a folder to a report."""

@@ -68,22 +68,22 @@ class Attempt:
         return self.evidence.recording.crowded, self.evidence.recording.stalled_s
 
 
-ALONE = Clock("simulated", "the simulator ran by itself, and says the same at any pace")
+ALONE = Clock("simulated", "the simulator ran without a node, so its pace does not matter")
 """The clock of a trial without a node."""
 
 
 def first_clock(choice: ClockChoice, evidence: Evidence) -> Clock:
     """Return the clock under which this trial begins (rules 1 and 2)."""
     if choice != "auto":
-        return Clock(choice, f"asked for with --clock {choice}")
+        return Clock(choice, f"chosen with --clock {choice}")
     try:
         entry = evidence.entry_point()
         clues = wall_clues(evidence.submission.files, entry.partition(":")[0].strip() if entry else None)
     except Exception as error:  # (the checks that read the source report it)
-        return Clock("wall", f"the source could not be read ({in_words(error)}), so it may follow the wall's clock")
+        return Clock("wall", f"the source could not be read ({in_words(error)}), so it may follow wall time")
     if clues:
-        return Clock("wall", f"{clues[0].name} at {clues[0].file}:{clues[0].line} may follow the wall's clock")
-    return Clock("simulated", "the node waits only for ROS time and messages, so its seconds need not be waited for")
+        return Clock("wall", f"{clues[0].name} at {clues[0].file}:{clues[0].line} may follow wall time")
+    return Clock("simulated", "the node waits only for ROS time and messages")
 
 
 def stops_at_doubt(choice: ClockChoice) -> bool:
@@ -100,7 +100,7 @@ def after_simulated(choice: ClockChoice, attempt: Attempt) -> Clock | None:
     """Return the clock that decides after a trial in simulated time (rule 4); None if that trial counts."""
     if choice == "simulated" or not any(outcome.finding.near_edge for outcome in attempt.outcomes):
         return None
-    return Clock("wall", "a measured value lies near the edge of what is allowed, where only the wall's clock decides")
+    return Clock("wall", "a measured value is near the edge of its tolerance, where wall time decides")
 
 
 def wants_another(attempts: Sequence[Attempt]) -> bool:

@@ -137,7 +137,7 @@ class _Grading:
         return Graded(report, evidence, prefixes)
 
     def _run_all(self, certain: Early) -> None:
-        """Build the submission and run its trials; what the machine refuses becomes the fault of the evidence."""
+        """Build the submission and run its trials. A failure of the machine becomes the fault of the evidence."""
         try:
             self.ros = find_ros()
             with self.stopwatch.stage("interfaces"):
@@ -183,6 +183,6 @@ class _Grading:
 
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:
-    """The evidence as seen from each trial; the longest first, so that none is left to run alone at the end."""
+    """Return the evidence as seen from each trial, the longest first, so that it does not run alone at the end."""
     views = [evidence.from_trial(spec.id) for spec in evidence.exercise.trials]
     return sorted(views, key=lambda view: -view.trial.scenario.duration_s)

@@ -1,7 +1,7 @@
-"""Judging one submission while it is graded: its files first, then what was built, then each trial.
+"""Judging: it judges one submission while it is graded, first the files, then the build, then each trial.
 
-All of it reads what a student wrote, so it happens in the reader's process. What that process may not finish is the
-submission's own failure: from then on every check of it is `unreadable`, and nothing of it is read any more.
+All of this reads what a student wrote, so it happens in a child process (submission/reader.py). If that process exceeds
+its limits, this is a failure of the submission: every check becomes `unreadable`, and nothing more is read.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Whose turn it is on this machine: gradings share it, but a wall-clock trial that is made again has it to itself.
+"""Turns: gradings share the machine, but a trial in wall time that is repeated has the machine to itself.
 
-As far as gradings of one user go; nobody else is asked. Locks are the kernel's (flock): whoever is killed lets go.
-Whoever wants the machine alone holds a turnstile while waiting, so that those who come later do not keep it waiting for
-ever.
+This concerns the gradings of one user only. The locks are flock(2): the kernel releases the locks of a process that is
+killed. A grading that wants the machine alone holds a second lock, the turnstile, while it waits. Later gradings stop
+there, so it does not wait for ever.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 WAIT_S = 120.0
-"""A machine that does not become free by then is used all the same."""
+"""After this time (s), a grading continues although the machine is not free."""
 _POLL_S = 0.02
 
 
 class Turns:
-    """One grading's place among the others; `folder` is where all of them look. Without one nobody waits."""
+    """The turn of one grading. They all use the lock files in `folder`. Without it, nobody waits."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._locks: tuple[IO[bytes], IO[bytes]] | None = None
-        """The turnstile and the machine, while it is shared."""
+        """The lock files of the turnstile and the machine, while the machine is shared."""
 
     @contextmanager
     def shared(self) -> Iterator[None]:
-        """Use the machine beside others."""
+        """Share the machine with other gradings."""
         with ExitStack() as stack:
             try:
                 self._folder.mkdir(parents=True, exist_ok=True)
@@ -54,12 +54,12 @@ class Turns:
 
     @contextmanager
     def alone(self) -> Iterator[None]:
-        """Inside of `shared`: have the machine to oneself."""
+        """Have the machine alone. Use this inside `shared`."""
         if self._locks is None:
             yield
             return
         turnstile, machine = self._locks
-        # Two that want it must not wait for each other's share.
+        # Release the share first: two gradings that want the machine alone would wait for each other.
         fcntl.flock(machine, fcntl.LOCK_UN)
         _lock(turnstile, fcntl.LOCK_EX)
         _lock(machine, fcntl.LOCK_EX)
@@ -87,5 +87,5 @@ def _locked(file: IO[bytes], how: int) -> bool:
 
 
 def folder() -> Path:
-    """Where the gradings of this user look."""
+    """Return the folder of the lock files of this user."""
     return xdg.cache() / f"turns-{os.getuid()}"

@@ -25,7 +25,7 @@ def attempt(made: Recording) -> Attempt:
 def test_the_option_decides_whatever_the_source_contains() -> None:
     asleep = evidence(None, node(TIMER))
     assert first_clock("simulated", asleep).name == "simulated"
-    assert first_clock("wall", evidence(None)).why == "asked for with --clock wall"
+    assert first_clock("wall", evidence(None)).why == "chosen with --clock wall"
 
 
 def test_a_node_without_signs_begins_in_simulated_time() -> None:
