@@ -10,10 +10,13 @@ from grader.checks.kinds import KINDS
 from grader.colcon import runner
 from grader.errors import UsageError
 from grader.exercise.exercise_toml import SCHEMA, parse_exercise
-from grader.sandbox.bubblewrap import MIB, NODE_LIMITS, Limits
+from grader.gradebook import relay
+from grader.gradebook.budget import Budget
+from grader.sandbox.bubblewrap import MIB, MOST_SIGNALS, NODE_LIMITS, Limits
 from grader.sandbox.user import FEW_USERS, FIRST_USER, USERS
-from grader.submission import answers, code, package_xml, tree
+from grader.submission import answers, code, package_xml, reader, tree
 from grader.tests.docs.pages import ROOT, text_of
+from grader.trial.conductor import REQUESTS_HZ
 
 COLUMNS = (runner.LIMITS, NODE_LIMITS, Limits())
 """Build, node and kernel, in the order of the table."""
@@ -69,6 +72,18 @@ def test_the_budgets_of_reading_are_those_of_the_code() -> None:
         f"{tree.MAX_FILES:,} files, {tree.MAX_FILE_BYTES // MIB} MiB per file and {tree.MAX_TOTAL_BYTES // MIB} MiB"
         in text
     )
+
+
+def test_the_limits_of_the_processes_of_the_grader_are_those_of_the_code() -> None:
+    text, budget = text_of("docs/security.md"), Budget()
+    one, total = budget.message // MIB, budget.total // MIB
+    assert f"{budget.messages:,} messages, {one} MiB each, {total} MiB and a million JSON values in all" in text
+    assert budget.values == 1_000_000
+    assert f"{relay.MOST_MEMORY // MIB // 1024} GiB of addresses; of its kernel" in text
+    read_s, memory, answer = reader.TIMEOUT_S, reader.MEMORY // MIB // 1024, reader.MOST_ANSWER // MIB
+    assert f"{reader.CPU_S} s of CPU, {read_s:g} s, {memory} GiB of memory, {answer} MiB of answer" in text
+    assert f"at most {MOST_SIGNALS} per cell" in text
+    assert f"{REQUESTS_HZ} requests per second" in text
 
 
 def test_the_users_of_the_cells_are_named() -> None:
