@@ -26,6 +26,7 @@ NO_SUBMISSIONS = {"benchmarks", "exercise", "graph", "ros", "ros2", "setup", "tu
 INSIDE = {"checks", "evidence", "submission"}
 """Rooms in which the process reads that the door makes."""
 BEHIND_THE_DOOR = {
+    ("budget", "_read"): "relay: a process of its own, with limits",
     ("clues", "wall_clues"): "judging",
     ("cli", "_judged"): "cli",
     ("html_class", "read_class"): "html_class",
@@ -46,6 +47,7 @@ BEHIND_THE_DOOR = {
 """Other functions that read there, and the module that has the door."""
 OURS = {
     ("archives", "_why"): "what unpack.py says",
+    ("bridge", "main"): "an order of the relay",
     ("check", "_graded"): "what the notebook's grader says",
     ("conductor", "_conduct"): "an order of trial.py",
     ("conductor", "main"): "an order of trial.py",
@@ -55,6 +57,8 @@ OURS = {
     ("launcher", "main"): "an order of the conductor",
     ("node_process", "_find_pid"): "what bubblewrap says",
     ("progress", "_read"): "the learner's state",
+    ("relay", "main"): "an order of kernels.py",
+    ("relay", "read"): "an order of kernels.py",
     ("release", "_read"): "a solution",
     ("released", "released_notebook"): "a notebook of the course",
     ("results", "load"): "a result of our own",

@@ -6,7 +6,6 @@ What atheris finds ends the run, and lies in build/fuzz/TARGET/ as a file; `--ag
 from __future__ import annotations
 
 import argparse
-import atexit
 import sys
 import tempfile
 from pathlib import Path
@@ -46,7 +45,6 @@ def main() -> None:
         (kept / "corpus" / f"seed-{number}").write_bytes(seed)
     if asked.again:
         target.run(asked.again.read_bytes())
-        print(inline.ODD)
         return
     options = {
         "max_total_time": round(60 * asked.minutes),
@@ -56,7 +54,6 @@ def main() -> None:
         "artifact_prefix": f"{kept}/",
         "print_final_stats": 1,
     }
-    atexit.register(lambda: print(f"Met while reading, and told as unreadable: {dict(inline.ODD)}", file=sys.stderr))
     atheris.Setup(
         [sys.argv[0], *(f"-{name}={value}" for name, value in options.items()), str(kept / "corpus")], target.run
     )

@@ -1,9 +1,9 @@
-"""The door to reading without its process: what that does with errors, and a count of those that are not ours."""
+"""The door to reading without its process: what that does with errors; it prints where those that are not ours came from."""
 
 from __future__ import annotations
 
+import sys
 import traceback
-from collections import Counter
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 from grader.errors import GraderError, TooLargeError, UnreadableError
@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 T = TypeVar("T")
-ODD: Counter[str] = Counter()
-"""Where an error that is not ours came from -> how often."""
+ODD: set[str] = set()
+"""Where errors that are not ours came from."""
 
 
 class _Depth:
@@ -34,7 +34,10 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
         raise TooLargeError(str(error)) from error
     except Exception as error:
         last = traceback.extract_tb(error.__traceback__)[-1]
-        ODD[f"{type(error).__name__} at {last.filename}:{last.lineno}"] += 1
+        place = f"{type(error).__name__} at {last.filename}:{last.lineno}"
+        if place not in ODD:
+            ODD.add(place)
+            print(f"Reported as unreadable: {place}", file=sys.stderr)
         raise UnreadableError(str(error)) from error
     finally:
         _Depth.inside = False
