@@ -1,4 +1,4 @@
-"""The door to reading without its process: what that does with errors; it prints where those that are not ours came from."""
+"""The door to reading without its process. It prints where an error that is not ours came from."""
 
 from __future__ import annotations
 
