@@ -221,6 +221,10 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
         parts = [part for part in PARTS["tests"] if part in parts or part in stamp.parts]
         stamp = stamp._replace(digest=digest(), parts=parts, seconds={})
     elif python:
+        if stamp and ros is None and stamp.ros != WHEELS:
+            say(
+                f"This set-up was made for the ROS 2 in {stamp.ros}, which is not sourced: the course's own replaces it"
+            )
         if machine.is_offline(os.environ):
             print(refused.NO_NETWORK.format("it has no network"), file=sys.stderr)
             return MACHINE_BROKEN

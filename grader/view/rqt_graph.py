@@ -110,12 +110,13 @@ def _run(options: argparse.Namespace) -> int:
     with cli_node(f"_rqt_graph_{os.getpid()}") as node:
         complete = settle(node)
         observed = observe(node)
-    if not observed.nodes:
+    drawn = picture(observed.nodes, observed.ends, show)
+    # The daemon of the real ros2 is a node that is not shown.
+    if not drawn.nodes:
         print(_NOTHING.format(domain=os.environ.get("ROS_DOMAIN_ID", "0")), file=sys.stderr)
         return 1
     if not complete:
         print(_MISSING, file=sys.stderr)
-    drawn = picture(observed.nodes, observed.ends, show)
     if options.output is not None:
         _write(options.output, drawn)
     else:

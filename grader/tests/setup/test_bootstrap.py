@@ -148,6 +148,15 @@ def test_an_environment_that_lacks_what_the_sourced_ros_needs_is_made_anew(
     assert course.asked == [["python3-empy"]]
 
 
+def test_a_set_up_for_a_sourced_ros_is_not_replaced_without_a_word(
+    course: Course, capsys: pytest.CaptureFixture[str]
+) -> None:
+    course.set_up(ros=JAZZY)
+    assert "replaces it" not in capsys.readouterr().out
+    course.set_up()
+    assert "made for the ROS 2 in /opt/ros/jazzy, which is not sourced" in capsys.readouterr().out
+
+
 def test_a_prefix_by_another_name_is_the_same_ros(course: Course, tmp_path: Path) -> None:
     (tmp_path / "jazzy").mkdir()
     (tmp_path / "link").symlink_to("jazzy")
