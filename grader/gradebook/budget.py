@@ -1,8 +1,8 @@
-"""What of a kernel's messages may reach nbgrader: messages that are ones, and not too much of them.
+"""Limit the messages of a kernel that reach nbgrader: they must be valid, and there must not be too many.
 
-A message that nbgrader has received is in its memory, as text, as Python's objects and in the notebook that it writes.
-So the number of messages counts, their bytes, and the values in their JSON: `[[],[],[]]` is 30 times as large in
-memory.
+nbgrader keeps every message in memory: as text, as Python objects, and in the notebook that it writes. So the budget
+limits the number of messages, their bytes, and the number of values in their JSON. `[[],[],[]]` is 30 times as large in
+memory as in bytes.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 MIB = 1024 * 1024
 DELIMITER = b"<IDS|MSG>"
-"""Ends the identities of a message, https://jupyter-client.readthedocs.io/en/stable/messaging.html."""
+"""The end of the identities in a message, https://jupyter-client.readthedocs.io/en/stable/messaging.html."""
 MOST_IDENTITIES = 4
 MOST_DIGITS = 400
 _HEADER = {"msg_id": str, "msg_type": str}
@@ -32,19 +32,19 @@ class Budget:
     """What the kernel of one notebook may send."""
 
     message: int = 4 * MIB
-    """Bytes of one message."""
+    """The bytes of one message."""
     total: int = 16 * MIB
-    """Bytes of all messages together."""
+    """The bytes of all messages together."""
     messages: int = 10_000
     values: int = 1_000_000
-    """Values in the JSON of all messages: objects, lists, strings, numbers."""
+    """The values in the JSON of all messages: objects, lists, strings and numbers."""
     depth: int = 50
-    """Objects and lists inside each other."""
+    """How deeply objects and lists may be nested."""
 
 
 @dataclass
 class Account:
-    """What a kernel has sent so far; `key` is that of its signatures."""
+    """Count what a kernel has sent so far. `key` is the key of its signatures."""
 
     key: bytes
     budget: Budget = Budget()
@@ -53,10 +53,10 @@ class Account:
     _signatures: set[bytes] = field(default_factory=set)
 
     def take(self, parts: Sequence[bytes]) -> None:
-        """Enter a message.
+        """Count a message.
 
         Raises:
-            FrameError: it is not a message of Jupyter's protocol, or more than the budget allows.
+            FrameError: it is not a message of Jupyter's protocol, or it exceeds the budget.
         """
         self._bytes += sum(map(len, parts))
         if self._bytes > self.budget.total:
@@ -75,7 +75,7 @@ class Account:
             _refuse()
 
     def _read(self, part: bytes) -> dict[str, Any]:
-        """A part of a message: a JSON object."""
+        """Return a part of a message, which must be a JSON object."""
         try:
             read = json.loads(
                 part.decode("utf-8", "replace"), parse_int=_integer, parse_float=_number, parse_constant=_refuse
@@ -104,12 +104,12 @@ class Account:
                 _refuse()
 
 
-def _refuse(what: str = "what is no message of a kernel") -> NoReturn:
+def _refuse(what: str = "something that is not a message of a kernel") -> NoReturn:
     raise FrameError(what)
 
 
 def _writable(text: str) -> bool:
-    """Whether it can be written into a file: half of a surrogate pair cannot."""
+    """Return whether the text can be encoded: half of a surrogate pair cannot."""
     try:
         text.encode()
     except UnicodeEncodeError:

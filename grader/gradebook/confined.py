@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 CHECK_S = 300
 """The time limit for an instructor's cell (s). It builds and runs a package, perhaps in wall time."""
 SHOWN = ("stream", "display_data", "execute_result", "error", "update_display_data")
-"""Messages that become outputs of a cell."""
+"""The types of messages that become outputs of a cell."""
 
 
 class ConfinedKernelManager(AsyncKernelManager):
@@ -49,7 +49,7 @@ class ConfinedKernelManager(AsyncKernelManager):
     submission = Unicode("")
     trusted = Bool(default_value=False)
     why = ""
-    """Why the kernel was ended, once it is; nothing where it ended by itself."""
+    """The reason why the kernel was ended, or an empty string if it ended by itself."""
     _folder = Instance(tempfile.TemporaryDirectory, allow_none=True)
     _life = -1
 
@@ -83,7 +83,7 @@ class ConfinedKernelManager(AsyncKernelManager):
             os.close(ends)
 
     def read_why(self) -> str:
-        """Why the relay has ended the kernel, if it has."""
+        """Return why the relay has ended the kernel, if it has."""
         if self._folder is not None and not self.why:
             with suppress(OSError):
                 self.why = (Path(self._folder.name) / WHY_FILE).read_text("utf-8")
@@ -175,14 +175,14 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
             return None
 
     def on_comm_open_jupyter_widget(self, msg: dict[str, Any]) -> None:
-        """Do not act as the front end of a widget: the kernel could make the answers as long as it likes."""
+        """Do not act as the front end of a widget, because the kernel could make the answers arbitrarily long."""
 
     def _get_timeout(self, cell: NotebookNode | None) -> int | None:
         locked = cell is not None and cell.get("metadata", {}).get("nbgrader", {}).get("locked")
         return CHECK_S if locked or cell is None else self.cell_s
 
     def _reason(self, error: Exception) -> str:
-        """Why no more can be run."""
+        """Return why no more cells can be run."""
         why: str = self._manager.read_why()
         if why or isinstance(error, DeadKernelError):
             return why or "The kernel died."
@@ -190,8 +190,8 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
             return "A cell did not end in time, and did not stop when it was interrupted."
         if isinstance(error, RuntimeError | GraderError):
             return str(error).partition("\n")[0]
-        self.log.debug("What the kernel sent", exc_info=error)
-        return "The kernel sent what nbgrader could not follow."
+        self.log.debug("Could not process the kernel's messages", exc_info=error)
+        return "The kernel sent messages that nbgrader could not process."
 
     def _end(self, why: str) -> None:
         if not self._ended:
@@ -208,7 +208,7 @@ def _copy(folder: Path, copy: Path) -> None:
 
 
 def _order(submission: Path, folder: Path, connection_file: str, *, trusted: bool) -> Order:
-    """What the relay is to start; `folder` is its own."""
+    """Return what the relay must start; `folder` is the relay's own folder."""
     confined = bubblewrap.require(trusted=trusted)
     copy, home, workspace = folder / "submission", HOME, WORKSPACE
     _copy(submission, copy)

@@ -67,7 +67,7 @@ def _is_folder(path: Path) -> bool:
 
 
 def remember(folder: Path) -> None:
-    """Remember that the class in `folder` was made by this user. Raises MachineError where that cannot be kept."""
+    """Store that this user made the class in `folder`. Raises MachineError if it cannot be stored."""
     file = _made()
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -79,7 +79,7 @@ def remember(folder: Path) -> None:
 
 
 def _is_known(course: Path) -> bool:
-    """Whether the folder is the course that this grader belongs to, or was made by `grader class new`."""
+    """Return whether the folder is the course of this grader, or was made by `grader class new`."""
     try:
         made = _made().read_text("utf-8").splitlines()
     except (OSError, UnicodeDecodeError):
@@ -88,7 +88,7 @@ def _is_known(course: Path) -> bool:
 
 
 def _made() -> Path:
-    """The list of the classes that this user has made, one per line."""
+    """Return the file with the classes that this user has made, one per line."""
     return xdg.state() / "classes"
 
 
@@ -112,7 +112,7 @@ def open_class(folder: Path | None) -> ClassFolders:
         raise UsageError(message)
     if folder is None and not _is_known(found.resolve()):
         message = (
-            f"{found.resolve() / CONFIG} is a program, and `grader class new` has not made this folder for you. If it "
+            f"{found.resolve() / CONFIG} is a program, but `grader class new` has not made this folder for you. If it "
             f"is yours, name it: --course {shlex.quote(str(found.resolve()))}"
         )
         raise UsageError(message)

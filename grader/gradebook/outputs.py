@@ -1,4 +1,4 @@
-"""What autograde leaves in the cells of a notebook: outputs that are ones, not too many, and points that were given."""
+"""The outputs of an autograded notebook: they must be valid and not too long, and graded cells must give points."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 MOST_OUTPUT = 4_000_000
-"""Characters of all outputs together; a notebook that prints more is ended."""
+"""Characters of all outputs together. A notebook that prints more is stopped."""
 TOO_MUCH = f"The notebook printed more than {MOST_OUTPUT // 1_000_000} million characters."
 
 
 def mark(cell: NotebookNode, why: str) -> None:
-    """Replace what stands below a cell by the reason why it has not run, or does not count."""
+    """Replace the output of a cell by the reason why it did not run or does not count."""
     cell.outputs = [new_output("error", ename="NotRun", evalue=why, traceback=[why])]  # type: ignore[no-untyped-call]
 
 
@@ -40,14 +40,14 @@ def honest(cell: NotebookNode) -> None:
 
 
 def put_right(nb: NotebookNode) -> None:
-    """See that the notebook can be written: what a kernel has put into it has to be what nbformat takes."""
+    """Make sure that the notebook can be written: every output of the kernel must be valid for nbformat."""
     left = MOST_OUTPUT
     for cell in nb.cells:
         if cell.cell_type != "code":
             continue
         if not isinstance(cell.get("execution_count"), int | None):
             cell.execution_count = None
-        # One message may have changed many outputs: only what is there in the end tells how much it is.
+        # One message may have changed many outputs, so only the outputs at the end show the total size.
         for number, output in enumerate(cell.outputs):
             left -= _length(output)
             if left < 0:
@@ -58,12 +58,12 @@ def put_right(nb: NotebookNode) -> None:
             alone = new_code_cell(outputs=cell.outputs)  # type: ignore[no-untyped-call]
             nbformat.validate(new_notebook(cells=[alone]))  # type: ignore[no-untyped-call]
         except Exception:
-            mark(cell, "The kernel sent an output that is not one.")
+            mark(cell, "The kernel sent an invalid output.")
     nb.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
 
 
 def _length(value: object) -> int:
-    """Characters of an output, about."""
+    """Return the approximate number of characters of an output."""
     if isinstance(value, str):
         return len(value)
     if isinstance(value, dict):

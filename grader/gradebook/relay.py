@@ -1,11 +1,12 @@
-"""Relay: runs a kernel in its cell and hands its messages on to nbgrader, as long as they keep to a budget.
+"""Relay: run a kernel in its cell and pass its messages to nbgrader, within a budget.
 
     python -m grader.gradebook.relay FOLDER
 
-FOLDER holds `order.json` (what to start) and the connection file that nbgrader's side uses; the relay's sockets are
-there too, and nobody but the caller gets into it. The cell sees none of it: its messages come through a pipe
-(grader.notebook.bridge). When a budget or a limit runs out, the relay ends the cell, says why in `why`, and ends. It
-also ends when its standard input does, that is, with nbgrader.
+FOLDER contains `order.json` (what to start) and the connection file of nbgrader. The relay creates its sockets there,
+and
+only the caller has access to it. The cell does not see it: the messages of the kernel come through a pipe
+(grader.notebook.bridge). If a budget or a limit is exceeded, the relay ends the cell, writes the reason to `why`, and
+ends. It also ends when its standard input is closed, that is, with nbgrader.
 """
 
 from __future__ import annotations
@@ -36,16 +37,16 @@ if TYPE_CHECKING:
 
 ORDER_FILE, WHY_FILE = "order.json", "why"
 MOST_MEMORY = 1024 * MIB
-"""Address space of the relay (bytes)."""
+"""The address space of the relay (bytes)."""
 MOST_WAITING = MIB
-"""Bytes for the kernel from which on no more is taken from nbgrader, until the kernel has read some."""
+"""Bytes waiting for the kernel. If there are more, nothing is read from nbgrader until the kernel has read some."""
 LINGER_MS = 1000
 _IOPUB = CHANNELS.index("iopub")
 
 
 @dataclass(frozen=True)
 class Order:
-    """What to start: a bridge, in a cell where `confined`."""
+    """What to start: a bridge, which runs in a cell if `confined`."""
 
     argv: Sequence[str]
     env: Mapping[str, str]
@@ -54,22 +55,22 @@ class Order:
     connection_file: str
 
     def write(self, folder: Path) -> None:
-        """Leave it in the relay's folder."""
+        """Write the order into the relay's folder."""
         (folder / ORDER_FILE).write_text(json.dumps(asdict(self), default=str), encoding="utf-8")
 
     @classmethod
     def read(cls, folder: Path) -> Order:
-        """Read what `write` wrote."""
+        """Read an order that `write` has written."""
         data = json.loads((folder / ORDER_FILE).read_text("utf-8"))
         view = View(**{name: tuple(map(Path, paths)) for name, paths in data.pop("view").items()})
         return cls(**data, view=view)
 
 
 class Relay:
-    """Both sides: nbgrader's sockets, and the pipes of a cell."""
+    """The connection between nbgrader's sockets and the pipes of a cell."""
 
     def __init__(self, info: Mapping[str, Any], cell: subprocess.Popen[bytes]) -> None:
-        """`info` is what the connection file says."""
+        """Open the sockets; `info` is the content of the connection file."""
         assert cell.stdin is not None
         assert cell.stdout is not None
         self._in, self._out = cell.stdin.fileno(), cell.stdout.fileno()
@@ -85,17 +86,17 @@ class Relay:
 
     def _bind(self, name: str, address: str) -> zmq.Socket[bytes]:
         socket = self._context.socket(zmq.XPUB if name == "iopub" else zmq.ROUTER)
-        # What goes to nbgrader has its budget; what comes from there is taken as the kernel reads it.
+        # Messages to nbgrader have a budget. Messages from nbgrader are read only as fast as the kernel reads them.
         socket.sndhwm, socket.rcvhwm = 0, 1
         socket.linger = LINGER_MS
         socket.bind(address)
         return socket
 
     def serve(self, over: Sequence[str]) -> None:
-        """Pass messages on until the cell or nbgrader ends, or something stands in `over`.
+        """Pass messages on until the cell or nbgrader ends, or `over` is not empty.
 
         Raises:
-            FrameError: the kernel has sent more than it may, or what is not a message.
+            FrameError: the kernel has exceeded its budget, or has sent something that is not a message.
         """
         poller = zmq.Poller()
         for number in (0, self._out, self._beat, self._sockets[_IOPUB]):
@@ -114,16 +115,16 @@ class Relay:
             self._take_from_nbgrader(ready)
 
     def close(self) -> None:
-        """Let go of nbgrader's sockets, when what was sent has arrived."""
+        """Close nbgrader's sockets after all messages have been delivered."""
         self._context.destroy()
 
     def _hear(self) -> bool:
-        """Read what the kernel sends; false at its end."""
+        """Read what the kernel sends. Return False at its end."""
         data = os.read(self._out, CHUNK)
         for channel, parts in self._unpacker.feed(data):
             self._account.take(parts)
             if channel == ORDER:
-                raise FrameError("what is no message of a kernel")  # noqa: EM101
+                raise FrameError("something that is not a message of a kernel")  # noqa: EM101
             if channel == _IOPUB and self._early is not None:
                 self._early.append(parts)
             else:
@@ -138,7 +139,7 @@ class Relay:
             if channel != _IOPUB:
                 self._to_kernel += packed(channel, parts)
             elif self._early is not None:
-                # Somebody listens now.
+                # Now there is a subscriber.
                 early, self._early = self._early, None
                 for each in early:
                     socket.send_multipart(each)
@@ -148,11 +149,11 @@ class Relay:
             except BlockingIOError:
                 pass
             except BrokenPipeError:
-                self._to_kernel.clear()  # it has ended: `_hear` tells
+                self._to_kernel.clear()  # it has ended, and `_hear` reports this
 
 
 def run(order: Order, info: Mapping[str, Any]) -> str:
-    """Run the cell to its end; why it was ended, or nothing."""
+    """Run the cell to its end. Return why it was ended, or an empty string."""
     limits = Limits()
     over: list[str] = []
     with ExitStack() as stack:
@@ -167,7 +168,7 @@ def run(order: Order, info: Mapping[str, Any]) -> str:
             env=dict(order.env),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            # What a student writes there would act on the instructor's terminal.
+            # Output of a student on these would control the instructor's terminal.
             stderr=subprocess.DEVNULL,
             pass_fds=() if filter_fd is None else (filter_fd,),
         )
@@ -189,7 +190,7 @@ def run(order: Order, info: Mapping[str, Any]) -> str:
 
 
 def main() -> None:
-    """Be the relay of the kernel that the folder's order names."""
+    """Run the relay for the kernel that the order in the folder describes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     folder = Path(sys.argv[1])
     order = Order.read(folder)

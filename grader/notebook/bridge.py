@@ -1,10 +1,10 @@
-"""Bridge: starts the kernel in its cell and passes its messages through the cell's standard input and output.
+"""Bridge: start the kernel in its cell, and pass its messages through the cell's standard input and output.
 
     python -m grader.notebook.bridge FOLDER WORKSPACE
 
-The kernel's sockets lie on the cell's own disk. So the cell needs no folder of the machine that it can write to, and
-whoever reads the pipes (grader.gradebook.relay) decides how much to take. FOLDER is a copy of the submission that can
-only be read, WORKSPACE the folder in which the kernel works on a copy of its own.
+The kernel's sockets are on the cell's own disk. So the cell needs no writable folder of the machine, and the reader of
+the pipes (grader.gradebook.relay) decides how much it reads. FOLDER is a read-only copy of the submission. The kernel
+works on its own copy in WORKSPACE.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ from grader.common.interpreter import interpreter
 from grader.notebook.frames import CHANNELS, CHUNK, ORDER, Unpacker, packed
 
 IDENTITY = b"bridge"
-"""One on all channels: the kernel asks for input on one channel whoever made a request on another."""
+"""All channels have the same identity: the kernel requests input on another channel than that of the request."""
 RETRY_MS = 10
-"""How often it is tried to connect to a kernel that is just starting."""
+"""The interval for trying to connect to a kernel that is starting (s)."""
 LAST_MS = 100
-"""How long what a kernel said last may be on its way when the kernel has ended."""
+"""How long to wait for the last messages of a kernel that has ended (s)."""
 _IOPUB = CHANNELS.index("iopub")
 
 
 class Bridge:
-    """The sockets of one kernel, and what waits for it to listen."""
+    """The sockets of one kernel, and the messages that wait until it listens."""
 
     def __init__(self, folder: Path, key: dict[str, Any]) -> None:
-        """`folder` is where the sockets are to be, `key` what a connection file says of signatures."""
+        """Create the sockets in `folder`; `key` is the part of the connection file about signatures."""
         self.connection_file = folder / "kernel.json"
         info = {"transport": "ipc", "ip": str(folder / "socket"), "kernel_name": "", **key}
         self._context = zmq.Context()
@@ -60,14 +60,14 @@ class Bridge:
         return socket
 
     def send(self, channel: int, parts: list[bytes]) -> None:
-        """Pass a message on to the kernel, as soon as the kernel's own words would arrive here."""
+        """Pass a message on to the kernel as soon as its replies would arrive here."""
         if self._waiting is not None:
             self._waiting.append((channel, parts))
         elif channel < _IOPUB:
             self._sockets[channel].send_multipart(parts)
 
     def serve(self, kernel: int) -> None:
-        """Pass messages until standard input ends, or the process behind the descriptor `kernel` (a pidfd)."""
+        """Pass messages until standard input ends, or the process of the descriptor `kernel` (a pidfd) ends."""
         poller = zmq.Poller()
         for number in (0, kernel, *self._sockets):
             poller.register(number, zmq.POLLIN)
@@ -87,21 +87,21 @@ class Bridge:
                     self.send(channel, parts)
 
     def _hear(self) -> None:
-        """Pass on what the kernel has said."""
+        """Pass on the messages of the kernel."""
         for channel, socket in enumerate(self._sockets):
             while socket.poll(0):
                 data = memoryview(packed(channel, socket.recv_multipart()))
                 while data:
                     data = data[os.write(1, data) :]
                 if channel == _IOPUB and self._waiting is not None:
-                    # Its first word, the welcome to a new subscriber: nothing that it says from now on gets lost.
+                    # The kernel welcomes a new subscriber with its first message. From now on, no message is lost.
                     waiting, self._waiting = self._waiting, None
                     for each in waiting:
                         self.send(*each)
 
 
 def main() -> None:
-    """Start the kernel, and be its bridge until it ends."""
+    """Start the kernel and pass its messages until it ends."""
     folder, workspace = sys.argv[1:]
     unpacker, orders = Unpacker(), list[tuple[int, list[bytes]]]()
     while not orders:

@@ -1,7 +1,7 @@
-"""Frames: messages of a kernel on a pipe. Relay (outside of the cell) and bridge (inside) speak them.
+"""Frames: the format of a kernel's messages on the pipe between relay (outside of the cell) and bridge (inside).
 
 A frame is a message of ZeroMQ with its channel: one byte for the channel, two for the number of parts, four for the
-size of each part, all big-endian, then the parts. So the reader knows how large a message is before it takes any of it.
+size of each part, all big-endian, then the parts. So the reader knows the size of a message before it reads any of it.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 CHANNELS = ("shell", "control", "stdin", "iopub")
-"""A frame names its channel by the place in this list."""
+"""The channels. A frame names its channel by the index in this list."""
 ORDER = len(CHANNELS)
-"""The channel of the first frame of all, which tells the bridge the key of the signatures."""
+"""The channel of the very first frame, which gives the bridge the key of the signatures."""
 CHUNK = 1024 * 1024
-"""Bytes that are read from a pipe at a time."""
+"""The number of bytes that are read from a pipe at a time."""
 MOST_PARTS = 1000
 
 _HEAD = struct.Struct(">BH")
@@ -25,27 +25,27 @@ _SIZE = 4
 
 
 class FrameError(ValueError):
-    """What came is not a frame, or too large to be taken; the text says which."""
+    """The data are not a frame, or the frame is too large; the message says which."""
 
 
 def packed(channel: int, parts: Sequence[bytes]) -> bytes:
-    """A message as a frame."""
+    """Return a message as a frame."""
     sizes = b"".join(len(part).to_bytes(_SIZE, "big") for part in parts)
     return b"".join((_HEAD.pack(channel, len(parts)), sizes, *parts))
 
 
 class Unpacker:
-    """Makes messages of the bytes of a pipe; `most` is how large one may be (bytes), without limit if None."""
+    """Split the bytes of a pipe into messages; `most` is the maximum size of one (bytes), or None for no limit."""
 
     def __init__(self, most: int | None = None) -> None:
         self._most = most
         self._data = bytearray()
 
     def feed(self, data: bytes) -> Iterator[tuple[int, list[bytes]]]:
-        """Take what was read, and yield the messages that are complete now, each with its channel.
+        """Add bytes, and yield the messages that are now complete, each with its channel.
 
         Raises:
-            FrameError: the channel does not exist, or the message is too large. Nothing after it can be read.
+            FrameError: the channel does not exist, or the message is too large. No more messages can be read after it.
         """
         self._data += data
         while (sizes := self._sizes()) is not None:
@@ -60,12 +60,12 @@ class Unpacker:
             yield channel, parts
 
     def _sizes(self) -> list[int] | None:
-        """The sizes of the parts of the next message (bytes); None while they have not arrived."""
+        """Return the sizes of the parts of the next message (bytes), or None if they have not arrived."""
         if len(self._data) < _HEAD.size:
             return None
         channel, count = _HEAD.unpack_from(self._data)
         if channel > ORDER or count > MOST_PARTS:
-            message = "what is no message of a kernel"
+            message = "something that is not a message of a kernel"
             raise FrameError(message)
         if len(self._data) < _HEAD.size + _SIZE * count:
             return None

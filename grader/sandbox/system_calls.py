@@ -35,8 +35,8 @@ DENIED = {
         "io_uring_register": 427, "modify_ldt": 154, "fanotify_init": 300, "vmsplice": 278, "lookup_dcookie": 212,
         "uselib": 134, "_sysctl": 156, "nfsservctl": 180,
     },
-    # Of the first, a user has 128; of the second, all users together have 65,536 requests.
-    "what cells could take from each other": {
+    # A user may have 128 instances of inotify. All users together may have 65,536 asynchronous requests.
+    "things that one cell could use up for others": {
         "inotify_init": 253, "inotify_init1": 294, "inotify_add_watch": 254, "inotify_rm_watch": 255,
         "io_setup": 206, "io_destroy": 207, "io_getevents": 208, "io_submit": 209, "io_cancel": 210,
         "io_pgetevents": 333,
@@ -54,7 +54,7 @@ DENIED = {
 }  # fmt: skip
 _SOCKET, _CLONE, _CLONE3, _FCNTL = 41, 56, 435, 72
 _SET_PIPE_SIZE = 1031
-"""F_SETPIPE_SZ of fcntl(2): 64 pipes of a megabyte are all that a user may have, and others get small ones."""
+"""F_SETPIPE_SZ of fcntl(2). A user may have only 64 pipes of a megabyte. All others are then small."""
 # AF_UNIX, AF_INET, AF_INET6, and AF_NETLINK for listing interfaces. AF_VSOCK would lead out of a virtual machine.
 _FAMILIES = (1, 2, 10, 16)
 # CLONE_NEWNS, NEWCGROUP, NEWUTS, NEWIPC, NEWUSER, NEWPID and NEWNET.

@@ -1,9 +1,11 @@
-"""Who a room or cell is outside of its namespaces: where root grades, a user of its own, whom no other cell is.
+"""Choose a different user for each room or cell when root grades.
 
-The kernel counts some things per user: the pages of pipes, instances of inotify, signals and timers that wait, sockets
-on their way. Cells of one user could take them from each other. So each gets a number of its own from a range that
-nobody else uses, and keeps it as long as it lives. Whoever has a number locks the byte of that number in one file: the
-lock holds among all graders of a machine, and ends with the grader.
+The kernel counts some things per user: pages of pipes, instances of inotify, pending signals and timers, and sockets in
+transit. If two cells had the same user, one could use them all up. So each room or cell gets its own user id from a
+range
+that nothing else uses, and keeps it until it ends. To reserve an id, the grader locks the byte of this number in a
+file.
+The lock is valid for all graders of a machine and ends with the grader.
 """
 
 from __future__ import annotations
@@ -24,24 +26,24 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 FIRST_USER = 2_000_000_000
-"""Given to nobody: https://systemd.io/UIDS-GIDS. Debian's policy does not go so far either."""
+"""A range that is not assigned to users or services: https://systemd.io/UIDS-GIDS and Debian's policy."""
 USERS = 65_536
 FEW_USERS = range(65_520, 65_534)
-"""For containers that have no others: in no range that systemd or Debian's policy gives to users or services."""
+"""For containers without the other range. systemd and Debian's policy do not assign these ids either."""
 MAP = Path("/proc/self/uid_map")
 PLACES = ("/run", "/var/run")
-"""Where the file is kept, the first that there is; else among the temporary files."""
+"""The folder for the file is the first of these that exists, otherwise the one for temporary files."""
 TRIES = 10_000
 
 
 @contextmanager
 def cell_user() -> Iterator[int | None]:
-    """A number that no other living room or cell of this machine has; None unless the caller is root.
+    """Yield a user id that no other room or cell of this machine has now; None if the caller is not root.
 
-    Leave it after the last process of the room or cell has been waited for.
+    Leave the context after the last process of the room or cell has ended.
 
     Raises:
-        MachineError: so many cells live that there is none left, or the file cannot be kept.
+        MachineError: all ids are in use, or the file cannot be opened.
     """
     if os.geteuid() != 0:
         yield None
@@ -53,12 +55,15 @@ def cell_user() -> Iterator[int | None]:
         message = f"The list of the users of cells could not be opened: {error}."
         raise MachineError(message) from error
     try:
-        # At random, so that the number of a cell whose grader was just killed is not the next one's.
+        # A random id, so that a new cell does not get the id of a cell whose grader was just killed.
         for user in random.choices(users, k=TRIES):
             if _lock(file, user):
                 break
         else:
-            message = "No user is left for a cell: too many cells run on this machine. Wait until others have ended."
+            message = (
+                "There is no free user id for a cell, because too many cells run on this machine. Wait until others "
+                "have ended."
+            )
             raise MachineError(message)
         yield user
     finally:
@@ -66,7 +71,7 @@ def cell_user() -> Iterator[int | None]:
 
 
 def _users(uid_map: str) -> range:
-    """Who may be chosen, by the users that there are in this namespace (uid_map of user_namespaces(7))."""
+    """Return the ids to choose from, according to the uid_map of this namespace (user_namespaces(7))."""
     for line in uid_map.splitlines():
         first, _, count = map(int, line.split())
         if first <= FIRST_USER and first + count >= FIRST_USER + USERS:
@@ -75,20 +80,20 @@ def _users(uid_map: str) -> range:
 
 
 def _folder() -> Path:
-    """A folder that is root's alone."""
+    """Return a folder that only root can write to."""
     top = next((place for place in PLACES if os.access(place, os.W_OK)), tempfile.gettempdir())
     folder = Path(top) / "ros2-grader"
     with suppress(FileExistsError):
         folder.mkdir(mode=0o700)
     about = folder.lstat()
     if not stat.S_ISDIR(about.st_mode) or about.st_uid != 0 or about.st_mode & 0o077:
-        message = f"{folder} is not a folder of root's alone: remove it."
+        message = f"{folder} must be a folder that only root can change. Remove it."
         raise MachineError(message)
     return folder
 
 
 def _lock(file: int, byte: int) -> bool:
-    """Lock a byte of the file for this open file and nobody else (F_OFD_SETLK of fcntl(2))."""
+    """Lock a byte of the file for this open file (F_OFD_SETLK of fcntl(2))."""
     # struct flock: type, whence, start, length, pid.
     wanted = struct.pack("hhqqi4x", fcntl.F_WRLCK, os.SEEK_SET, byte, 1, 0)
     try:

@@ -1,4 +1,4 @@
-"""What of a kernel's messages may reach nbgrader, message by message."""
+"""Which messages of a kernel may reach nbgrader, tested message by message."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HEADER = {"msg_id": "1", "msg_type": "stream"}
 
 
 def message(content: Any, *buffers: bytes, key: bytes = KEY, header: Any = HEADER) -> list[bytes]:  # noqa: ANN401
-    """A message as a kernel sends it; `content` as bytes is sent as it is."""
+    """Return a message as a kernel sends it. `content` is sent unchanged if it is bytes."""
     read: tuple[Any, ...] = (header, {}, {}, content)
     parts = [part if isinstance(part, bytes) else json.dumps(part).encode() for part in read]
     signature = hmac.new(key, b"".join(parts), hashlib.sha256).hexdigest().encode()
@@ -25,7 +25,7 @@ def message(content: Any, *buffers: bytes, key: bytes = KEY, header: Any = HEADE
 
 
 def refused(*messages: list[bytes], budget: Budget = Budget()) -> str:  # noqa: B008 - frozen
-    """Why the last of these is not taken; the others are."""
+    """Return why the last of these messages is refused. The others must be accepted."""
     account = Account(KEY, budget)
     for each in messages[:-1]:
         account.take(each)
@@ -34,7 +34,7 @@ def refused(*messages: list[bytes], budget: Budget = Budget()) -> str:  # noqa: 
     return str(error.value)
 
 
-def test_what_a_kernel_sends_is_taken() -> None:
+def test_messages_of_a_kernel_are_accepted() -> None:
     account = Account(KEY)
     for number in range(100):
         account.take(message({"text": f"{number} \N{TURTLE}", "data": [1, 2.5, None, True, {"a": []}]}, b"\0" * 100))
@@ -61,12 +61,12 @@ def test_what_a_kernel_sends_is_taken() -> None:
         [b"x"] * 6 + message({}),
     ],
 )
-def test_what_is_no_message_is_refused(parts: list[bytes]) -> None:
-    assert refused(parts) == "what is no message of a kernel"
+def test_data_that_are_not_a_message_are_refused(parts: list[bytes]) -> None:
+    assert refused(parts) == "something that is not a message of a kernel"
 
 
-def test_a_message_is_taken_once() -> None:
-    assert refused(message({}), message({})) == "what is no message of a kernel"
+def test_a_message_is_accepted_only_once() -> None:
+    assert refused(message({}), message({})) == "something that is not a message of a kernel"
 
 
 def test_messages_have_a_budget_in_number_bytes_values_and_depth() -> None:
@@ -81,7 +81,7 @@ def test_messages_have_a_budget_in_number_bytes_values_and_depth() -> None:
     assert "more than 50 objects inside each other" in refused(message({"a": nested}))
 
 
-def test_frames_come_out_as_they_went_in_whatever_the_pieces() -> None:
+def test_frames_survive_the_pipe_in_pieces_of_any_size() -> None:
     sent = [(0, [b"", b"a" * 1000]), (len(CHANNELS) - 1, []), (ORDER, [b"b"])]
     data = b"".join(packed(channel, parts) for channel, parts in sent)
     for size in (1, 3, 7, 5000):
@@ -93,6 +93,6 @@ def test_frames_come_out_as_they_went_in_whatever_the_pieces() -> None:
 @pytest.mark.parametrize(
     "data", [b"\xff\0\1", packed(0, [b""] * MOST_PARTS)[:1] + b"\xff\xff", packed(0, [b"x" * 3000])[:7]]
 )
-def test_a_frame_is_refused_before_it_is_taken(data: bytes) -> None:
+def test_a_frame_that_is_too_large_is_refused_before_it_is_read(data: bytes) -> None:
     with pytest.raises(FrameError):
         list(Unpacker(2000).feed(data))

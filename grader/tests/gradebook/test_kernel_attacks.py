@@ -1,4 +1,4 @@
-"""Kernels that attack nbgrader: each is ended with a reason, nbgrader stays small, and the notebook can be written."""
+"""Kernels that attack nbgrader are ended with a reason. nbgrader stays small, and the notebook can be written."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 MORE_KIB = 512 * 1024
-"""What nbgrader's process may grow by while it runs any of these."""
-NO_MESSAGE = "The kernel sent what is no message of a kernel."
+"""The limit for the growth of nbgrader's process while it runs one of these."""
+NO_MESSAGE = "The kernel sent something that is not a message of a kernel."
 
 COMM = "from comm import create_comm\n"
 SEND = """\
@@ -75,24 +75,24 @@ ATTACKS = {
         "kept = [bytearray(b'x') * (200 << 20) for _ in range(15)]\nimport time; time.sleep(60)",
         "The notebook exceeded its limit on memory.",
     ),
-    "output without keys": (SEND + "send('stream', {})", "The kernel sent what nbgrader could not follow."),
+    "output without keys": (SEND + "send('stream', {})", "The kernel sent messages that nbgrader could not process."),
     "a display with a list as its id": (
         SEND + "send('display_data', {'data': {}, 'metadata': {}, 'transient': {'display_id': [1]}})",
-        "The kernel sent what nbgrader could not follow.",
+        "The kernel sent messages that nbgrader could not process.",
     ),
     "an output of another kind": (
         SEND + "send('execute_result', {'data': 7, 'metadata': [], 'execution_count': 'x'})",
-        "The kernel sent what nbgrader could not follow.",
+        "The kernel sent messages that nbgrader could not process.",
     ),
     "a change that is none": (
         SEND + "about = {'metadata': {}, 'transient': {'display_id': 'a'}}\n"
         "send('display_data', {'data': {'text/plain': ''}, **about})\n"
         "send('update_display_data', {'data': {'text/plain': 7}, **about})",
-        "The kernel sent what nbgrader could not follow.",
+        "The kernel sent messages that nbgrader could not process.",
     ),
     "its own bridge": ("import os, signal\nos.kill(os.getppid(), signal.SIGKILL)", "The kernel died."),
 }
-"""Name -> a cell, and why nothing runs after it."""
+"""Name -> a cell, and the reason why no cell runs after it."""
 SAMPLE = ("large widgets", "messages without end", "files without end", "output without keys")
 
 MANY_CHANGED = (
@@ -101,17 +101,17 @@ MANY_CHANGED = (
     + "for _ in range(300):\n    send('display_data', {'data': {'text/plain': ''}, **about})\n"
     + "send('update_display_data', {'data': {'text/plain': 'x' * 3_000_000}, **about})"
 )
-"""A gigabyte of outputs, by one message that changes all of them."""
+"""A gigabyte of outputs from one message that changes all of them."""
 
 
 class Application(Configurable):
-    """As much of nbgrader's application as a step asks for."""
+    """The parts of nbgrader's application that a step needs."""
 
     coursedir: Any = None
 
 
 def executed(folder: Path, *sources: str) -> NotebookNode:
-    """The notebook of these cells, after autograde's step has run it; it can be written and read."""
+    """Run autograde's step on a notebook with these cells. Check that the result can be written and read."""
     application = Application()
     application.coursedir = SimpleNamespace(format_path=lambda *_: str(folder), submitted_directory="submitted")
     step = ConfinedExecute(parent=Configurable(parent=application))
@@ -125,12 +125,12 @@ def executed(folder: Path, *sources: str) -> NotebookNode:
 
 
 def said(cell: NotebookNode) -> str:
-    """What stands below a cell."""
+    """Return the text of the outputs below a cell."""
     return "".join(str(output.get("evalue") or output.get("text")) for output in cell.outputs)
 
 
 def names(folder: str) -> set[str]:
-    """What a folder of the machine holds."""
+    """Return the content of a folder of the machine."""
     return {path.name for path in Path(folder).iterdir()}
 
 
@@ -146,12 +146,12 @@ def test_a_kernel_that_attacks_is_ended_with_a_reason(name: str, tmp_path: Path)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < MORE_KIB
 
 
-def test_one_message_that_changes_many_outputs_makes_no_large_notebook(tmp_path: Path) -> None:
+def test_one_message_that_changes_many_outputs_does_not_make_a_large_notebook(tmp_path: Path) -> None:
     attacking, later = executed(tmp_path, MANY_CHANGED, "print('later')").cells
     assert (said(attacking), said(later)) == (TOO_MUCH, TOO_MUCH)
 
 
-def test_a_kernel_writes_nowhere_but_on_disks_of_its_own(tmp_path: Path) -> None:
+def test_a_kernel_can_only_write_to_its_own_disks(tmp_path: Path) -> None:
     code = """
 for line in open('/proc/self/mountinfo'):
     before, _, after = line.partition(' - ')

@@ -1,4 +1,4 @@
-"""The relay and whatever comes through the pipe of a cell; and its end, whoever ends first."""
+"""The relay: it passes on what comes through the pipe of a cell, and ends with the cell or with nbgrader."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from grader.sandbox.bubblewrap import View
 INFO = """{"ip": "SOCKETS", "key": "key", "signature_scheme": "hmac-sha256",
 "shell_port": 1, "control_port": 2, "stdin_port": 3, "iopub_port": 4, "hb_port": 5}"""
 STAYS = "\nimport time; time.sleep(600)"
-NO_MESSAGE = "The kernel sent what is no message of a kernel."
+NO_MESSAGE = "The kernel sent something that is not a message of a kernel."
 
 
 class Started:
-    """A relay whose cell is a Python with this code, without a sandbox."""
+    """Start a relay whose cell is a Python process with this code, without a sandbox."""
 
     def __init__(self, folder: Path, code: str) -> None:
         self.folder = folder
@@ -34,7 +34,7 @@ class Started:
         self.process = subprocess.Popen(start.argv, env=start.env, stdin=subprocess.PIPE)
 
     def why(self) -> str:
-        """Why it has ended the cell, after it has ended."""
+        """Return why the relay ended the cell."""
         assert self.process.wait(60) == 0
         file = self.folder / WHY_FILE
         return file.read_text() if file.is_file() else ""
@@ -52,16 +52,16 @@ class Started:
         (packed(0, [b"<IDS|MSG>", b"0" * 64, b"{}", b"{}", b"{}", b"{}"]), NO_MESSAGE),
     ],
 )
-def test_what_is_no_message_ends_the_cell_at_once(tmp_path: Path, sent: bytes, why: str) -> None:
+def test_data_that_are_not_a_message_end_the_cell_at_once(tmp_path: Path, sent: bytes, why: str) -> None:
     relay = Started(tmp_path, f"import os; os.write(1, {sent!r})" + STAYS)
     assert relay.why() == why
 
 
-def test_a_cell_that_ends_ends_its_relay(tmp_path: Path) -> None:
+def test_the_relay_ends_with_its_cell(tmp_path: Path) -> None:
     assert Started(tmp_path, "pass").why() == ""
 
 
-def test_half_a_frame_is_awaited_and_the_end_ends_it(tmp_path: Path) -> None:
+def test_the_relay_waits_for_the_rest_of_a_frame_until_the_cell_ends(tmp_path: Path) -> None:
     assert Started(tmp_path, "import os; os.write(1, bytes(2))").why() == ""
 
 

@@ -1,4 +1,4 @@
-"""Each cell is a user of its own where root grades: no two that live at the same time are the same."""
+"""If root grades, each cell has a user of its own, and two cells at the same time have different users."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from grader.sandbox.user import FEW_USERS, FIRST_USER, USERS, cell_user
 
 SEEN = bubblewrap.View(())
 ENV = {"PATH": "/usr/bin:/bin"}
-as_root = pytest.mark.skipif(os.geteuid() != 0, reason="only root can become somebody else")
+as_root = pytest.mark.skipif(os.geteuid() != 0, reason="only root can become another user")
 HOLDS = """
 import sys
 from grader.sandbox import user
@@ -30,18 +30,18 @@ with user.cell_user() as mine:
 
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """A machine with few users, and a list of its own."""
+    """A machine with few user ids, and with its own lock file."""
     monkeypatch.setattr(user, "_users", lambda _: FEW_USERS)
     monkeypatch.setattr(user, "PLACES", (str(tmp_path),))
 
 
 @as_root
 @pytest.mark.usefixtures("few")
-def test_no_two_have_the_same_user_until_one_has_ended() -> None:
+def test_two_cells_never_have_the_same_user_at_the_same_time() -> None:
     with ExitStack() as stack:
         users = [stack.enter_context(cell_user()) for _ in FEW_USERS]
         assert sorted(map(str, users)) == sorted(map(str, FEW_USERS))
-        with pytest.raises(MachineError, match="No user is left"):
+        with pytest.raises(MachineError, match="There is no free user id"):
             stack.enter_context(cell_user())
     with cell_user() as again:
         assert again in FEW_USERS
@@ -49,7 +49,7 @@ def test_no_two_have_the_same_user_until_one_has_ended() -> None:
 
 @as_root
 @pytest.mark.usefixtures("few")
-def test_other_graders_have_other_users(tmp_path: Path) -> None:
+def test_two_graders_use_different_users(tmp_path: Path) -> None:
     argv, pipe = [sys.executable, "-c", HOLDS, str(tmp_path)], subprocess.PIPE
     others = [subprocess.Popen(argv, stdin=pipe, stdout=pipe) for _ in range(2)]
     try:
@@ -64,7 +64,7 @@ def test_other_graders_have_other_users(tmp_path: Path) -> None:
 
 
 @as_root
-def test_a_cell_is_that_user_outside_and_1000_inside() -> None:
+def test_a_cell_has_its_user_outside_and_user_1000_inside() -> None:
     code = "import os; print(os.getuid(), os.stat('/proc/self').st_uid, flush=True); input()"
     view = bubblewrap.View((Path(sys.base_prefix), Path(sys.prefix)))
     with cell_user() as mine:
@@ -86,13 +86,13 @@ def family(pid: int) -> list[int]:
     return [pid, *(each for child in children for each in family(int(child)))]
 
 
-def test_a_container_with_few_users_has_enough() -> None:
+def test_a_container_with_few_users_is_sufficient() -> None:
     assert user._users("0 0 4294967295\n") == range(FIRST_USER, FIRST_USER + USERS)
     assert user._users("0 100000 65536\n") == FEW_USERS
 
 
 @as_root
-def test_a_list_that_others_could_change_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_lock_file_that_others_can_change_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(user, "PLACES", (str(tmp_path),))
     (tmp_path / "ros2-grader").mkdir()
     (tmp_path / "ros2-grader").chmod(0o777)
@@ -101,7 +101,7 @@ def test_a_list_that_others_could_change_is_refused(monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
-def test_pipes_timers_and_inotify_are_not_taken_from_others() -> None:
+def test_a_cell_cannot_use_up_pipes_timers_and_inotify_of_others() -> None:
     code = """
 import ctypes, fcntl, json, os
 libc, timer = ctypes.CDLL(None, use_errno=True), ctypes.c_void_p()

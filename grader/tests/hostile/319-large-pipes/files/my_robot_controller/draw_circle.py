@@ -1,4 +1,4 @@
-"""It takes all pages of pipes that its user may have, so that others get small ones."""
+"""It uses up the pipe pages of its user, so that other pipes are small."""
 
 import fcntl
 import os

@@ -1,4 +1,4 @@
-"""It takes all instances of inotify that its user may have."""
+"""It uses up the inotify instances of its user."""
 
 import ctypes
 

@@ -1,4 +1,4 @@
-"""It takes all signals and timers that its user may have waiting."""
+"""It uses up the pending signals and timers of its user."""
 
 import ctypes
 
