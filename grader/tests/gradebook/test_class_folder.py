@@ -75,7 +75,7 @@ def test_the_configuration_of_a_folder_that_is_nobodys_class_is_not_run(clone: P
     for place in (clone, clone / "course"):
         with pytest.MonkeyPatch.context() as patch:
             patch.chdir(place)
-            with pytest.raises(UsageError, match=r"is a program, and .* has not made this folder for you.*--course "):
+            with pytest.raises(UsageError, match=r"is a program, but .* has not made this folder for you.*--course "):
                 open_class(None)
     assert not (clone.parent / "touched").exists()
 
