@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,8 @@ if TYPE_CHECKING:
 
 ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
 """Topics on which every node publishes, or the grader."""
+SPINS = re.compile(r'executors\.py", line \d+, in _?spin_')
+"""A frame of rclpy's executor that calls callbacks, in a traceback."""
 START_S = 0.2
 """The length of the first moment (s): the clock may start before the publisher of the node is known."""
 
@@ -22,13 +25,18 @@ def end_s(recording: Recording) -> float:
 
 
 def ended_at_start(recording: Recording) -> bool:
-    """Return whether the node ended by itself before it waited for anything.
+    """Return whether the node ended by itself before it ran.
 
-    Simulated time is held until the node waits. Wall time starts when the node is in the graph or publishes a command,
-    so a node that is about to end may still run for the first moment.
+    A node whose exception came out of rclpy's spin ran, however soon that was. This depends neither on the clock nor on
+    when the node was first observed. Without such an exception, the first moment decides.
     """
     end = recording.end
-    return end.by == "itself" and end.t_s <= (START_S if recording.clock == "wall" else 0.0)
+    return end.by == "itself" and end.t_s <= START_S and not spun(recording)
+
+
+def spun(recording: Recording) -> bool:
+    """Return whether an exception on standard error came out of a callback that rclpy's executor had called."""
+    return bool(SPINS.search(recording.stderr.text))
 
 
 def commands(recording: Recording) -> tuple[Command, ...]:

@@ -12,6 +12,7 @@ from grader.checks.causes.syntax import unreadable_observed, why_unreadable
 from grader.checks.causes.why_crashed import why_crashed
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.package_xml import why_not_read
 from grader.common.words import a_list, shorten
 from grader.submission.code import import_path
 from grader.submission.where import Where
@@ -155,6 +156,11 @@ def installs(evidence: Evidence, _: NoParams) -> Finding:
         f"share/{name}/package.xml": "package.xml",
     }
     missing = [words for path, words in wanted.items() if path not in installed]
+    manifest = evidence.manifest
+    if manifest is not None and manifest.problem is not None:
+        observed = "colcon cannot read package.xml, so it built a plain Python package."
+        expected = "colcon builds a ROS 2 package, which `ros2 run` finds."
+        return failed(observed, expected, why_not_read(evidence, manifest))
     if not missing:
         return passed("ROS 2 finds the installed package.")
     where = Where("setup.py", _setup_line(evidence))

@@ -29,7 +29,7 @@ def starts(evidence: Evidence, _: NoParams) -> Finding:
         why = why_ended(evidence)
         observed = f"{executable} ended by itself at startup."
         return failed(observed, expected, why)
-    if not activity.nodes(recording):
+    if not activity.nodes(recording) and not activity.spun(recording):
         return _no_node(evidence)
     return passed("The node starts.")
 

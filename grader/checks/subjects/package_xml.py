@@ -46,7 +46,8 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
             Cause("package-xml-missing", cause, Where("setup.py")),
         )
     if manifest.problem is not None:
-        return _unreadable(evidence, manifest, f"The lesson shows {expected}.")
+        observed = f"{FILE} cannot be read: {manifest.problem}."
+        return failed(observed, f"The lesson shows {expected}.", why_not_read(evidence, manifest))
     if manifest.build_type != BUILD_TYPE and CATKIN in manifest.other_depends:
         cause = f"{CATKIN} is the build tool of ROS 1. Did you follow an old tutorial?"
         where = _line(evidence, CATKIN)
@@ -62,13 +63,13 @@ def valid(evidence: Evidence, _: NoParams) -> Finding:
     return passed(f"{FILE} is valid.")
 
 
-def _unreadable(evidence: Evidence, manifest: Manifest, expected: str) -> Finding:
+def why_not_read(evidence: Evidence, manifest: Manifest) -> Cause:
+    """Return the cause of a package.xml that catkin_pkg, and with it colcon, cannot read."""
     problem = manifest.problem or ""
-    observed = f"{FILE} cannot be read: {problem}."
     tag = ROS_1_TAGS.search(problem)
     if tag is not None:
         cause = f"<{tag['tag']}> belongs to ROS 1. In format 3, use <depend> or <exec_depend>."
-        return failed(observed, expected, Cause("package-xml-old-tag", cause, _line(evidence, f"<{tag['tag']}")))
+        return Cause("package-xml-old-tag", cause, _line(evidence, f"<{tag['tag']}"))
     if XML.search(problem):
         cause = "Each <tag> needs a closing </tag> with the same name. Close the inner tag before the outer tag."
         line = manifest.line
@@ -77,12 +78,8 @@ def _unreadable(evidence: Evidence, manifest: Manifest, expected: str) -> Findin
             cause = f"<{shorten(tag_, 30)}> in line {line} has no closing tag </{shorten(tag_, 30)}>."
         elif "junk after" in problem:
             cause = "Nothing may follow the last tag, </package>."
-        return failed(observed, expected, Cause("xml-malformed", cause, Where(FILE, line)))
-    return failed(
-        observed,
-        expected,
-        Cause("package-xml-invalid", where=Where(FILE, manifest.line or _line(evidence, "<package").line)),
-    )
+        return Cause("xml-malformed", cause, Where(FILE, line))
+    return Cause("package-xml-invalid", where=Where(FILE, manifest.line or _line(evidence, "<package").line))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -102,7 +102,6 @@ def test_what_ros_2_finds_a_package_by_must_be_installed() -> None:
         ({}, "my_robot", "my_robot"),
         (xml("<name>my_robot_controller", "<name>by_package_xml"), None, "by_package_xml"),
         ({"package.xml": None, **setup_py('"my_robot_controller"', '"by_setup_py"')}, None, "by_setup_py"),
-        ({"package.xml": "<package>", **setup_py('"my_robot_controller"', '"by_setup_py"')}, None, "by_setup_py"),
         ({"package.xml": None, "setup.py": None}, None, "my_robot_controller"),
         ({"package.xml": None, "setup.py": "setup()\n"}, None, "my_robot_controller"),
     ],

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.checks.causes.crash import end_observed
+from grader.checks.causes.crash import START, end_observed
 from grader.checks.outcome import Status
 from grader.tests.checks.made import (
     NODE_FILE,
@@ -88,11 +88,11 @@ def test_a_node_that_crashed_while_it_ran_did_start() -> None:
     [
         ("wall", 0.2, "ends-at-once"),
         ("wall", 0.21, None),
-        ("simulated", 0.0, "ends-at-once"),
-        ("simulated", 0.1, None),
+        ("simulated", 0.2, "ends-at-once"),
+        ("simulated", 0.21, None),
     ],
 )
-def test_by_the_walls_clock_an_end_in_the_first_moment_is_one_at_the_start(
+def test_by_either_clock_an_end_in_the_first_moment_is_one_at_the_start(
     clock: ClockName, t_s: float, diagnosis: str | None
 ) -> None:
     """There the clock starts when the node is in the graph, which may be before it has been made as a whole."""
@@ -100,6 +100,18 @@ def test_by_the_walls_clock_an_end_in_the_first_moment_is_one_at_the_start(
     seen = evidence(recording([], clock=clock, end=end))
     assert finding("start", seen).diagnosis == diagnosis
     assert end_observed(seen).endswith("at startup." if diagnosis else f"after {t_s:.1f} s.")
+
+
+@pytest.mark.parametrize("clock", ["wall", "simulated"])
+@pytest.mark.parametrize(
+    ("frame", "starts"), [("rclpy/executors.py", True), ("my_robot_controller/draw_circle.py", False)]
+)
+def test_a_node_that_crashes_in_its_first_callback_has_started(clock: ClockName, frame: str, *, starts: bool) -> None:
+    """However soon that is, and whoever looks first."""
+    text = f'{START}\n  File "/ros/{frame}", line 838, in spin_once\n    x\nValueError: x\n'
+    end = ProcessEnd(by="itself", exit_code=1, t_s=0.0, stop_s=None)
+    crashed_early = evidence(recording([], clock=clock, end=end, stderr=Output(text)))
+    assert (finding("start", crashed_early).status is Status.PASSED) == starts
 
 
 def test_a_missing_spin_is_told_where_the_node_ends_at_once() -> None:
