@@ -117,7 +117,7 @@ def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
     if any(result.report.with_status(Status.ERROR) for result in graded):
         return 3
     shares = [result.report.points / result.report.max if result.report.max else 0.0 for result in graded]
-    # The tolerance prevents that rounding of floats fails a class.
+    # Without the tolerance, float rounding could fail a class.
     return 1 if fail_under is not None and any(100.0 * share < fail_under - 1e-9 for share in shares) else 0
 
 

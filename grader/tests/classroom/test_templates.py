@@ -111,7 +111,7 @@ def test_gradescopes_archive_has_what_it_needs_and_no_solutions(tmp_path: Path) 
     assert [name for name in names if "solutions" in name or "/tests/" in name] == []
 
 
-def test_gradescopes_archive_of_wrong_checks_is_not_made(tmp_path: Path) -> None:
+def test_wrong_checks_make_no_gradescope_archive(tmp_path: Path) -> None:
     (tmp_path / "mine" / STEP).mkdir(parents=True)
     (tmp_path / "mine" / STEP / "exercise.toml").write_text("schema = 2\n[[check]]\nid = 'new'\n")
     with pytest.raises(UsageError, match="kind"):

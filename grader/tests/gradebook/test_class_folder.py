@@ -71,7 +71,7 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-def test_the_configuration_of_a_folder_that_is_nobodys_class_is_not_run(clone: Path) -> None:
+def test_the_configuration_of_an_unknown_folder_is_not_run(clone: Path) -> None:
     for place in (clone, clone / "course"):
         with pytest.MonkeyPatch.context() as patch:
             patch.chdir(place)
@@ -80,7 +80,7 @@ def test_the_configuration_of_a_folder_that_is_nobodys_class_is_not_run(clone: P
     assert not (clone.parent / "touched").exists()
 
 
-def test_it_is_run_where_the_instructor_names_the_folder_or_has_made_it(clone: Path) -> None:
+def test_a_configuration_runs_if_the_instructor_names_or_made_the_folder(clone: Path) -> None:
     open_class(clone)
     (clone.parent / "touched").unlink()
     remember(clone.parent / "another")

@@ -69,7 +69,7 @@ def test_each_is_graded_or_reported_and_the_others_continue(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS])
-def test_a_disk_of_our_own_that_is_full_stops_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int) -> None:
+def test_a_full_disk_of_the_grader_stops_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int) -> None:
     folders = make(tmp_path)
 
     def full(*_: object) -> NoReturn:

@@ -20,7 +20,7 @@ LAST = "07-challenges"
 
 @pytest.fixture(autouse=True)
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A learner with an own progress file."""
+    """A learner with a progress file of their own."""
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.delenv("XDG_STATE_HOME", raising=False)
     monkeypatch.delenv("ROS2_WORKSPACE", raising=False)
