@@ -147,7 +147,7 @@ def test_where_nothing_is_running_it_says_what_to_start(alone: World) -> None:
     [
         ("graph.gif", ".svg, .png or .dot"),
         ("graph", ".svg, .png or .dot"),
-        ("no/graph.svg", "no folder"),
+        ("no/graph.svg", "does not exist"),
         ("", ".svg, .png or .dot"),
     ],
 )
@@ -193,7 +193,7 @@ def test_a_sourced_rqt_graph_does_not_get_options_that_it_does_not_know(
     real_one(tmp_path)
     done = alone.run(f"rqt_graph {option}", AMENT_PREFIX_PATH=f"{alone.env['AMENT_PREFIX_PATH']}:{tmp_path}")
     assert (done.code, done.stdout) == (1, "")
-    assert "No node is running here" in done.stderr
+    assert "No node is running" in done.stderr
 
 
 def test_what_may_be_missing_is_told(tutorial: World) -> None:
