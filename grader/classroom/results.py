@@ -124,6 +124,9 @@ class Results:
 def opened(folder: Path) -> Iterator[Results]:
     """Yield the folder, which is created if necessary. No other run can use it at the same time.
 
+        with opened(Path("grades")) as results:
+            old = results.load("anna", "03-circle-publisher")
+
     Raises:
         UsageError: another run uses it, or it contains something else than results.
         MachineError: it cannot be written.

@@ -30,7 +30,10 @@ FARTHEST = 1e5
 
 
 def tag(name: str, *children: str, **attributes: Attribute) -> str:
-    """Return an element. `children` are SVG; attribute values are escaped; "_" in attribute names becomes "-"."""
+    """Return an element. `children` are SVG. Attribute values are escaped, and "_" in attribute names becomes "-".
+
+    tag("circle", cx=1, cy=2, stroke_width=0.5)  # <circle cx="1" cy="2" stroke-width="0.5"/>
+    """
     given = "".join(
         f' {key.rstrip("_").replace("_", "-")}="{_value(value)}"'
         for key, value in attributes.items()

@@ -64,7 +64,11 @@ class ControlGroup:
 
 @contextmanager
 def control_group(limits: Limits) -> Iterator[ControlGroup]:
-    """Yield a new group for a cell with these limits, or an empty one if groups are not possible."""
+    """Yield a new group for a cell with these limits, or an empty one if groups are not possible.
+
+    with control_group(limits) as group:
+        subprocess.run(group.joined(command), check=True)
+    """
     group = _make(limits)
     try:
         yield group
