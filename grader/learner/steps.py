@@ -68,8 +68,8 @@ def told(begun: Begun) -> str:
     lines += [
         "",
         f"The lesson:           {lesson}",
-        "A verdict:            grader check",
-        "After every save:     grader watch",
+        "Grade your work:      grader check",
+        "Grade every save:     grader watch",
         f"In each new terminal: source {_setup_file()}",
     ]
     return "\n".join(lines)
