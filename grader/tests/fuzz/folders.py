@@ -48,8 +48,10 @@ def _make(place: bytes, choices: Choices, folders: list[bytes]) -> None:
         os.symlink(choices.one_of((b"..", b".", place, b"/etc", b"package.xml", b"no")), place)  # noqa: PTH211
     elif kind == 4:
         os.mkfifo(place)
-    elif os.path.exists(place):  # noqa: PTH110
-        os.chmod(place, choices.one_of(MODES))  # noqa: PTH101
+    elif os.path.lexists(place):
+        # ".." and links lead out of the folder, to /tmp and /etc: their modes are the machine's.
+        if os.path.basename(place) not in (b".", b"..") and not os.path.islink(place):  # noqa: PTH114, PTH119
+            os.chmod(place, choices.one_of(MODES))  # noqa: PTH101
     else:
         known = FILES.get(os.path.basename(os.fsdecode(place)), "")  # noqa: PTH119
         with open(place, "xb") as file:  # noqa: PTH123
