@@ -85,8 +85,8 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
         if not known:
             message = (
                 f"Which exercise is {shown(str(each.path))} for? Name it with --exercise, one of: "
-                f"{', '.join(catalogue())}. (In nbgrader's tree, submitted/STUDENT/EXERCISE, the folder names "
-                "it.)"
+                f"{', '.join(catalogue())}. (In nbgrader's submitted/STUDENT/EXERCISE, it is the name "
+                "of the folder.)"
             )
             raise UsageError(message)
         for exercise in known:

@@ -73,7 +73,7 @@ class Cells:
     def current(self) -> Exercise:
         """Return the step of this notebook. Raises UsageError before `%step`."""
         if self.exercise is None:
-            message = "Which step is this notebook about? Run its first cell, with `%step 03-circle-publisher` or so."
+            message = "Which step is this notebook about? Run its first cell, for example `%step 03-circle-publisher`."
             raise UsageError(message)
         return self.exercise
 

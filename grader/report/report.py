@@ -94,13 +94,13 @@ def report_of(
     )
 
 
-PASSES = "With that changed in a copy, this check passes."
-FURTHER = "With that changed in a copy, the node gets further."
-REFUTED = "What seemed to be the cause was changed in a copy, and this check failed all the same."
+PASSES = "After this was changed in a copy, the check passes."
+FURTHER = "After this was changed in a copy, the node gets further."
+REFUTED = "The supposed cause was changed in a copy, but the check still failed."
 
 
 def _with_try(outcome: Outcome, tries: Tries) -> Outcome:
-    """Return the outcome with what came of trying to mend its cause. A cause that was refuted is not told."""
+    """Return the outcome with the result of changing its cause in a copy. A refuted cause is left out."""
     finding = outcome.finding
     made = tries.of(outcome.id, finding.diagnosis) if outcome.status is Status.FAILED else None
     if made is None:
@@ -109,7 +109,7 @@ def _with_try(outcome: Outcome, tries: Tries) -> Outcome:
         return replace(outcome, finding=replace(finding, cause="", tried=REFUTED))
     tried = PASSES if made.result == "passes" else FURTHER
     if tries.behind and made is next(each for each in tries.made if each.result != "refuted"):
-        tried += f" Behind it, {count(tries.behind, 'more mistake')} showed."
+        tried += f" Then {count(tries.behind, 'more mistake')} appeared."
     return replace(outcome, finding=replace(finding, tried=tried))
 
 

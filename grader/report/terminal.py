@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.evidence.tries import Tries
     from grader.report.report import Report
 
-RESULTS = {"passes": "it passes then", "further": "the node gets further", "refuted": "it fails all the same"}
+RESULTS = {"passes": "then it passes", "further": "the node gets further", "refuted": "it still fails"}
 NARROW = 50
 """Columns. On a narrower terminal, texts are not indented under their labels."""
 
@@ -63,7 +63,7 @@ def early(outcomes: Sequence[Outcome]) -> list[str]:
 
 
 def changes(tries: Tries, console: Console) -> None:
-    """Print what was changed in copies of the submission to prove the causes. It gives solutions away."""
+    """Print what was changed in copies of the submission to prove the causes. This reveals solutions."""
     if tries.made or tries.stopped:
         console.print()
     for each in tries.made:

@@ -80,7 +80,7 @@ def test_mistakes_behind_a_mistake_are_counted_and_proved_in_turn() -> None:
     found, told = tries("a\na\na\n", judged)
     assert [each.result for each in found.made] == ["further", "further", "passes"]
     assert found.behind == 2
-    assert told["start"].finding.tried == f"{FURTHER} Behind it, 2 more mistakes showed."
+    assert told["start"].finding.tried == f"{FURTHER} Then 2 more mistakes appeared."
 
 
 def test_a_cause_of_several_checks_is_tried_once() -> None:
