@@ -9,21 +9,25 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import sys
 import tempfile
 from pathlib import Path
 
 from grader.common.interpreter import interpreter
 from grader.errors import MachineError
+from grader.ros.installation import made_for
 
 NAME = "ros2-jazzy-course"
 DISPLAY_NAME = "ROS 2 Jazzy (course)"
+_AGAIN = "_GRADER_KERNEL_STARTED_AGAIN"
 
 
 def main() -> None:
     """Replace this process by the kernel.
 
-    Without ROS 2 it is a plain Python kernel, in which `check` says what is missing.
+    The ROS 2 that the set-up was made for is sourced first, where Jupyter was started without it. Without any ROS 2 it
+    is a plain Python kernel, in which `check` says what is missing.
     """
     from grader.errors import GraderError
     from grader.notebook.simulator import environment
@@ -31,10 +35,21 @@ def main() -> None:
     try:
         env = environment()
     except GraderError as error:
+        _source_and_start_again()
         print(error, file=sys.stderr)
         env = dict(os.environ)
     kernel = interpreter("-m", "ipykernel_launcher", *sys.argv[1:], env=env, searches=True)
     os.execve(kernel.argv[0], kernel.argv, kernel.env)
+
+
+def _source_and_start_again() -> None:
+    """Start again in a shell that has sourced the ROS 2 of the set-up; return where that cannot help."""
+    prefix, bash = made_for(Path(sys.prefix)), shutil.which("bash", path="/usr/bin:/bin")
+    if prefix is None or bash is None or _AGAIN in os.environ or not Path(prefix, "setup.bash").is_file():
+        return
+    again = interpreter("-m", "grader.notebook.kernel", *sys.argv[1:], env={**os.environ, _AGAIN: "1"})
+    script = 'source "$1"; shift; exec "$@"'
+    os.execve(bash, [bash, "-c", script, "bash", f"{prefix}/setup.bash", *again.argv], again.env)
 
 
 def kernelspec() -> dict[str, object]:

@@ -85,11 +85,11 @@ def find_ros(env: Mapping[str, str] = os.environ) -> Ros:
 
 def _why_none(env: Mapping[str, str]) -> str:
     """Return why there is no ROS 2 Jazzy, and what to type."""
-    made_for = _made_for(Path(sys.prefix))
-    if made_for is not None:
+    made = made_for(Path(sys.prefix))
+    if made is not None:
         return (
-            f"This course was set up for the ROS 2 in {made_for}, which is not sourced in this terminal. "
-            f"Type: source {made_for}/setup.bash"
+            f"This course was set up for the ROS 2 in {made}, which is not sourced in this terminal. "
+            f"Type: source {made}/setup.bash"
         )
     distro = env.get("ROS_DISTRO")
     found = f"ROS 2 {distro.capitalize()} is sourced, and no" if distro and distro != DISTRO else "No"
@@ -99,7 +99,7 @@ def _why_none(env: Mapping[str, str]) -> str:
     )
 
 
-def _made_for(prefix: Path) -> str | None:
+def made_for(prefix: Path) -> str | None:
     """Return the sourced ROS 2 that this environment was set up for (grader.setup.bootstrap); None for the wheels."""
     try:
         ros = json.loads((prefix / "course-setup.json").read_text(encoding="utf-8"))["ros"]

@@ -38,6 +38,7 @@ OTHERS = {
     ("grade", "_alone"): "our command grader",
     ("grade", "start"): "made by the door in the same function",
     ("html", "_making"): "made by the door in the same function",
+    ("kernel", "_source_and_start_again"): "bash, which sources a ROS 2 and becomes what the door made",
     ("install", "_run"): "uv, or pip as _pip made it",
     ("launcher", "main"): "a node of the student's that is not Python, in its cell",
     ("lock", "_compile"): "uv, in the course's folder",
