@@ -1,1 +1,1 @@
-"""A submission: the package that somebody hands in, found, read without running it, and copied."""
+"""A submission: the package of a student. It is found, read without running it, and copied."""

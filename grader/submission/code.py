@@ -1,4 +1,4 @@
-"""Code: what the Python files of a submission say, by `ast`, without running any of it."""
+"""Code: the Python files of a submission, read with `ast` and never run."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
 MAX_BYTES = 400_000
-"""A longer file is not parsed: nobody wrote it by hand."""
+"""A longer file is not parsed (bytes): it was not written by hand."""
 MOST_BYTES = 1_000_000
-"""Of all files that belong to one node."""
+"""The most bytes in all files of one node."""
 MAX_NAME = 500
-"""Characters of a module's name."""
+"""The longest name of a module (characters)."""
 
 SRC = "src/"
-"""Where Python people put their packages, with package_dir={"": "src"} in setup.py."""
+"""The folder of packages in many Python projects, with package_dir={"": "src"} in setup.py."""
 
 
 @dataclass(frozen=True)
 class Unreadable:
-    """Why Python cannot read a file; `line` from 1 where Python names one."""
+    """Why Python cannot read a file. `line` counts from 1, if Python names one."""
 
     message: str
     line: int | None = None
@@ -38,7 +38,7 @@ class Unreadable:
 
 @dataclass(frozen=True)
 class Module:
-    """One Python file: its tree, or why there is none."""
+    """One Python file with its syntax tree, or the reason why there is none."""
 
     file: str
     tree: ast.Module | None = None
@@ -46,7 +46,7 @@ class Module:
 
     @cached_property
     def names(self) -> Names:
-        """The names that are assigned, with their expressions."""
+        """The assigned names with their expressions."""
         return Names() if self.tree is None else single_names(self.tree)
 
     @property
@@ -62,7 +62,7 @@ class Module:
 
 @dataclass(frozen=True)
 class Call:
-    """A call of a function, and the module it stands in."""
+    """A call of a function, and the module that contains it."""
 
     node: ast.Call
     module: Module
@@ -73,7 +73,7 @@ class Call:
         return Where(self.module.file, self.node.lineno)
 
     def argument(self, place: int, name: str) -> ast.expr | None:
-        """The argument at this place (from 0) or with this name."""
+        """Return the argument at this position (from 0) or with this name."""
         for keyword in self.node.keywords:
             if keyword.arg == name:
                 return keyword.value
@@ -84,14 +84,14 @@ class Call:
 
 @dataclass(frozen=True)
 class Code:
-    """The node's file and what it imports of the submission, in that order; tests and setup.py left out."""
+    """The node's file, then the files of the submission that it imports; without tests and setup.py."""
 
     modules: tuple[Module, ...]
     node_file: str | None = None
 
     @property
     def start(self) -> Where | None:
-        """The node's file as a place to look."""
+        """The node's file as a place for messages."""
         return None if self.node_file is None else Where(self.node_file)
 
     @cached_property
@@ -108,11 +108,11 @@ class Code:
         return found
 
     def calls(self, name: str) -> list[Call]:
-        """The calls of a function or method with this last name, in the order of the source."""
+        """Return the calls of functions and methods with this last name, in the order of the source."""
         return self._calls.get(name, [])
 
     def assigned(self, *path: str) -> Where | None:
-        """Where an attribute such as ("linear", "x") of something is first set, by assignment or keyword."""
+        """Return where an attribute such as ("linear", "x") is first set, by an assignment or a keyword argument."""
         for module in self.modules:
             lines = [line for node in module.nodes for line in _sets(node, path)]
             if lines:
@@ -137,9 +137,9 @@ def _sets(node: ast.AST, path: tuple[str, ...]) -> list[int]:
 
 
 def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
-    """Parse the node's file `first` and those files of the submission that it imports; all files where it is None.
+    """Parse the node's file `first` and the files of the submission that it imports; without `first`, all files.
 
-    The other nodes of a package say nothing about this one.
+    The other nodes of a package do not matter for this one.
     """
     paths = {path: None for path in sorted(files) if path.endswith(".py") and not _left_out(path)}
     modules: dict[str, Module] = {}
@@ -161,14 +161,14 @@ def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
 
 
 def _packages_around(path: str, paths: Collection[str]) -> list[str]:
-    """The files __init__.py that Python runs before it runs the file at this path."""
+    """Return the files __init__.py that Python runs before the file at this path."""
     folders = path.split("/")[:-1]
     around = ["/".join([*folders[:depth], "__init__.py"]) for depth in range(len(folders), 0, -1)]
     return [file for file in around if file in paths]
 
 
 def imported_files(module: Module, paths: Collection[str]) -> list[str]:
-    """The files among `paths` that a module imports, absolutely or relative to its own package."""
+    """Return the files among `paths` that a module imports, by absolute or relative imports."""
     found: list[str] = []
     for node in module.nodes:
         if isinstance(node, ast.Import):
@@ -176,7 +176,7 @@ def imported_files(module: Module, paths: Collection[str]) -> list[str]:
         elif isinstance(node, ast.ImportFrom):
             folder = module.file.split("/")[: -node.level] if node.level else []
             base = ".".join([*folder, *([node.module] if node.module else [])])
-            # So long a name is no file's, and with each of many others behind it there would be no end of text.
+            # No file has such a long name, and many of them would take too much memory.
             names = [base, *(f"{base}.{alias.name}" for alias in node.names)] if len(base) <= MAX_NAME else []
         else:
             continue
@@ -185,14 +185,14 @@ def imported_files(module: Module, paths: Collection[str]) -> list[str]:
 
 
 def module_file(module: str, paths: Collection[str]) -> str | None:
-    """The file of a dotted module name among the submission's files, None when there is none."""
+    """Return the file of a dotted module name among the files of the submission; None if there is none."""
     path = module.replace(".", "/")
     candidates = (f"{root}{path}{end}" for root in ("", SRC) for end in (".py", "/__init__.py"))
     return next((each for each in candidates if each in paths), None)
 
 
 def import_path(file: str) -> str:
-    """The path of a Python file as it is installed: what lies in src/ is imported without that."""
+    """Return the path of a Python file as it is imported: without src/."""
     return file.removeprefix(SRC)
 
 
@@ -202,7 +202,7 @@ def _left_out(path: str) -> bool:
 
 
 def read_module(file: str, data: bytes) -> Module:
-    """Parse one file; what Python cannot read is told.
+    """Parse one file. `unreadable` says why Python cannot read it.
 
     Raises:
         TooLargeError: the file is too large, or nested too deeply.
@@ -212,11 +212,13 @@ def read_module(file: str, data: bytes) -> Module:
         raise TooLargeError(message)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # an invalid escape sequence is the student's, and no news for the grader
+            warnings.simplefilter(
+                "ignore"
+            )  # a warning about an escape sequence of the student must not appear in our output
             return Module(file, ast.parse(data, filename=file))
     except SyntaxError as error:
         return Module(file, unreadable=Unreadable(error.msg, error.lineno))
-    except ValueError as error:  # null bytes, in Python before 3.12
+    except ValueError as error:  # null bytes raise ValueError before Python 3.12
         return Module(file, unreadable=Unreadable(str(error)))
     except (RecursionError, MemoryError) as error:
         message = f"{shorten(file)} is nested too deeply to be read"

@@ -1,4 +1,4 @@
-"""Evaluate the constants of a student's source without running it: numbers, texts, and names that stand for one."""
+"""Evaluate the constants in a source file without running it: numbers, strings, and names with such a value."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Constant = str | float | int
 
 
 class Names(dict[str, "ast.expr | None"]):
-    """Names that are assigned, with their expressions; counts the work that goes into evaluating them.
+    """The assigned names with their expressions, and a budget for evaluating them.
 
     `x = y + y; y = z + z; ...` doubles the work with each line, so a module has a budget.
     """
@@ -23,20 +23,20 @@ class Names(dict[str, "ast.expr | None"]):
         self._left = MAX_NODES
 
     def spend(self) -> bool:
-        """Count one more node; false when the budget is spent."""
+        """Count one more node; return False if the budget is spent."""
         self._left -= 1
         return self._left >= 0
 
 
 MAX_DEPTH = 20
 MAX_NODES = 100_000
-"""Nodes that are evaluated in one module: 0.1 s. What is beyond cannot be told."""
+"""The most nodes that are evaluated in one module (0.1 s). The values of the others are unknown."""
 MAX_TEXT = 2000
 MATH = {"math.pi": math.pi, "pi": math.pi, "np.pi": math.pi, "numpy.pi": math.pi, "math.tau": math.tau}
 
 
 def dotted(node: ast.expr) -> str | None:
-    """'self.period' for such an attribute or name; None for anything else."""
+    """Return a name or attribute such as 'self.period' as a string; None for any other expression."""
     parts: list[str] = []
     while isinstance(node, ast.Attribute):
         parts.append(node.attr)
@@ -47,7 +47,7 @@ def dotted(node: ast.expr) -> str | None:
 
 
 def single_names(tree: ast.AST) -> Names:
-    """Every name or attribute that is assigned to, with its expression; None when that happens more than once."""
+    """Return every assigned name or attribute with its expression; None if it is assigned more than once."""
     names = Names()
     for node in ast.walk(tree):
         targets: list[ast.expr] = []
@@ -66,7 +66,7 @@ def single_names(tree: ast.AST) -> Names:
 
 
 def written(node: ast.expr | None, names: Names) -> ast.expr | None:
-    """Return the expression, or the one that is assigned to the name that it is."""
+    """Return the expression; for a name, the expression that is assigned to it."""
     for _ in range(MAX_DEPTH):
         value = names.get(dotted(node) or "") if isinstance(node, ast.Name | ast.Attribute) else None
         if value is None:
@@ -76,7 +76,7 @@ def written(node: ast.expr | None, names: Names) -> ast.expr | None:
 
 
 def evaluate(node: ast.expr | None, names: Names, depth: int = 0) -> Constant | None:
-    """The number or text that the expression always is; None when that cannot be told."""
+    """Return the value of the expression, a number or a string; None if it is not constant."""
     if node is None or depth > MAX_DEPTH or not names.spend():
         return None
     if isinstance(node, ast.Constant):
@@ -97,7 +97,7 @@ def evaluate(node: ast.expr | None, names: Names, depth: int = 0) -> Constant | 
 
 
 def number(node: ast.expr | None, names: Names) -> float | None:
-    """The finite number that the expression always is; None when that cannot be told."""
+    """Return the value of the expression, a finite number; None if it is not constant."""
     value = evaluate(node, names)
     try:
         return float(value) if isinstance(value, int | float) and math.isfinite(value) else None
@@ -128,7 +128,7 @@ def _joined(node: ast.JoinedStr, names: Names, depth: int) -> str | None:
 
 
 def _together(between: str, pieces: Iterable[ast.expr], names: Names, depth: int) -> str | None:
-    """The texts as one; None when they are not texts, or too long together."""
+    """Return the strings joined; None if one is not a string, or if they are too long together."""
     parts: list[str] = []
     length = 0
     for piece in pieces:
@@ -141,7 +141,7 @@ def _together(between: str, pieces: Iterable[ast.expr], names: Names, depth: int
 
 
 def _call(node: ast.expr, names: Names, depth: int) -> str | None:
-    """os.path.join of texts: common in setup.py."""
+    """Evaluate os.path.join of strings, which is common in setup.py."""
     if not isinstance(node, ast.Call) or dotted(node.func) not in ("os.path.join", "path.join", "join"):
         return None
     return _together("/", node.args, names, depth)

@@ -1,4 +1,4 @@
-"""Submission: the folder a student hands in, its one package found and read."""
+"""Submission: the folder of a student, with its only package found and read."""
 
 from __future__ import annotations
 
@@ -20,39 +20,39 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 ANSWERS = "answers.toml"
-"""What a student writes where questions are asked."""
+"""The file with the answers to an exercise."""
 MAX_REJECTED = 20
-"""Lines of `rejected`; the rest is counted."""
+"""The most lines in `rejected`; further files are counted."""
 
 
 @dataclass(frozen=True)
 class Submission:
-    """`package_dir` is the folder with package.xml or setup.py; `files` its files (POSIX path relative to it -> bytes).
+    """A package. `package_dir` is its folder, `files` maps POSIX paths relative to that folder to bytes.
 
-    build/, install/, log/, hidden folders, virtual environments, caches and what is not a regular file inside the
-    folder are left out; `rejected` names those that are a fault of the submission (a symlink that leaves it, ...),
-    with the reason. A link to another file of the package is that file. Every path in `files` is printable.
+    Without build/, install/, log/, hidden folders, virtual environments, caches and everything that is not a regular
+    file in the folder. `rejected` names the files that are a fault of the submission, such as a symlink to a place
+    outside, with the reason. A link to another file of the package is that file. Every path in `files` is printable.
     """
 
     name: str
-    """As the user named it."""
+    """The name that the user gave."""
     package_dir: Path
-    """Absolute. For messages and for the folder's name: what is graded is `files`."""
+    """An absolute path, for messages and for the name of the folder. `files` is what is graded."""
     files: Mapping[str, bytes]
     rejected: tuple[str, ...]
     digest: str
-    """sha256 over the sorted paths and contents of `files`: the same on every machine, whatever the permissions."""
+    """sha256 of the sorted paths and contents of `files`: the same on every machine, whatever the permissions."""
     executable: frozenset[str] = frozenset()
     """The paths of `files` with the executable bit."""
     student: str | None = None
-    """Whose it is, where that is known: in a class."""
+    """The student, if known (in a class)."""
 
 
 def open_submission(path: str | os.PathLike[str]) -> Submission:
-    """Read the package in the folder, or the only one below it.
+    """Read the package in the folder, or the only package below it.
 
-    Raises UsageError where there is no such folder, or not exactly one package in it; MachineError where the disk or
-    the system fails. Everything else that is odd about the folder is the student's and told in `rejected`.
+    Raises UsageError if there is no such folder, or not exactly one package in it, and MachineError if the disk or the
+    system fails. Every other problem is a fault of the student, and `rejected` names it.
     """
     return _read(_submission, os.fspath(path))
 
@@ -85,9 +85,9 @@ def _submission(name: str) -> Submission:
 
 
 def open_answers(path: str | os.PathLike[str]) -> Submission:
-    """Read answers.toml in the folder, and nothing else: what is handed in for an exercise without a package.
+    """Read only answers.toml in the folder, for an exercise without a package.
 
-    Raises UsageError where there is no such folder, or no such file in it; MachineError where the disk fails.
+    Raises UsageError if there is no such folder or file, and MachineError if the disk fails.
     """
     return _read(_answers, os.fspath(path))
 
@@ -109,7 +109,7 @@ def _answers(name: str) -> Submission:
 
 
 def digest(files: Mapping[str, bytes]) -> str:
-    """The sha256 of paths and contents, each with its length before it, so that no two sets of files run together."""
+    """Return the sha256 of paths and contents, each after its length, so that different files never look equal."""
     whole = hashlib.sha256()
     for path in sorted(files, key=tree.sort_key):
         for part in (os.fsencode(path), files[path]):
@@ -119,10 +119,10 @@ def digest(files: Mapping[str, bytes]) -> str:
 
 
 def write_copy(submission: Submission, destination: Path) -> None:
-    """Write the files as the new folder `destination`, readable by everybody: a sandbox runs as another user.
+    """Write the files to the new folder `destination`, readable by all users: a sandbox runs as another user.
 
-    Raises UsageError for a path that leaves the folder (a submission that did not come from `open_submission`),
-    MachineError where the disk is full or forbids it.
+    Raises UsageError for a path that leaves the folder (in a submission that is not from `open_submission`), and
+    MachineError if the disk is full or cannot be written.
     """
     made: set[Path] = set()
     try:

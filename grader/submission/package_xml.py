@@ -1,4 +1,4 @@
-"""Manifest: what a package.xml says, read by catkin_pkg as colcon reads it."""
+"""Manifest: the content of a package.xml, read with catkin_pkg, as colcon does."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ NO_NEWS = re.compile(r"Error\(s\) in package '[^']*':|Error\(s\):|The manifest c
 
 @dataclass(frozen=True)
 class Manifest:
-    """A package.xml: `run_depends` are declared for running, `other_depends` only for building or tests.
+    """A package.xml. `run_depends` are declared for running, `other_depends` only for building or tests.
 
-    `problem` says why it is not valid, with its `line` where that is known; then the rest is empty.
+    `problem` says why it is not valid, with its `line` if known. The other fields are empty then.
     """
 
     name: str = ""
@@ -30,7 +30,7 @@ class Manifest:
 
 
 def read_manifest(data: bytes) -> Manifest:
-    """Read a package.xml; what is wrong with it is told, never raised."""
+    """Read a package.xml. An error is reported as `problem`, never raised."""
     if len(data) > MAX_BYTES:
         return Manifest(problem=f"it is larger than {MAX_BYTES // 1000} kB")
     from catkin_pkg.package import parse_package_string  # type: ignore[import-untyped]  # takes 0.07 s, pyparsing
@@ -38,7 +38,7 @@ def read_manifest(data: bytes) -> Manifest:
     warnings: list[str] = []
     try:
         package = parse_package_string(data, "package.xml", warnings)
-    except Exception as error:  # (InvalidPackage, and whatever else a broken file makes it raise)
+    except Exception as error:  # (InvalidPackage, and any other exception that a broken file causes)
         text = str(error)
         at = AT_LINE.search(text)
         problem = shorten(NO_NEWS.sub(" ", text).strip(" \n-"), 160)
@@ -54,7 +54,7 @@ def read_manifest(data: bytes) -> Manifest:
 
 
 def open_tag(data: bytes) -> tuple[str, int]:
-    """The innermost tag that is open where an XML file breaks off, and its line: for a mismatched tag, the culprit."""
+    """Return the innermost open tag at the place where an XML file is broken, with its line."""
     parser = ParserCreate()
     opened: list[tuple[str, int]] = []
     parser.StartElementHandler = lambda name, _: opened.append((name, parser.CurrentLineNumber))
@@ -65,7 +65,7 @@ def open_tag(data: bytes) -> tuple[str, int]:
 
 
 def line_of(data: bytes, *patterns: str) -> int | None:
-    """The first line (from 1) of a text file with the first of the patterns that is found in it, else None."""
+    """Return the first line (from 1) with the first of the patterns that is found in the file; else None."""
     lines = data.decode("utf-8", "replace").splitlines()
     for pattern in patterns:
         for number, line in enumerate(lines, start=1):

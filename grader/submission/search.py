@@ -1,6 +1,6 @@
-"""Find the one package in a folder, or tell a beginner why there is not exactly one.
+"""Find the only package in a folder, or tell a beginner why there is not exactly one.
 
-As colcon does: a folder with package.xml or setup.py is a package, and what lies below it belongs to it.
+As in colcon, a folder with package.xml or setup.py is a package, and all folders below belong to it.
 """
 
 from __future__ import annotations
@@ -21,27 +21,27 @@ IGNORE_MARKER = "COLCON_IGNORE"
 GIVE = "Give the folder of your package: the one with package.xml in it."
 MAX_FOLDERS = 5000
 MAX_NAMED = 10
-"""Names in a message."""
+"""The most names in a message."""
 
 
 @dataclass
 class _Search:
-    """What was met on the way; paths relative to the folder where the search began."""
+    """What the search found. Paths are relative to the folder where it began."""
 
     packages: list[str] = field(default_factory=list)
     nearly: list[str] = field(default_factory=list)
-    """Files whose name is package.xml or setup.py but for case or a second ending."""
+    """Files that would be package.xml or setup.py but for upper case or a second suffix."""
     linked: list[str] = field(default_factory=list)
-    """Links to folders: not followed."""
+    """Links to folders. They are not followed."""
     ignored: list[str] = field(default_factory=list)
-    """Folders that colcon was told to pass over."""
+    """Folders that colcon ignores because of a marker file."""
     folders: int = 0
 
 
 def find_package(root: int, name: str) -> str:
-    """The POSIX path of the only package in the folder `root`, "." if it is one. `name`: as the user named it.
+    """Return the POSIX path of the only package in the folder `root`, "." for itself. `name` is what the user typed.
 
-    Raises UsageError where there is none, or several.
+    Raises UsageError if there is none, or several.
     """
     search = _Search()
     _visit(search, root, ".", 0, name)
@@ -52,7 +52,7 @@ def find_package(root: int, name: str) -> str:
 
 
 def why_not_opened(error: OSError, name: str) -> str:
-    """What to tell somebody whose path is not a folder that can be read."""
+    """Return the message for a path that is not a folder or cannot be read."""
     path = shown(name)
     if error.errno not in (errno.ENOENT, errno.ENOTDIR):
         return f"{path} cannot be opened: it {tree.reason(error, name)}."
@@ -92,11 +92,12 @@ def _visit_below(search: _Search, folder: int, entry: Entry, path: str, depth: i
         with tree.open_folder(entry.name, folder) as descriptor:
             _visit(search, descriptor, path, depth + 1, name)
     except OSError as error:
-        tree.reason(error, path)  # raises what is the machine's fault; a closed folder holds no package for us
+        # This raises for a fault of the machine. A folder that we cannot enter has no package for us.
+        tree.reason(error, path)
 
 
 def _is_folder_behind(name: str, folder: int) -> bool:
-    """Only to name it in a message: nothing behind the link is read."""
+    """Return whether the link leads to a folder, for a message. Nothing behind the link is read."""
     try:
         return stat.S_ISDIR(os.stat(name, dir_fd=folder).st_mode)
     except OSError:
@@ -147,7 +148,7 @@ def _for_a_file(name: str) -> str:
 
 
 def _nearest_parent(name: str) -> str:
-    """The part of the path that does exist, where a typing mistake is likely behind it."""
+    """Return the part of the path that exists: the user probably mistyped the next part."""
     above = Path(name).absolute().parent
     if above.is_dir():
         return ""

@@ -1,4 +1,4 @@
-"""SetupPy: what a setup.py says to setuptools, read by `ast` without running it."""
+"""SetupPy: the arguments that a setup.py passes to setuptools, read with `ast` and never run."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 TARGET = re.compile(r"(?P<module>[\w.]+)\s*:\s*(?P<attribute>[\w.]+)\s*(\[.*\])?")
-"""What stands behind the "=" of an entry point: module:attribute."""
+"""The part of an entry point after the "=": module:attribute."""
 MAX_ENTRY_POINT = 300
 MOST_ENTRY_POINTS = 1000
 
 
 @dataclass(frozen=True)
 class EntryPoint:
-    """One text in console_scripts. `target` is "module:attribute", None when the text is not of that form."""
+    """One string in console_scripts. `target` is "module:attribute"; None if the string has another form."""
 
     text: str
     line: int
@@ -33,32 +33,32 @@ class EntryPoint:
 
 @dataclass(frozen=True)
 class SetupPy:
-    """The arguments of setup() as far as they are constants; None where they cannot be told."""
+    """The arguments of setup() that are constants; the others are None."""
 
     name: str | None = None
     name_line: int | None = None
     entry_points: tuple[EntryPoint, ...] | None = None
     data_files: tuple[tuple[str, tuple[str, ...]], ...] | None = None
     finds_packages: bool = False
-    """packages=find_packages(...)"""
+    """Whether the argument is packages=find_packages(...)."""
     packages_line: int | None = None
     """The line of the packages argument."""
     setup_line: int | None = None
     groups: tuple[str, ...] = ()
     """The names of the groups in entry_points."""
     required: tuple[str, ...] = ()
-    """install_requires."""
+    """The value of install_requires."""
     stray: tuple[EntryPoint, ...] = ()
-    """What reads like an entry point, and stands in setup.py outside of console_scripts."""
+    """Strings outside console_scripts that look like an entry point."""
     unreadable: Unreadable | None = None
 
     def entry_point(self, name: str) -> EntryPoint | None:
-        """The console script of this name."""
+        """Return the console script with this name."""
         return next((point for point in self.entry_points or () if point.name == name), None)
 
 
 def read_setup_py(data: bytes) -> SetupPy:
-    """Read a setup.py. What is not constant stays unknown; nothing is raised."""
+    """Read a setup.py. Arguments that are not constant stay unknown. Nothing is raised."""
     module = read_module("setup.py", data)
     if module.tree is None:
         return SetupPy(unreadable=module.unreadable)
@@ -97,7 +97,7 @@ def _stray(module: Module, points: tuple[EntryPoint, ...]) -> tuple[EntryPoint, 
 
 
 def _entry_point(text: str, line: int) -> EntryPoint:
-    """Read `name = module:attribute` as setuptools does, in a time that does not depend on what stands there."""
+    """Read `name = module:attribute` as setuptools does, in linear time whatever the string is."""
     kept = text[:MAX_ENTRY_POINT]
     name, _, rest = kept.partition("=")
     match = TARGET.fullmatch(rest.strip()) if name.strip() else None
@@ -109,8 +109,8 @@ def _last(node: ast.expr) -> str:
 
 
 def _value_line(node: ast.expr | None, module: Module) -> int | None:
-    """The line of the text itself, where a name stands for it."""
-    for _ in range(MAX_DEPTH):  # `a = b; b = a` has no end
+    """Return the line of the string itself, if a name refers to it."""
+    for _ in range(MAX_DEPTH):  # `a = b; b = a` would never end
         if not isinstance(node, ast.Name) or module.names.get(node.id) is None:
             break
         node = module.names[node.id]
@@ -118,12 +118,12 @@ def _value_line(node: ast.expr | None, module: Module) -> int | None:
 
 
 def _resolved(node: ast.expr | None, module: Module) -> ast.expr | None:
-    """The expression, or the one that its name stands for."""
+    """Return the expression; for a name, the expression that it refers to."""
     return module.names.get(node.id) if isinstance(node, ast.Name) else node
 
 
 def _groups(call: Call, module: Module) -> dict[str, ast.expr] | None:
-    """The groups of entry_points; None when they cannot be told, empty when there are none."""
+    """Return the groups of entry_points, empty if there are none; None if they are not constant."""
     given = call.argument(99, "entry_points")
     if given is None:
         return None if any(keyword.arg is None for keyword in call.node.keywords) else {}
@@ -168,7 +168,7 @@ def _data_files(call: Call, module: Module) -> tuple[tuple[str, tuple[str, ...]]
 
 
 def _data_file(item: ast.expr, module: Module) -> tuple[str, tuple[str, ...]]:
-    """One (folder, [files]); a part that is no constant is an empty text."""
+    """One (folder, [files]). A part that is not constant is an empty string."""
     if not isinstance(item, ast.Tuple | ast.List) or len(item.elts) != 2:
         return "", ()
     folder, files = item.elts

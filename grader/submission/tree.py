@@ -1,7 +1,7 @@
-"""Read a folder that somebody else made, without trusting it.
+"""Read a folder of a stranger, without trusting it.
 
-Nothing is reached by following a link: every step down is an open relative to the folder's own descriptor, with
-O_NOFOLLOW, so that swapping a folder for a link while it is being read leads nowhere.
+No link is followed. Every folder is opened relative to the descriptor of the folder above, with O_NOFOLLOW. So a folder
+that is replaced by a link while it is read leads nowhere.
 """
 
 from __future__ import annotations
@@ -23,31 +23,31 @@ MAX_FILE_BYTES = 8 * 1024 * 1024
 MAX_TOTAL_BYTES = 64 * 1024 * 1024
 MAX_FILES = 4000
 MAX_ENTRIES = 20_000
-"""In one folder, and in all. A larger folder is left out whole: which of its entries come first is chance."""
+"""The most entries in one folder, and in all. A larger folder is left out, since the order of its entries is random."""
 MAX_DEPTH = 24
 MAX_PATH_BYTES = 1000
 
 LEFT_OUT = frozenset({"build", "install", "log"})
-"""What colcon makes beside src/; often handed in with the rest."""
+"""Folders that colcon creates beside src/. Students often submit them."""
 
 OF_THE_MACHINE = frozenset({errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ESTALE})
-"""Faults while reading that say nothing about who made the folder."""
+"""Errors of the machine. They have nothing to do with the student."""
 
 
 def shown(path: str) -> str:
-    """The path in printable characters: undecodable bytes and control characters as escapes."""
+    """Return the path in printable characters, with escapes for control characters and bytes that are not UTF-8."""
     text = os.fsencode(path).decode("utf-8", "backslashreplace")
     return "".join(char if char.isprintable() else char.encode("unicode_escape").decode() for char in text)
 
 
 def sort_key(path: str) -> bytes:
-    """Order by the bytes of the name, the same on every machine and in every language."""
+    """The sort key of a name: its bytes, so that the order is the same on every machine and in every language."""
     return os.fsencode(path)
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One name in a folder, as lstat sees it; `target` is where a link points."""
+    """One entry of a folder, from lstat. `target` is the target of a link."""
 
     name: str
     mode: int
@@ -56,33 +56,33 @@ class Entry:
 
     @property
     def is_folder(self) -> bool:
-        """A real folder, no link to one."""
+        """Whether it is a folder, and not a link to one."""
         return stat.S_ISDIR(self.mode)
 
     @property
     def is_file(self) -> bool:
-        """A regular file, no link to one."""
+        """Whether it is a regular file, and not a link to one."""
         return stat.S_ISREG(self.mode)
 
 
 @dataclass
 class Tree:
-    """The files below a folder, by POSIX path; `executable` those with the owner's executable bit."""
+    """The files below a folder, by POSIX path. `executable` are those with the executable bit of the owner."""
 
     files: dict[str, bytes] = field(default_factory=dict)
     executable: set[str] = field(default_factory=set)
     rejected: dict[str, str] = field(default_factory=dict)
-    """Path -> why it is not among the files, where that is a fault of the folder."""
+    """Path -> why it is not among the files, if the folder is at fault."""
     links: dict[str, str] = field(default_factory=dict)
-    """Path -> where it points, as it is written in the link."""
+    """Path -> the target, as written in the link."""
     total: int = 0
-    """Bytes in all files, those behind links counted once a link."""
+    """Bytes in all files. A file behind links counts once per link."""
     entries: int = 0
 
 
 @contextmanager
 def open_folder(name: str, parent: int | None = None) -> Iterator[int]:
-    """A descriptor of a folder. With `parent` the name is looked up there and must not be a link."""
+    """Open a folder and return its descriptor. With `parent`, the name is looked up there and must not be a link."""
     flags = os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if parent is None else os.O_NOFOLLOW)
     descriptor = os.open(name, flags, dir_fd=parent)
     try:
@@ -93,7 +93,7 @@ def open_folder(name: str, parent: int | None = None) -> Iterator[int]:
 
 @contextmanager
 def open_below(folder: int, path: str) -> Iterator[int]:
-    """A descriptor of the folder at the POSIX path `path` below `folder`, "." for itself. No link on the way."""
+    """Open the folder at the POSIX path `path` below `folder`, "." for itself. No link is followed."""
     with ExitStack() as stack:
         for name in path.split("/"):
             folder = stack.enter_context(open_folder(name, folder))
@@ -101,7 +101,7 @@ def open_below(folder: int, path: str) -> Iterator[int]:
 
 
 def entries(folder: int) -> list[Entry] | None:
-    """What a folder holds, in the order of `sort_key`; None where it is more than MAX_ENTRIES."""
+    """Return the entries of a folder, in the order of `sort_key`; None if there are more than MAX_ENTRIES."""
     found: list[Entry] = []
     with os.scandir(folder) as scan:
         for entry in scan:
@@ -110,18 +110,18 @@ def entries(folder: int) -> list[Entry] | None:
             try:
                 status = entry.stat(follow_symlinks=False)
                 target = os.readlink(entry.name, dir_fd=folder) if stat.S_ISLNK(status.st_mode) else None
-            except FileNotFoundError:  # gone since the listing
+            except FileNotFoundError:  # removed since the listing
                 continue
             found.append(Entry(entry.name, status.st_mode, status.st_size, target))
     return sorted(found, key=lambda entry: sort_key(entry.name))
 
 
 def is_left_out(name: str, folder: int) -> bool:
-    """Whether a folder called `name` in `folder` is no work of a learner's: built, hidden, cached, an environment."""
+    """Return whether the folder `name` in `folder` is left out: a build, hidden, a cache or an environment."""
     if name.startswith(".") or name == "__pycache__" or name.endswith(".egg-info"):
         return True
     if name in LEFT_OUT:
-        # A Python package may well be called log; colcon's folder of that name has no __init__.py.
+        # A Python package may be called log. The folder log of colcon has no __init__.py.
         return not _exists(f"{name}/__init__.py", folder)
     return _exists(f"{name}/pyvenv.cfg", folder)
 
@@ -135,13 +135,13 @@ def _exists(path: str, folder: int) -> bool:
 
 
 def read_folder(folder: str | os.PathLike[str]) -> Tree:
-    """As `read_tree`, of the folder at this path. Raises OSError where it cannot be opened."""
+    """Call `read_tree` for the folder at this path. Raises OSError if it cannot be opened."""
     with open_folder(os.fspath(folder)) as opened:
         return read_tree(opened)
 
 
 def read_tree(folder: int) -> Tree:
-    """All regular files below the folder, and links to them."""
+    """Return all regular files below the folder, and the links to them."""
     tree = Tree()
     _read_folder(tree, folder, "", 0)
     for path in tree.links:
@@ -158,7 +158,7 @@ def _read_folder(tree: Tree, folder: int, prefix: str, depth: int) -> None:
     for entry in listing:
         path = prefix + entry.name
         if not entry.name.isprintable():
-            # Python's own tools fail on such names, each in its way; nobody can import or type them.
+            # The tools of Python fail on such names, and nobody can import or type them.
             tree.rejected[path] = "has a name with control characters, or one that is not UTF-8"
         elif len(os.fsencode(path)) > MAX_PATH_BYTES:
             tree.rejected[path] = f"has a path of more than {MAX_PATH_BYTES} bytes"
@@ -197,7 +197,7 @@ def _has_room(tree: Tree, path: str, size: int) -> bool:
 
 
 def _read_file(tree: Tree, folder: int, entry: Entry, path: str) -> None:
-    # O_NONBLOCK: a pipe that took the file's place since the listing must not hold us up.
+    # O_NONBLOCK: a pipe that replaced the file since the listing must not block us.
     flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
     try:
         descriptor = os.open(entry.name, flags, dir_fd=folder)
@@ -221,7 +221,7 @@ def _add(tree: Tree, path: str, data: bytes, *, executable: bool) -> None:
 
 
 def _resolve(tree: Tree, path: str) -> None:
-    """Give a link the content of the file it means, if that is one of ours: looked up by name, never on the disk."""
+    """Give a link the content of its target, if that is one of the files. The disk is not read for that."""
     at = path
     for _ in range(len(tree.links)):
         target = tree.links[at]
@@ -241,7 +241,7 @@ def _resolve(tree: Tree, path: str) -> None:
 
 
 def reason(error: OSError, path: str) -> str:
-    """Why something could not be read, for `rejected`; a fault of the machine is raised instead."""
+    """Return why something could not be read, for `rejected`. A fault of the machine is raised instead."""
     if error.errno in OF_THE_MACHINE:
         message = f"{shown(path)} could not be read: {error.strerror}. This is a fault of the machine; try again."
         raise MachineError(message) from error

@@ -1,9 +1,8 @@
-"""Uses of functions that are known by their last name, under whatever other name the source gives them.
+"""Uses of functions, found by their last names, even if the source gives them other names.
 
-A call of `sleep` is found by its name. It is not found where the source says `from time import sleep as nap`,
-`nap = time.sleep`, `partial(time.sleep, 1)` or `getattr(time, "sleep")`, nor where a function of another file of the
-submission calls it for the node. So every mention of such a function counts as a use, and what another file makes of
-it is followed through that file's own names.
+A search for calls of `sleep` does not find `from time import sleep as nap`, `nap = time.sleep`,
+`partial(time.sleep, 1)` or `getattr(time, "sleep")`, nor a function of another file that calls it for the node. So
+every mention of such a function counts as a use, and names of other files that lead to one are followed.
 """
 
 from __future__ import annotations
@@ -22,12 +21,12 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 BY_TEXT = frozenset({"getattr", "attrgetter", "methodcaller", "__getattribute__", "__getattr__", "get", "exec", "eval"})
-"""Functions that are told by a string which function is meant."""
+"""Functions that get the name of a function as a string."""
 
 
 @dataclass(frozen=True)
 class Use:
-    """Where a function is used; `name` is what it is known by, `written` what the source calls it there."""
+    """A use of a function: its own `name`, and the name as `written` in the source."""
 
     name: str
     written: str
@@ -36,41 +35,41 @@ class Use:
 
 @dataclass
 class _File:
-    """One file of the submission, and what its names stand for."""
+    """One file of the submission, and the meaning of its names."""
 
     module: Module
     functions: dict[str, str] = field(default_factory=dict)
     """Local name -> one of the functions, from `from x import FUNCTION as LOCAL`."""
     modules: set[str] = field(default_factory=set)
-    """Names that may stand for modules."""
+    """Names that may be modules."""
     others: dict[str, Top] = field(default_factory=dict)
-    """Local name, or MODULE.NAME -> the name at another file's top level that it stands for."""
+    """Local name, or MODULE.NAME -> the name at the top level of another file that it refers to."""
     stored: set[str] = field(default_factory=set)
-    """Attributes that the file itself assigns: `self.sleep = 0` is a number, and no function."""
+    """Attributes that the file itself assigns: `self.sleep = 0` is a number, not a function."""
 
 
 Top = tuple[str, str]
-"""A name at the top level of a file: the file, and the name."""
+"""A file, and a name at its top level."""
 
 
 def uses_of(modules: Sequence[Module], file: str | None, names: Collection[str]) -> list[Use]:
-    """Every use of the named functions in `file`, in the order of the source; the other modules are what it imports."""
+    """Return all uses of the named functions in `file`, one of `modules`, in the order of the source."""
     files = {module.file: _read(module, modules, names) for module in modules}
-    here = files.get(file or "")
-    if here is None:
+    found = files.get(file or "")
+    if found is None:
         return []
-    reached = _reached([each for each in files.values() if each is not here], names)
-    uses = [use for node in here.module.nodes for use in _use(node, here, names)]
-    for node in here.module.nodes:
+    reached = _reached([each for each in files.values() if each is not found], names)
+    uses = [use for node in found.module.nodes for use in _use(node, found, names)]
+    for node in found.module.nodes:
         written = dotted(node) if isinstance(node, ast.Name | ast.Attribute) else None
-        top = here.others.get(written or "")
+        top = found.others.get(written or "")
         if top in reached:
-            uses.append(Use(reached[top], top[1], Where(here.module.file, getattr(node, "lineno", None))))
+            uses.append(Use(reached[top], top[1], Where(found.module.file, getattr(node, "lineno", None))))
     return sorted(uses, key=lambda use: use.where.line or 0)
 
 
 def _reached(files: Sequence[_File], names: Collection[str]) -> dict[Top, str]:
-    """The names at the files' top levels through which one of the functions is reached -> that function's name."""
+    """Return the top-level names of the files that lead to one of the functions -> the name of that function."""
     reached: dict[Top, str] = {}
     users: dict[Top, set[Top]] = {}
     for each in files:
@@ -94,7 +93,7 @@ def _reached(files: Sequence[_File], names: Collection[str]) -> dict[Top, str]:
 
 
 def _below_top(module: Module) -> Iterator[tuple[set[Top], ast.AST]]:
-    """Every node of a file with the names that the statement of the top level gives a meaning to in which it stands."""
+    """Yield every node of a file, with the names that its top-level statement defines."""
     for statement in module.body:
         bound = {(module.file, name) for name in _bound([statement])}
         if bound and not isinstance(statement, ast.Import | ast.ImportFrom):
@@ -102,7 +101,7 @@ def _below_top(module: Module) -> Iterator[tuple[set[Top], ast.AST]]:
 
 
 def _bound(statements: Iterable[ast.stmt]) -> set[str]:
-    """The names that these statements give a meaning to at their own level."""
+    """Return the names that these statements define at their own level."""
     bound: set[str] = set()
     for statement in statements:
         if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
@@ -119,7 +118,7 @@ def _bound(statements: Iterable[ast.stmt]) -> set[str]:
 
 
 def _read(module: Module, modules: Sequence[Module], names: Collection[str]) -> _File:
-    """A file with what its imports, wherever they stand in it, make its names stand for."""
+    """Read a file with the meaning that its imports, at any level, give its names."""
     found = _File(module)
     tops = {
         each.file.rpartition("/")[2].removesuffix(".py"): {name: (each.file, name) for name in _bound(each.body)}
@@ -161,7 +160,7 @@ def _below(module: str, tops: dict[str, Top]) -> dict[str, Top]:
 
 
 def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
-    """The use that a node is by itself, if it is one."""
+    """Yield the use that this node is, if it is one."""
     name: str | None = None
     written: str | None = None
     if isinstance(node, ast.Call):
@@ -181,12 +180,12 @@ def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
 
 
 def _is_of_a_module(node: ast.expr) -> bool:
-    """Whether it may be the dictionary of a module's names."""
+    """Return whether it may be the dictionary of a module."""
     return isinstance(node, ast.Call) or getattr(node, "attr", "") == "__dict__"
 
 
 def _by_text(call: ast.Call, names: Collection[str]) -> str | None:
-    """The function that a string among the arguments names, or that such source code uses."""
+    """Return the function that a string argument names, or that source code in a string uses."""
     for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
         if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
             words: list[str] = re.findall(r"\w+", argument.value[:10_000])

@@ -1,4 +1,4 @@
-"""Where: a place in a submission, as messages name it."""
+"""Where: a place in a submission, for messages."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Where:
-    """A place in the submission: `file` relative to the package folder, `line` from 1."""
+    """A place in the submission. `file` is relative to the package folder, `line` counts from 1."""
 
     file: str
     line: int | None = None
