@@ -229,6 +229,6 @@ def test_an_attack_does_not_change_the_grading_of_the_next_submission(tmp_path: 
 
 
 def test_there_are_at_least_sixty_attacks() -> None:
-    assert len(ATTACKS) >= 60
+    assert len(ATTACKS) >= 100
     unproven = [a.name for a in ATTACKS if not (a.is_of_the_host or a.passes or a.reaches)]
     assert unproven == []
