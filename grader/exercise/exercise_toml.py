@@ -1,10 +1,10 @@
-"""Read exercise.toml, and tell its author all that is wrong with it at once.
+"""Read exercise.toml, and report all mistakes to its author at once.
 
-schema = 2. `[exercise]` id, title, package; without a package answers.toml alone is handed in;
+schema = 2. `[exercise]` id, title, package (without a package, students submit answers.toml alone),
 starting_point_fails: the checks (ids) that exercises/ must fail, for `grader validate`.
 `[[trial]]` id, executable, node, duration_s, start, rename, pose_every; `[[trial.drive]]` from_s, linear_x_m_s,
-angular_z_rad_s (one number, or two to draw from). `[[check]]` id, kind, points, needs (ids), title, trial (the first
-one when it is left out), hidden, and the parameters of its kind; or preset (presets.py). `[[hint]]` text, from a nudge
+angular_z_rad_s (one number, or two to draw from). `[[check]]` id, kind, points, needs (ids), title, trial (default:
+the first one), hidden, and the parameters of its kind; or preset (presets.py). `[[hint]]` text, from a nudge
 to nearly the answer, checks (the ids of those that it helps with), part (a letter).
 """
 
@@ -31,7 +31,7 @@ OLDER = {
     1: "move `executable` and `node` out of [exercise], and all keys of [scenario], into a [[trial]] with an `id` of "
     "its own; likewise the keys of [trial.scenario]; write [[trial.drive]] for [[scenario.drive]]; then schema = 2."
 }
-"""What to change in a file of an older version of the format."""
+"""How to change a file with an older version of the format."""
 ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 ROS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 NAME = "letters, digits and _, beginning with a letter"
@@ -39,19 +39,19 @@ PART = re.compile(r"[a-z]")
 REMAP = re.compile(r"(/\w+)+:=(/\w+)+")
 MAX_DURATION_S = 600.0
 MAX_SPEED = 10.0
-"""m/s and rad/s."""
+"""The largest speed (m/s, rad/s)."""
 
 
 def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
-    """The exercise in the bytes of an exercise.toml; `name` is the file's name in messages, `kinds` by name.
+    """Return the exercise in the bytes of an exercise.toml. `name` is the name of the file in messages.
 
-    Raises UsageError naming every problem.
+    Raises UsageError with all mistakes.
     """
     return parse_tables(read_toml(data, name), name, folder, hashlib.sha256(data).hexdigest(), kinds)
 
 
 def parse_tables(top: dict[str, Any], name: str, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
-    """The exercise in the tables of an exercise.toml. Raises UsageError naming every problem."""
+    """Return the exercise in the tables of an exercise.toml. Raises UsageError with all mistakes."""
     problems: list[str] = []
     top = {**top, "check": expand(top["check"], top.get("trial"))} if "check" in top else top
     exercise = _exercise(Table(top, "", problems), folder, digest, kinds)
@@ -62,7 +62,7 @@ def parse_tables(top: dict[str, Any], name: str, folder: Path, digest: str, kind
 
 
 def of_older_schema(values: Mapping[str, Any]) -> str:
-    """What to change in a file of an older version of the format; empty for any other file."""
+    """Return how to change a file with an older version of the format; an empty string for any other file."""
     schema = values.get("schema")
     known = OLDER.get(schema) if isinstance(schema, int) else None
     return f"schema {schema} is no longer read: {known}" if known else ""
@@ -79,7 +79,7 @@ def _exercise(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpe
 
 def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
     head = top.table("exercise")
-    # What is answered in answers.toml alone has no package, and no trial of it has a node.
+    # An exercise with answers.toml alone has no package, and its trials have no node.
     package = head.text("package", ROS_NAME, NAME, default=None if "package" in head.values else "")
     trials = _trials(top, package)
     checks = _checks(top, tuple(trial.id for trial in trials), kinds)
@@ -186,7 +186,7 @@ def _checks(top: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) 
 
 
 def _without_presets(tables: list[Table], trials: tuple[str, ...]) -> list[Table]:
-    """The tables of single checks; a preset that is still among them has something wrong with it, which is noted."""
+    """Return the tables of single checks. A preset that is left among them is wrong; that is noted as a problem."""
     for table in tables:
         wrong = problem_of(table.values, [{"id": trial} for trial in trials])
         if wrong:
@@ -230,7 +230,7 @@ def _check(table: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec])
 
 
 def _circle(specs: tuple[CheckSpec, ...]) -> list[str]:
-    """The ids along one circle of `needs`, the first one again at the end; empty when there is none."""
+    """Return the ids of one cycle of `needs`, with the first id again at the end; empty if there is no cycle."""
     needs = {spec.id: [need for need in spec.needs if any(need == other.id for other in specs)] for spec in specs}
     done: set[str] = set()
 

@@ -1,4 +1,4 @@
-"""KindSpec: what a reader of exercise.toml must know about a kind of check, which is not how it judges."""
+"""KindSpec: the part of a kind of check that is needed to read exercise.toml."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 Param = str | float | int | bool | tuple[str, ...]
-"""What a parameter of a check may be."""
+"""The types of a parameter of a check."""
 
 
 @dataclass(frozen=True)
 class Allowed:
-    """What a parameter may be: in words, and as a function from the TOML value to ours (None: not allowed).
+    """The allowed values of a parameter, in words, and a function that converts the TOML value (None: not allowed).
 
-    `about` says what the parameter means, for the author of an exercise (docs/kinds.md).
+    `about` tells the author of an exercise what the parameter means (docs/kinds.md).
     """
 
     words: str
@@ -25,18 +25,18 @@ class Allowed:
 
 
 class KindSpec(Protocol):
-    """A kind of check, as exercise.toml sees it; `grader.checks.kind.Kind` is one."""
+    """A kind of check, for the reader of exercise.toml; `grader.checks.kind.Kind` is one."""
 
     @property
     def title(self) -> str:
-        """The line that a student reads when exercise.toml gives none."""
+        """The title of the check if exercise.toml gives none."""
 
     @property
     def advice(self) -> bool:
-        """Whether its checks are worth no points and fail no run."""
+        """Whether its checks are worth no points and never fail a submission."""
 
     def parameters(self) -> Mapping[str, Allowed]:
-        """Every parameter's name with what it may be."""
+        """Return the names of all parameters with their allowed values."""
 
     def defaults(self) -> Mapping[str, Param]:
-        """The parameters that may be left out, with their values."""
+        """Return the optional parameters with their default values."""

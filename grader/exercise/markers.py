@@ -1,4 +1,4 @@
-"""Marked regions: what of a solution is the student's to write, and what stands in its place.
+"""Marked regions: the parts of a solution that students write themselves, and the text that replaces them.
 
     # BEGIN SOLUTION
     self.timer = self.create_timer(0.5, self.send)
@@ -7,9 +7,8 @@
     # # TODO: create a timer.
     # END STARTER
 
-The released file has the STARTER block's text, freed of its comment signs, instead of both blocks. In XML and
-Markdown the blocks are comments of their own, and since a comment cannot hold a comment, `<! text !>` in a STARTER
-block stands for one:
+The released file has the text of the STARTER block, without the comment signs, instead of both blocks. In XML and
+Markdown, the blocks are comments. A comment cannot contain a comment, so `<! text !>` in a STARTER block becomes one:
 
     <!-- BEGIN SOLUTION -->
     <depend>geometry_msgs</depend>
@@ -30,11 +29,11 @@ from grader.errors import UsageError
 
 @dataclass(frozen=True)
 class Syntax:
-    """How a kind of file writes comments: the lines that are markers, and how a STARTER block frees its text."""
+    """The comments of a kind of file: the lines that are markers, and how to uncomment a STARTER block."""
 
     markers: dict[str, re.Pattern[str]]
     line_sign: str
-    """Begins every line of a STARTER block; empty where the block is one comment."""
+    """The prefix of every line of a STARTER block; empty if the block is one comment."""
 
 
 HASH = Syntax(
@@ -58,12 +57,12 @@ SYNTAX = {
     **dict.fromkeys((".xml", ".md", ".html"), ANGLE),
 }
 MEANT = re.compile(r"(?:begin|end)[ _-]*(?:solution|starter)", re.IGNORECASE)
-"""What an author may have meant as a marker: a slip here would hand out the solution."""
+"""Lines that look like a marker: with a typing error in a marker, students would get the solution."""
 
 
 @dataclass(frozen=True)
 class Region:
-    """One region: the lines of the solution, and those that stand in its place. `line` is that of BEGIN SOLUTION."""
+    """One region: the lines of the solution, and the lines that replace them. `line` is the line of BEGIN SOLUTION."""
 
     line: int
     solution: tuple[str, ...]
@@ -71,27 +70,27 @@ class Region:
 
 
 def syntax_of(path: str) -> Syntax | None:
-    """The comments of a file, by its ending; None where we know no regions in it."""
+    """Return the comments of a file by its suffix; None if regions are not supported in it."""
     return SYNTAX.get(PurePosixPath(path).suffix)
 
 
 def regions(text: str, syntax: Syntax, name: str) -> list[str | Region]:
-    """The text as lines (with their ends) and regions. Raises UsageError, with `name` and line, for markers amiss."""
+    """Split the text into lines (with their ends) and regions. Raises UsageError for wrong markers."""
     return _Reader(syntax, name).read(text)
 
 
 def stripped(text: str, syntax: Syntax, name: str) -> str:
-    """The text as it is released."""
+    """Return the text for students."""
     return "".join("".join(part.starter) if isinstance(part, Region) else part for part in regions(text, syntax, name))
 
 
 def solved(text: str, syntax: Syntax, name: str) -> str:
-    """The whole solution, without any trace of markers."""
+    """Return the whole solution, without the markers."""
     return "".join("".join(part.solution) if isinstance(part, Region) else part for part in regions(text, syntax, name))
 
 
 class _Reader:
-    """Reads one text, line by line; `self.inside` is the block that is open, with the line where it began."""
+    """Reads one text, line by line. `self.inside` is the open block, with the line where it began."""
 
     def __init__(self, syntax: Syntax, name: str) -> None:
         self.syntax = syntax

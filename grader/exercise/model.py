@@ -1,4 +1,4 @@
-"""Exercise: what is to be done in a step, read from course/*/exercise.toml."""
+"""Exercise: the task of a step, from course/*/exercise.toml."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ FILE_NAME = "exercise.toml"
 
 @dataclass(frozen=True)
 class CheckSpec:
-    """One `[[check]]`: `params` hold its numbers, with units in their names (`rate_hz`, `radius_m`).
+    """One `[[check]]`. `params` are its parameters, with units in their names (`rate_hz`, `radius_m`).
 
-    `trial`: the id of the trial that it judges.
+    `trial` is the id of the trial that it judges.
     """
 
     id: str
@@ -35,7 +35,7 @@ class CheckSpec:
 
 @dataclass(frozen=True)
 class Drive:
-    """From `from_s` (s) on the simulator itself drives the turtle; each speed is drawn from its two limits."""
+    """From `from_s` (s) on, the simulator drives the turtle. Each speed is drawn between its two limits."""
 
     from_s: float
     linear_x_m_s: tuple[float, float]
@@ -44,10 +44,10 @@ class Drive:
 
 @dataclass(frozen=True)
 class Scenario:
-    """What a trial does: `duration_s` on the trial's clock, then SIGINT.
+    """What happens in a trial: `duration_s` on the trial's clock, then SIGINT.
 
-    `anywhere`: the turtle starts at a drawn place even without a seed. `rename`: remapping rules of the simulator, as
-    "/turtle1/pose:=/where". `pose_every`: it publishes a pose every so many frames.
+    `anywhere`: the start is random even without a seed. `rename` are remapping rules of the simulator, such as
+    "/turtle1/pose:=/where". `pose_every` is the number of frames from one pose to the next.
     """
 
     duration_s: float
@@ -59,9 +59,9 @@ class Scenario:
 
 @dataclass(frozen=True)
 class TrialSpec:
-    """One `[[trial]]`: the executable that runs, the name of its node (without a slash), and what happens meanwhile.
+    """One `[[trial]]`: the executable, the name of its node (without a slash), and the scenario.
 
-    Without an executable the simulator runs by itself.
+    Without an executable, the simulator runs without a node.
     """
 
     id: str
@@ -72,7 +72,7 @@ class TrialSpec:
 
 @dataclass(frozen=True)
 class Hint:
-    """One `[[hint]]`: it helps with these checks, or with all of the exercise; `part` is the letter of a part of it."""
+    """One `[[hint]]`, for these checks or for the whole exercise. `part` is the letter of a part of the exercise."""
 
     text: str
     checks: tuple[str, ...] = ()
@@ -81,33 +81,33 @@ class Hint:
 
 @dataclass(frozen=True)
 class Exercise:
-    """A step's exercise: a package is built and run in every trial, and the checks judge what was observed.
+    """The exercise of a step: a package is built and run in every trial, and the checks judge what was observed.
 
-    Without a `package` what is handed in is answers.toml alone, and the simulator runs by itself.
+    Without a `package`, students submit answers.toml alone, and the simulator runs without a node.
     """
 
     id: str
     title: str
     package: str
     trials: tuple[TrialSpec, ...]
-    """In the order of the file; there is at least one."""
+    """The trials, in the order of the file; at least one."""
     checks: tuple[CheckSpec, ...]
     hints: tuple[Hint, ...]
     folder: Path
     digest: str = ""
-    """sha256 of exercise.toml: what the exercise asks for, and how it is judged."""
+    """sha256 of exercise.toml, which has all that the exercise requires."""
     unsolved: tuple[str, ...] = ()
-    """The checks that the starting point must fail (for its author: `grader validate`); what needs them is skipped."""
+    """The checks that the starting point must fail (for `grader validate`). The checks that need them are skipped."""
 
     def trial(self, id_: str) -> TrialSpec:
-        """The trial with this id. Raises KeyError where there is none."""
+        """Return the trial with this id. Raises KeyError if there is none."""
         return {trial.id: trial for trial in self.trials}[id_]
 
 
 def course_folder() -> Path:
-    """The folder course/: beside the package in a checkout, inside it in an installed wheel.
+    """Return the folder course/: next to the package in a checkout, inside it in an installed wheel.
 
-    Raises MachineError when neither is there.
+    Raises MachineError if there is none.
     """
     package = Path(__file__).resolve().parents[1]
     for folder in (package.parent / "course", package / "course"):
@@ -118,6 +118,6 @@ def course_folder() -> Path:
 
 
 def catalogue(course: Path | None = None) -> dict[str, Path]:
-    """Every exercise of the course, id -> its exercise.toml, in the order of the lessons; nothing is parsed."""
+    """Return all exercises of the course, id -> exercise.toml, in the order of the lessons. Nothing is parsed."""
     folder = course_folder() if course is None else course
     return {file.parent.name: file for file in sorted(folder.glob(f"*/{FILE_NAME}"))}

@@ -1,7 +1,7 @@
 """Own numbers: the circle that a student drives in step 07, drawn from the student's id.
 
-`grader start` writes them into the package as my_numbers.toml. They follow from the id alone, so numbers that
-were changed by hand are found out.
+`grader start` writes them to my_numbers.toml in the package. They follow from the id alone, so a check notices numbers
+that were changed.
 """
 
 from __future__ import annotations
@@ -33,17 +33,17 @@ class OwnNumbers:
 
 
 def normal_id(student: str) -> str:
-    """The one form of an id that is compared and drawn from: case, width and spaces make no difference.
+    """Return the normal form of an id: case, width and spaces make no difference.
 
-    If ids were compared in another form than they are drawn from, a student could try spellings of the own id until
-    one of them draws a friend's numbers.
+    Comparing and drawing use this form. Otherwise, students could try spellings of their ids until they get the numbers
+    of a friend.
     """
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", student).casefold())
     return " ".join(folded.split())
 
 
 def draw_numbers(student: str) -> OwnNumbers:
-    """The numbers of a student; the same on every machine, however the id is spelled (see `normal_id`)."""
+    """Return the numbers of a student, the same on every machine and for every spelling (see `normal_id`)."""
     drawn = hashlib.sha256(f"07-challenges {normal_id(student)}".encode("utf-8", "surrogatepass")).digest()
     return OwnNumbers(
         student,
@@ -54,7 +54,7 @@ def draw_numbers(student: str) -> OwnNumbers:
 
 
 def to_toml(numbers: OwnNumbers) -> str:
-    """The text of my_numbers.toml. The id may be any text."""
+    """Return the text of my_numbers.toml. The id may be any string."""
     escaped = "".join(
         char if char.isprintable() and char not in '"\\' else f"\\U{ord(char):08X}" for char in numbers.student
     )
@@ -69,7 +69,7 @@ def to_toml(numbers: OwnNumbers) -> str:
 
 
 def from_toml(data: bytes) -> OwnNumbers:
-    """The numbers in a my_numbers.toml. Raises ValueError that says what is wrong with it."""
+    """Return the numbers in a my_numbers.toml. Raises ValueError with the reason if it is wrong."""
     try:
         table = tomllib.loads(data.decode("utf-8-sig"))
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:

@@ -6,8 +6,8 @@
     title = "b) Eight"
     start = { points = 2 }
 
-stands for the checks `eight-entry-point`, `eight-start` and `eight-node-name`. A check of the first trial has no such
-prefix. `title` begins their titles. What a key with the name of a check holds is laid over that check.
+creates the checks `eight-entry-point`, `eight-start` and `eight-node-name`. A check of the first trial has no prefix.
+`title` is the beginning of their titles. A key with the name of a check changes keys of that check.
 """
 
 from __future__ import annotations
@@ -50,13 +50,13 @@ PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
         "stop": {"kind": "stops", "title": "The node stops on Ctrl-C", "needs": ["{trial}start"], "within_s": 3.0},
     },
 }
-"""Name -> the name of each check -> its keys. Points are 0 unless exercise.toml gives some."""
+"""Name -> the name of each check -> its keys. Points are 0 unless exercise.toml sets them."""
 
 _KEYS = ("preset", "trial", "title")
 
 
 def expand(checks: object, trials: object) -> Any:  # noqa: ANN401 - TOML, not yet read
-    """The `[[check]]` tables with those of a preset in its place; what is wrong stays as it is: `problem_of` tells why.
+    """Replace each preset among the `[[check]]` tables by its checks. A wrong preset stays: see `problem_of`.
 
     `trials` are the `[[trial]]` tables.
     """
@@ -68,7 +68,7 @@ def expand(checks: object, trials: object) -> Any:  # noqa: ANN401 - TOML, not y
 
 
 def problem_of(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) -> str | None:
-    """What is wrong with a preset, in words; empty for a right one, None for a check that is none."""
+    """Return the mistake in a preset in words; empty if it is right, None if the check is not a preset."""
     if "preset" not in table:
         return None
     name = table["preset"]
@@ -102,7 +102,7 @@ def _made(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) -> list
             "points": 0,
             "needs": [need.format(**words) for need in template.get("needs", [])],
         }
-        # What is said of the package belongs to no trial more than to another.
+        # The checks of the package belong to no particular trial.
         more = {"trial": spec["id"]} if prefix else {}
         made.append({**check, **more, **table.get(name, {})})
     return made

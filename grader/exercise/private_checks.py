@@ -1,10 +1,10 @@
-"""An instructor's private checks: a folder laid out as course/, whose exercise.toml files lie outside the repository.
+"""Private checks of an instructor: a folder like course/, with exercise.toml files outside the repository.
 
-What such a file says is laid over the course's own exercise.toml:
+Such a file changes the exercise.toml of the course:
 
     schema = 2
-    [[check]]       with an id of the course's: its keys replace those of that check (all of them where the kind is
-                    another); with a new id: one check more. Hidden, unless it says `hidden = false`
+    [[check]]       with an id of the course: its keys replace those of that check (all of them if the kind differs);
+                    with a new id: a further check. It is hidden, unless it has `hidden = false`
     [[trial]]       the same, by id
 """
 
@@ -33,16 +33,16 @@ ALLOWED = ("schema", "check", "trial")
 
 @dataclass(frozen=True)
 class Sources:
-    """What an exercise is made of: the course's exercise.toml and, perhaps, an instructor's, as bytes."""
+    """The files of an exercise: the exercise.toml of the course and, if there is one, the private file (bytes)."""
 
     id: str
     public: bytes
     private: bytes | None = None
     private_name: str = ""
-    """What messages call the private file."""
+    """The name of the private file in messages."""
 
     def exercise(self, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
-        """The exercise; `folder` is that of the lesson, `kinds` by name. Raises UsageError naming every problem."""
+        """Return the exercise. `folder` is the folder of the lesson. Raises UsageError with all mistakes."""
         name = f"{self.id}/{FILE_NAME}"
         public = read_toml(self.public, name)
         digest = hashlib.sha256(self.public).hexdigest()
@@ -56,10 +56,10 @@ class Sources:
 
 
 def sources_of(ids: set[str], checks: Path | None) -> dict[str, Sources]:
-    """What the exercises with these ids are made of; `checks` is the folder of private checks.
+    """Return the files of the exercises with these ids. `checks` is the folder of private checks.
 
     Raises:
-        UsageError: the folder holds none, or none for these exercises, or some for an exercise that there is not.
+        UsageError: the folder has none, or none for these exercises, or some for an unknown exercise.
     """
     files = catalogue()
     private = _private_files(checks, files) if checks else {}
@@ -92,7 +92,7 @@ def _private_files(checks: Path, known: Mapping[str, Path]) -> dict[str, Path]:
 
 
 def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """The tables of both. Raises UsageError for what a private file may not hold."""
+    """Return the tables of both files together. Raises UsageError if the private file has other keys than allowed."""
     older = of_older_schema(private)
     if older:
         message = f"{name}: {older}"

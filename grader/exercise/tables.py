@@ -1,4 +1,4 @@
-"""Tables of a TOML file, read key by key; every problem is noted in words for the file's author."""
+"""Tables of a TOML file, read key by key. Every mistake is noted in words for the author of the file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ else:
 
 
 def read_toml(data: bytes, name: str) -> dict[str, Any]:
-    """The tables of a TOML file. Raises UsageError where it is none."""
+    """Return the tables of a TOML file. Raises UsageError if it is not TOML."""
     try:
         return tomllib.loads(data.decode("utf-8"))
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
@@ -29,7 +29,7 @@ def read_toml(data: bytes, name: str) -> dict[str, Any]:
 
 
 class Table:
-    """A table of the file while it is read: what is wrong goes into `problems`, what was asked for is known."""
+    """A table while it is read. Mistakes go into `problems`. A key that was never read is unknown."""
 
     def __init__(self, values: dict[str, Any], place: str, problems: list[str]) -> None:
         self.values = values
@@ -38,11 +38,11 @@ class Table:
         self.known: list[str] = []
 
     def problem(self, text: str) -> None:
-        """Note what is wrong with this table."""
+        """Note a mistake in this table."""
         self.problems.append(f"{self.place}: {text}" if self.place else text)
 
     def _get(self, key: str, allowed: str, good: Callable[[object], bool], *, default: Any) -> Any:  # noqa: ANN401 (whatever `good` lets pass)
-        """The value of the key where `good(value)`, else the default, and the problem noted."""
+        """Return the value of the key if `good(value)`; otherwise note the mistake and return the default."""
         self.known.append(key)
         if key not in self.values:
             if default is None:
@@ -57,7 +57,7 @@ class Table:
     def text(
         self, key: str, pattern: re.Pattern[str] | None = None, allowed: str = "a text", default: str | None = None
     ) -> str:
-        """A text that is not blank, and is all of `pattern`."""
+        """Return a string that is not only spaces, and matches all of `pattern`."""
 
         def good(value: object) -> bool:
             return (
@@ -67,7 +67,7 @@ class Table:
         return str(self._get(key, allowed, good, default=default) or "")
 
     def number(self, key: str, low: float, high: float, allowed: str, default: float | None = None) -> float:
-        """A finite number, low <= number <= high."""
+        """Return a finite number, low <= number <= high."""
 
         def good(value: object) -> bool:
             is_number = isinstance(value, int | float) and not isinstance(value, bool)
@@ -76,7 +76,7 @@ class Table:
         return float(self._get(key, allowed, good, default=default) or 0.0)
 
     def limits(self, key: str, most: float) -> tuple[float, float]:
-        """Two finite numbers from -most to most, in order; one number stands for both."""
+        """Return two finite numbers from -most to most, in order. One number in the file stands for both."""
 
         def good(value: object) -> bool:
             pair = value if isinstance(value, list) else [value, value]
@@ -88,11 +88,11 @@ class Table:
         return float(low), float(high)
 
     def flag(self, key: str) -> bool:
-        """True or false; false when it is left out."""
+        """Return True or False; the default is False."""
         return bool(self._get(key, "true or false", lambda value: isinstance(value, bool), default=False))
 
     def texts(self, key: str) -> tuple[str, ...]:
-        """A list of strings; empty when it is left out."""
+        """Return a list of strings; the default is empty."""
 
         def good(value: object) -> bool:
             return isinstance(value, list) and all(isinstance(item, str) for item in value)
@@ -100,12 +100,12 @@ class Table:
         return tuple(self._get(key, "a list of texts", good, default=[]))
 
     def table(self, key: str) -> Table:
-        """A table `[key]`, which must be there."""
+        """Return the table `[key]`, which is required."""
         value = self._get(key, f"a table [{key}]", lambda value: isinstance(value, dict), default=None)
         return Table(value or {}, f"[{key}]", self.problems if value is not None else [])
 
     def tables(self, key: str) -> list[Table]:
-        """The tables `[[key]]`, none when they are left out."""
+        """Return the tables `[[key]]`; the default is none."""
 
         def good(value: object) -> bool:
             return isinstance(value, list) and all(isinstance(item, dict) for item in value)
@@ -114,7 +114,7 @@ class Table:
         return [Table(value, f"[[{key}]] {place}", self.problems) for place, value in enumerate(values, start=1)]
 
     def finish(self, also: Iterable[str] = ()) -> None:
-        """Note every key that nobody asked for."""
+        """Note every unknown key."""
         allowed = [*self.known, *also]
         for key in self.values:
             if key not in allowed:
@@ -124,7 +124,7 @@ class Table:
 
 
 def shown(value: object) -> str:
-    """A TOML value as its author wrote it, nearly."""
+    """Return a TOML value almost as its author wrote it."""
     if isinstance(value, str):
         return f'"{shorten(value)}"'
     if isinstance(value, bool):
