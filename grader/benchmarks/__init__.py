@@ -1,1 +1,1 @@
-"""Speed, as ratios measured in one run: `python -m grader.benchmarks.NAME`."""
+"""Benchmarks: speeds as ratios, measured in one run: `python -m grader.benchmarks.NAME`."""

@@ -1,7 +1,7 @@
 """The ROS graph as a picture: which nodes and topics it shows, and how to write it as DOT or as text.
 
 Nodes are ellipses, topics are boxes, and arrows point in the direction of the messages. A graph comes from the live
-system (rqt_graph.py) or from a recording (`grader.evidence.recording.Graph`).
+system (rqt_graph.py) or from a recording (`grader.trial.recording.Graph`).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ DEBUG_NODES = ("/rqt_gui", "/rqt_graph", "/rviz", "/rosbag2_")
 
 
 class Endpoint(Protocol):
-    """A publisher or subscription; `grader.evidence.recording.Endpoint` is one."""
+    """A publisher or subscription; `grader.trial.recording.Endpoint` is one."""
 
     @property
     def kind(self) -> str:

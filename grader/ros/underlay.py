@@ -188,7 +188,7 @@ def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -
     reported = 0
     with subprocess.Popen(
         command,
-        # CMake and make start Python themselves, so they run in a folder without modules of others.
+        # CMake and make start Python themselves, so they run in a folder that has no modules of others.
         cwd=env["HOME"],
         env=env,
         stdin=subprocess.DEVNULL,

@@ -124,10 +124,10 @@ def _as_rosbag2_names_it(folder: Path, ending: str) -> None:
     data = yaml.safe_load(metadata.read_text("utf-8"))
     (file,) = (path for path in folder.iterdir() if ending in path.suffixes)
     renamed = file.with_name(file.name.replace(ending, f"_0{ending}", 1))
-    metadata = data[_INFORMATION]
-    metadata["relative_file_paths"] = [renamed.name]
-    metadata["files"][0]["path"] = renamed.name
-    metadata["ros_distro"] = os.environ.get("ROS_DISTRO", "jazzy")
+    information = data[_INFORMATION]
+    information["relative_file_paths"] = [renamed.name]
+    information["files"][0]["path"] = renamed.name
+    information["ros_distro"] = os.environ.get("ROS_DISTRO", "jazzy")
     new = metadata.with_suffix(".yaml.tmp")
     new.write_text(yaml.safe_dump(data, sort_keys=False), "utf-8")
     file.rename(renamed)

@@ -1,1 +1,1 @@
-"""The daemon: a process that keeps the graph in mind, so that a look at it need not wait until all is discovered."""
+"""The daemon: a process that knows the graph, so that a verb does not have to wait for the discovery."""

@@ -101,7 +101,7 @@ def test_it_ends_and_leaves_the_terminal_as_it_was(system: World, how: str) -> N
 def test_it_says_that_it_needs_a_terminal(system: World, stdin: str) -> None:
     done = system.run(f"{stdin}{VIEW}")
     assert done.code == 2
-    assert "standard input or output is none" in done.stderr
+    assert "standard input or output is not a terminal" in done.stderr
     assert "Traceback" not in done.stderr
 
 

@@ -128,7 +128,7 @@ def test_it_says_when_nobody_listens(alone: World) -> None:
 def test_it_says_that_it_needs_a_terminal(alone: World, stdin: str) -> None:
     done = alone.run(f"{stdin}{TELEOP}")
     assert done.code == 1
-    assert "standard input is none" in done.stderr
+    assert "its standard input is not a terminal" in done.stderr
     assert done.stdout == "[ros2run]: Process exited with failure 1\n"
 
 
