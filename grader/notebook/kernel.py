@@ -26,8 +26,8 @@ _AGAIN = "_GRADER_KERNEL_STARTED_AGAIN"
 def main() -> None:
     """Replace this process by the kernel.
 
-    The ROS 2 that the set-up was made for is sourced first, where Jupyter was started without it. Without any ROS 2 it
-    is a plain Python kernel, in which `check` says what is missing.
+    If Jupyter was started without the ROS 2 of the set-up, that one is sourced first. Without any ROS 2, the kernel is a
+    plain Python kernel, in which `check` says what is missing.
     """
     from grader.errors import GraderError
     from grader.notebook.simulator import environment
@@ -43,7 +43,7 @@ def main() -> None:
 
 
 def _source_and_start_again() -> None:
-    """Start again in a shell that has sourced the ROS 2 of the set-up; return where that cannot help."""
+    """Start again in a shell that has sourced the ROS 2 of the set-up. Return if that cannot help."""
     prefix, bash = made_for(Path(sys.prefix)), shutil.which("bash", path="/usr/bin:/bin")
     if prefix is None or bash is None or _AGAIN in os.environ or not Path(prefix, "setup.bash").is_file():
         return

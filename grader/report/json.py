@@ -14,7 +14,7 @@ Schema 4. Every key is always present. Strings are never null unless stated belo
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
                   cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,
                   advice: true if it has no points and never fails a run, near_edge,
-                  tried: what came of trying to mend the cause, empty if that was not tried}]
+                  tried: the result of changing the cause in a copy, or an empty string}]
     seconds       {stage: wall time in s}; differs from run to run
     recordings    [paths of the recordings that were kept]
 """

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 class StartedError(Exception):
-    """Something else was started in place of this process."""
+    """Another program would have replaced this process."""
 
 
 @pytest.fixture
 def started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
-    """What is started, with a set-up for a ROS 2 in `tmp_path`/jazzy that is not sourced."""
+    """The commands that are started, with a set-up for a ROS 2 in `tmp_path`/jazzy that is not sourced."""
     commands: list[list[str]] = []
 
     def execve(_program: str, argv: list[str], _env: dict[str, str]) -> None:
@@ -40,7 +40,7 @@ def started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     return commands
 
 
-def test_the_ros_of_the_set_up_is_sourced_where_jupyter_was_started_without_it(started: list[list[str]]) -> None:
+def test_the_ros_of_the_set_up_is_sourced_if_jupyter_was_started_without_it(started: list[list[str]]) -> None:
     with pytest.raises(StartedError):
         kernel.main()
     (argv,) = started
@@ -60,7 +60,7 @@ def test_a_ros_that_cannot_be_sourced_leaves_a_plain_kernel_with_the_reason(
     assert "set up for another ROS 2" in capsys.readouterr().err
 
 
-def test_it_starts_again_once(started: list[list[str]], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_kernel_starts_again_only_once(started: list[list[str]], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("_GRADER_KERNEL_STARTED_AGAIN", "1")
     with pytest.raises(StartedError):
         kernel.main()

@@ -1,4 +1,4 @@
-"""It takes requests of asynchronous input and output that the whole machine has to share."""
+"""It uses up the asynchronous I/O requests that all users of the machine share."""
 
 import ctypes
 
