@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
 from grader.checks.kind import Kind, NoParams
 from grader.checks.outcome import Finding, Status, failed, passed
+from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 
+EXPECTED = "A ROS 2 node does regular work in a timer callback."
+ALWAYS = ("True", "1", "rclpy.ok()")
+SENDS = frozenset({"publish", "info"})
+WAITS = frozenset({"sleep"})
+
+
 def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
-    """The submission calls create_timer somewhere."""
-    timers = evidence.code.calls("create_timer")
-    if timers:
+    """The submission calls create_timer, and no loop beside the timer does the regular work."""
+    loop = _sending_loop(evidence)
+    if evidence.code.calls("create_timer") and loop is None:
         return passed("The node uses a timer.")
     if evidence.code.node_file is None:
         return Finding(Status.SKIPPED, "Not judged, because the file of the node is not known yet.")
@@ -24,11 +32,29 @@ def uses_timer(evidence: Evidence, _: NoParams) -> Finding:
     cause = "A node that runs its own loop receives no messages. With a timer, rclpy.spin does the waiting."
     if evidence.code.calls("create_rate"):
         cause = "A rate from create_rate only works while another thread spins the node. A timer needs no thread."
+    if evidence.code.calls("create_timer"):
+        observed = "The node has a timer, but a loop that sleeps sends its messages."
+        return failed(observed, EXPECTED, Cause("no-timer", cause, loop))
     return failed(
         "The node does not use a timer.",
-        "A ROS 2 node does regular work in a timer callback.",
+        EXPECTED,
         Cause("no-timer", cause, evidence.place("publish", "sleep")),
     )
+
+
+def _sending_loop(evidence: Evidence) -> Where | None:
+    """Return a loop that publishes or logs, and waits in between, or None."""
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS:
+                calls = {
+                    getattr(each.func, "attr", getattr(each.func, "id", ""))
+                    for each in ast.walk(node)
+                    if isinstance(each, ast.Call)
+                }
+                if calls & SENDS and calls & WAITS:
+                    return Where(module.file, node.lineno)
+    return None
 
 
 USES_TIMER = Kind(
@@ -38,5 +64,6 @@ USES_TIMER = Kind(
     NoParams,
     uses_timer,
     advice=True,
-    about="Advises the student to use `create_timer` if the submission never calls it.",
+    about="Advises the student to use `create_timer` if the submission never calls it, or if a loop that sleeps sends its "
+    "messages.",
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
@@ -12,6 +13,7 @@ from grader.checks.judge import judge
 from grader.errors import UsageError
 from grader.evidence import archive
 from grader.evidence.evidence import Evidence, Run
+from grader.evidence.tries import Tries, Try
 from grader.tests.checks.made import every, evidence, good, recording
 
 if TYPE_CHECKING:
@@ -39,6 +41,12 @@ def test_each_trial_comes_back_as_it_was(tmp_path: Path) -> None:
     assert judge(kept) == judge(given)
     for trial in ("circle", "eight"):
         assert kept.from_trial(trial).commands == given.from_trial(trial).commands != ()
+
+
+def test_what_was_tried_comes_back_so_that_a_report_can_tell_it_again(tmp_path: Path) -> None:
+    tries = Tries((Try("rate", "timer-period", "passes", "-1\n+2"),), behind=1, stopped="there was no time to try more")
+    archive.save(tmp_path / "kept", replace(some_trials(), tries=tries), "none", ())
+    assert archive.load(tmp_path / "kept", lambda _: CHALLENGES).evidence.tries == tries
 
 
 def test_a_recording_of_an_older_grader_is_refused(tmp_path: Path) -> None:

@@ -12,12 +12,18 @@ from grader.checks.outcome import Outcome, failed, passed
 from grader.evidence.evidence import Evidence
 from grader.evidence.tries import Tries, Try
 from grader.grading.explain import BARE_NODE_S, ENOUGH, MOST_TRIES, TOO_LONG, explain, part_of
+from grader.grading.grade import grade
+from grader.grading.options import Options
 from grader.report.report import FURTHER, PASSES, REFUTED, report_of
+from grader.sandbox import bubblewrap
+from grader.submission.package import open_submission
 from grader.submission.where import Where
+from grader.tests.case import CASES, make_submission, read_case
 from grader.tests.checks.made import NODE_FILE, exercise, submission
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
 
     from grader.checks.diagnosis import Diagnosis
     from grader.exercise.model import Exercise
@@ -107,6 +113,16 @@ def test_no_more_than_some_changes_are_tried() -> None:
 def test_without_time_nothing_is_tried() -> None:
     found, _ = tries("a\n", lambda _: [wrong("values")], build_s=-BARE_NODE_S - 1.0)
     assert found == Tries(stopped=TOO_LONG)
+
+
+def test_a_wrong_topic_is_proved_by_a_run_in_the_cell(tmp_path: Path) -> None:
+    case = read_case(CASES.parent / "mistakes" / "324-topic-without-turtle")
+    options = Options(bubblewrap.usable(), clock="simulated", explain=True)
+    graded = grade(exercise(), open_submission(make_submission(case, tmp_path / "in")), options)
+    topic = next(outcome for outcome in graded.report.outcomes if outcome.id == "topic").finding
+    # Where the machine is so slow that there is no time for a try, that is told.
+    assert topic.tried == PASSES or graded.evidence.tries.stopped == TOO_LONG
+    assert "/turtle1/cmd_vel" not in topic.cause + topic.tried
 
 
 def test_only_the_trial_of_the_check_is_run_again() -> None:

@@ -241,6 +241,20 @@ def test_no_timer_is_advice() -> None:
     assert found.diagnosis == "no-timer"
 
 
+@pytest.mark.parametrize(
+    ("loop", "advised"),
+    [
+        ("while rclpy.ok():\n        time.sleep(0.5)\n        node.publisher.publish(msg)", True),
+        ("while True:\n        rate.sleep()\n        node.publisher.publish(msg)", True),
+        ("while not node.ready:\n        time.sleep(0.5)\n        node.get_logger().info('waiting')", False),
+        ("while rclpy.ok():\n        time.sleep(0.5)", False),
+    ],
+)
+def test_a_timer_beside_a_loop_that_sends_gives_no_rhythm(loop: str, *, advised: bool) -> None:
+    changed = node(("    rclpy.spin(DrawCircleNode())", f"    node = DrawCircleNode()\n    {loop}"))
+    assert (finding("timer", evidence(good(), changed)).diagnosis == "no-timer") == advised
+
+
 def test_what_setup_py_and_tests_call_is_not_the_nodes() -> None:
     files = {NODE_FILE: "pass\n", "test/test_node.py": "node.create_timer(1, f)\n"}
     assert finding("timer", evidence(good(), submission(files))).diagnosis == "no-timer"
