@@ -64,6 +64,6 @@ USES_TIMER = Kind(
     NoParams,
     uses_timer,
     advice=True,
-    about="Advises the student to use `create_timer` if the submission never calls it, or if a loop that sleeps sends its "
-    "messages.",
+    about="Advises the student to use `create_timer` if the submission never calls it, "
+    "or if a loop that sleeps sends its messages.",
 )
