@@ -22,7 +22,20 @@ class Form:
     arrays: bool = True
     strings: bool = True
     flow: bool = False
-    """Whether the YAML is on one line: "{x: 1.0}"."""
+    """Whether arrays are on one line: "[1, 2]"."""
+
+
+class _Dumper(yaml.SafeDumper):
+    """Writes the fields of a message on lines of their own in flow style too, as the real `ros2` does."""
+
+
+_Dumper.add_representer(
+    dict,
+    lambda dumper, data: yaml.MappingNode(
+        "tag:yaml.org,2002:map",
+        [(dumper.represent_data(name), dumper.represent_data(value)) for name, value in data.items()],
+    ),
+)
 
 
 def is_message(value: Any) -> bool:  # noqa: ANN401
@@ -53,10 +66,23 @@ def plain(value: Any, form: Form | None = None, declared: str = "") -> Any:  # n
 def to_yaml(value: Any, form: Form | None = None) -> str:  # noqa: ANN401
     """Return a message as YAML, with a line break at the end."""
     form = form or Form()
-    text: str = yaml.safe_dump(
-        plain(value, form), sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=form.flow
+    return dumped(plain(value, form), form)
+
+
+def dumped(values: Any, form: Form) -> str:  # noqa: ANN401
+    """Return plain dictionaries, lists, numbers and strings as YAML, with a line break at the end."""
+    text: str = yaml.dump(
+        values, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=form.flow
     )
     return text
+
+
+def on_one_line(value: Any) -> str:  # noqa: ANN401
+    """Return a message as it is typed after `ros2 topic pub`: "{linear: {x: 0.0}}"."""
+    text: str = yaml.safe_dump(
+        plain(value), sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=True
+    )
+    return text.strip()
 
 
 def to_csv(value: Any, form: Form | None = None, declared: str = "") -> str:  # noqa: ANN401

@@ -94,7 +94,7 @@ def prototype(type_argument: str, kind: str, part: str = "") -> Callable[..., li
         from grader.ros import rendering, values
 
         made = values.load_type(getattr(parsed_args, type_argument), kind)
-        return [rendering.to_yaml((getattr(made, part) if part else made)(), rendering.Form(flow=True)).strip()]
+        return [rendering.on_one_line((getattr(made, part) if part else made)())]
 
     return offered
 

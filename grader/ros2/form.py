@@ -24,7 +24,7 @@ def add_form(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-arr", action="store_true", help="print the type of arrays, not their values")
     parser.add_argument("--no-str", action="store_true", help="print the length of strings, not their value")
     parser.add_argument(
-        "--flow-style", action="store_true", help="print YAML on one line, as {x: 1.0} (not with --csv)"
+        "--flow-style", action="store_true", help="print arrays on one line, as [1, 2] (not with --csv)"
     )
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from grader.graph.names import absolute
 from grader.ros import values
 from grader.ros.failure import Ros2Error, did_you_mean
-from grader.ros.rendering import Form, plain, to_csv
+from grader.ros.rendering import Form, dumped, plain, to_csv
 from grader.ros2.completion import completes, service_types, services
 from grader.ros2.form import add_form, form_of
 
@@ -70,11 +70,6 @@ def _class(node: Node, name: str, args: argparse.Namespace) -> Any:  # noqa: ANN
 
 def _as_yaml(event: Any, form: Form) -> str:  # noqa: ANN401
     """Return an event with the name of its kind instead of the number."""
-    import yaml
-
     shown = plain(event, form)
     shown["info"]["event_type"] = _EVENTS[shown["info"]["event_type"]]
-    text: str = yaml.safe_dump(
-        shown, sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=form.flow
-    )
-    return f"{text}---"
+    return f"{dumped(shown, form)}---"
