@@ -17,11 +17,14 @@ import json
 import os
 import shutil
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.colcon.build import Build
+from grader.common.kind_of import text, text_or_none, whole_or_none
 from grader.errors import MachineError, UsageError
 from grader.evidence.evidence import Evidence, Fault, Run
+from grader.evidence.stage import STAGES
 from grader.evidence.tries import Tries, Try
 from grader.exercise.model import FILE_NAME
 from grader.submission.package import Submission, open_answers, open_submission, write_copy
@@ -30,8 +33,8 @@ from grader.trial.recording import from_json, to_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
-    from pathlib import Path
 
+    from grader.evidence.stage import Stage
     from grader.exercise.model import Exercise
     from grader.trial.recording import Recording
 
@@ -88,7 +91,11 @@ def _load_recording(folder: Path) -> Recording | None:
         return None
     from grader.evidence.bag import read_payloads
 
-    return from_json(_read(folder / "trial.json"), read_payloads(folder / "bag"))
+    recording = from_json(_read(folder / "trial.json"), read_payloads(folder / "bag"))
+    text(recording.clock)
+    text(recording.why)
+    whole_or_none(recording.seed)
+    return recording
 
 
 def check_free(folder: Path) -> None:
@@ -111,30 +118,33 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
     try:
         about = _read(folder / "submission.json")
         kept = read_exercise(folder / "exercise" / FILE_NAME)
-        package = folder / "source" / about["package"]
+        package = folder / "source" / Path(text(about["package"])).name  # nowhere else
         opened = open_submission(package) if kept.package else open_answers(package)
         submission = Submission(
-            name=about["name"],
+            name=text(about["name"]),
             package_dir=opened.package_dir,
             files=opened.files,
-            rejected=tuple(about["rejected"]),
-            digest=about["digest"],
+            rejected=tuple(map(text, about["rejected"])),
+            digest=text(about["digest"]),
             executable=opened.executable,
-            student=about.get("student"),
+            student=text_or_none(about.get("student")),
         )
+        ros = text(about["ros"])
         build = _build(_read(folder / "build.json")) if (folder / "build.json").exists() else None
-        fault = Fault(**about["fault"]) if about["fault"] else None
+        fault = _fault(**about["fault"]) if about["fault"] else None
         tries = _tries(_read(folder / "tries.json")) if (folder / "tries.json").exists() else Tries()
         runs = {
-            trial.id: Run(_load_recording(folder / "trials" / trial.id), about["runs"][trial.id]["overwhelmed"])
+            trial.id: Run(
+                _load_recording(folder / "trials" / trial.id), text_or_none(about["runs"][trial.id]["overwhelmed"])
+            )
             for trial in kept.trials
             if trial.id in about["runs"]
         }
-    except (OSError, KeyError, TypeError, ValueError) as error:
+    except (OSError, KeyError, TypeError, ValueError, AttributeError) as error:
         why = f"{type(error).__name__}: {error}"
         message = f"{folder} cannot be read as a recording, as `grader check --recording {folder}` writes one ({why})."
         raise UsageError(message) from error
-    return Archived(Evidence(kept, submission, build, runs, fault, tries), about["ros"])
+    return Archived(Evidence(kept, submission, build, runs, fault, tries), ros)
 
 
 def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
@@ -151,6 +161,13 @@ def _about(evidence: Evidence, ros: str) -> dict[str, Any]:
         "fault": asdict(evidence.fault) if evidence.fault else None,
         "runs": {trial: {"overwhelmed": run.overwhelmed} for trial, run in evidence.runs.items()},
     }
+
+
+def _fault(stage: Stage, message: object, *, unreadable: bool) -> Fault:
+    if stage not in STAGES:
+        problem = f"there is no stage {stage!r:.40}"
+        raise ValueError(problem)
+    return Fault(stage, text(message), bool(unreadable))
 
 
 def _build(data: dict[str, Any]) -> Build:

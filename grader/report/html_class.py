@@ -131,7 +131,7 @@ def read_class(folder: Path) -> ClassReports:
             one, amount = from_json(text), int(json.loads(text).get(ERRORS, 0))
             found.append((file, one))
             errors.append(amount)
-        except (OSError, ValueError, TypeError, RecursionError, UsageError) as error:
+        except (OSError, ValueError, TypeError, AttributeError, OverflowError, RecursionError, UsageError) as error:
             unreadable.append((str(file.relative_to(folder)), str(error)))
     if not found and not unreadable:
         message = f"There is no report below {folder}: `grader check --json FILE` writes one."

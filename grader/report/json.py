@@ -25,6 +25,7 @@ import json
 from typing import Any
 
 from grader.checks.outcome import Finding, Outcome, Status
+from grader.common.kind_of import number, text, text_or_none, whole_or_none
 from grader.errors import UsageError
 from grader.report.report import Report
 from grader.submission.where import Where
@@ -87,12 +88,12 @@ def _encodable(text: str) -> str:
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
-def from_json(text: str) -> Report:
+def from_json(written: str) -> Report:
     """Read a report from JSON. Raises UsageError if it is not a report of the grader, or has a newer schema."""
     try:
-        data = json.loads(text)
+        data = json.loads(written)
         schema = data["schema"]
-    except (ValueError, TypeError, KeyError) as error:
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
         message = "This is not a report of the grader: it is not JSON with the key `schema`."
         raise UsageError(message) from error
     if schema not in READ:
@@ -100,7 +101,7 @@ def from_json(text: str) -> Report:
         raise UsageError(message)
     try:
         return _report(data)
-    except (ValueError, TypeError, KeyError) as error:
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
         message = f"This report is damaged: {type(error).__name__} {error}."
         raise UsageError(message) from error
 
@@ -108,20 +109,20 @@ def from_json(text: str) -> Report:
 def _report(data: dict[str, Any]) -> Report:
     recordings = data["recordings"]
     return Report(
-        exercise=data["exercise"]["id"],
-        exercise_title=data["exercise"]["title"],
-        submission=data["submission"]["name"],
-        digest=data["submission"]["sha256"],
-        grader=data["grader"],
-        ros=data["ros"],
-        clock=data["clock"]["used"],
-        clock_why=data["clock"]["why"],
+        exercise=text(data["exercise"]["id"]),
+        exercise_title=text(data["exercise"]["title"]),
+        submission=text(data["submission"]["name"]),
+        digest=text(data["submission"]["sha256"]),
+        grader=text(data["grader"]),
+        ros=text(data["ros"]),
+        clock=text(data["clock"]["used"]),
+        clock_why=text(data["clock"]["why"]),
         confined=True if data["schema"] == 1 else bool(data["confined"]),
-        seed=data["seed"],
+        seed=whole_or_none(data["seed"]),
         outcomes=tuple(_read_outcome(each) for each in data["outcomes"]),
-        seconds=dict(data["seconds"]),
-        recording=recordings[0] if recordings else None,
-        exercise_digest=data["exercise"]["sha256"],
+        seconds={text(stage): number(seconds) for stage, seconds in data["seconds"].items()},
+        recording=text(recordings[0]) if recordings else None,
+        exercise_digest=text(data["exercise"]["sha256"]),
     )
 
 
@@ -129,21 +130,21 @@ def _read_outcome(data: dict[str, Any]) -> Outcome:
     where = data["where"]
     finding = Finding(
         status=Status(data["status"]),
-        observed=data["seen"],
-        expected=data["expected"],
-        cause=data["cause"],
-        diagnosis=data["diagnosis"],
-        where=None if where is None else Where(where["file"], where["line"]),
-        near_edge=data["near_edge"],
-        tried=data.get("tried", ""),
+        observed=text(data["seen"]),
+        expected=text(data["expected"]),
+        cause=text(data["cause"]),
+        diagnosis=text_or_none(data["diagnosis"]),
+        where=None if where is None else Where(text(where["file"]), whole_or_none(where["line"])),
+        near_edge=bool(data["near_edge"]),
+        tried=text(data.get("tried", "")),
     )
     return Outcome(
-        id=data["id"],
-        kind=data["kind"],
-        title=data["title"],
-        points=data["points"],
-        max=data["max"],
+        id=text(data["id"]),
+        kind=text(data["kind"]),
+        title=text(data["title"]),
+        points=number(data["points"]),
+        max=number(data["max"]),
         finding=finding,
-        hidden=data["hidden"],
-        advice=data["advice"],
+        hidden=bool(data["hidden"]),
+        advice=bool(data["advice"]),
     )

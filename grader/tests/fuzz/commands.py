@@ -97,6 +97,18 @@ def write(student: str, report: Report, page: str) -> None:
     assert again.report.points == report.points
 
 
+def regraded(folder: Path) -> None:
+    """What `regrade` does with the recording in the folder, with all of its options."""
+    from typer.testing import CliRunner
+
+    from grader.cli import app
+
+    command = ["regrade", str(folder), "--html", str(folder / "a.html"), "--image", str(folder / "a.png")]
+    done = CliRunner().invoke(app, [*command, "--json", str(folder / "a.json"), "--verbose"])
+    if done.exception is not None and not isinstance(done.exception, SystemExit):
+        raise done.exception
+
+
 def graded_files(files: dict[str, bytes], step: str = STEP, **more: Any) -> Report:  # noqa: ANN401
     """The report on our package with these files in it."""
     ours = submission()

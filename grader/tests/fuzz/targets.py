@@ -8,16 +8,15 @@ import io
 import json
 import tarfile
 import tempfile
-from contextlib import redirect_stdout
+from contextlib import redirect_stdout, suppress
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.checks.exercises import find_exercise, load_exercise
-from grader.checks.judge import judge
+from grader.checks.exercises import find_exercise
 from grader.classroom import unpack
 from grader.colcon.runner import _READY, _described
-from grader.errors import GraderError, UnreadableError
+from grader.errors import GraderError, UnreadableError, UsageError
 from grader.evidence import archive
 from grader.exercise.model import course_folder
 from grader.gradebook.put_together import graded_folder
@@ -27,9 +26,10 @@ from grader.sandbox.process import Finished
 from grader.submission.reader import read
 from grader.tests.checks.made import FILES, NODE_FILE, evidence, good
 from grader.tests.fuzz.choices import Choices
-from grader.tests.fuzz.commands import STEP, graded_class, graded_files
+from grader.tests.fuzz.commands import STEP, graded_class, graded_files, regraded
 from grader.tests.fuzz.folders import archive as odd_archive
 from grader.tests.fuzz.folders import fill
+from grader.tests.fuzz.odd_json import odd_json
 from grader.trial.recording import Output
 
 if TYPE_CHECKING:
@@ -105,6 +105,8 @@ def output(data: bytes) -> None:
 
 def notebooks(data: bytes) -> None:
     """`gradebook sync` of this notebook, with nothing else or a package beside it."""
+    if data[:1] == b"j":
+        data = odd_json(next(iter(TARGETS["notebooks"].seeds())), Choices(data[1:]))
     with tempfile.TemporaryDirectory() as folder:
         submitted, together = Path(folder) / "in", Path(folder) / "out"
         submitted.mkdir()
@@ -117,25 +119,23 @@ def notebooks(data: bytes) -> None:
 
 
 def recordings(data: bytes) -> None:
-    """`regrade` of a recording with one of its files changed: the first byte says which."""
+    """`regrade` of a recording with one of its files changed: the first byte says which, the second how."""
     files = _recording()
     changed = sorted(files)[data[0] % len(files)] if data else ""
+    content = data[1:]
+    if changed.endswith(".json") and content[:1] == b"j":
+        content = odd_json(files[changed], Choices(content[1:]))
     with tempfile.TemporaryDirectory() as folder:
-        for path, content in files.items():
+        for path, kept in files.items():
             (Path(folder) / path).parent.mkdir(parents=True, exist_ok=True)
-            (Path(folder) / path).write_bytes(data[1:] if path == changed else content)
-        try:
-            kept = read(archive.load, Path(folder), load_exercise)
-        except GraderError:
-            return
-        try:
-            read(judge, kept.evidence)
-        except UnreadableError:
-            return
+            (Path(folder) / path).write_bytes(content if path == changed else kept)
+        with suppress(UsageError):
+            regraded(Path(folder))
 
 
 def reports(data: bytes) -> None:
-    """`class-page` of this report beside a good one."""
+    """`class-page` of this report beside a good one; of a good one with odd values, where the first byte says so."""
+    data = odd_json(_report(), Choices(data[1:])) if data[:1] == b"j" else data
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "anna.json").write_bytes(data)
         (Path(folder) / "ben.json").write_bytes(_report())
@@ -192,7 +192,8 @@ def _outputs() -> Iterable[bytes]:
 
 
 def _recordings() -> Iterable[bytes]:
-    return [bytes([number]) + _recording()[path] for number, path in enumerate(sorted(_recording()))]
+    files = _recording()
+    return [bytes([n]) + how for n, path in enumerate(sorted(files)) for how in (files[path], b"jabc")]
 
 
 TARGETS = {
@@ -208,5 +209,5 @@ TARGETS = {
     "output": Target(output, _outputs),
     "notebooks": Target(notebooks, _files("exercises/*/*.ipynb")),
     "recordings": Target(recordings, _recordings),
-    "reports": Target(reports, lambda: [_report()]),
+    "reports": Target(reports, lambda: [_report(), b"j123", b"jabcdefg"]),
 }
