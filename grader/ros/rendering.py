@@ -25,7 +25,7 @@ class Form:
     """Whether arrays are on one line: "[1, 2]"."""
 
 
-class _Dumper(yaml.SafeDumper):
+class _Dumper(yaml.SafeDumper):  # type: ignore[misc]
     """Writes the fields of a message on lines of their own in flow style too, as the real `ros2` does."""
 
 
