@@ -80,17 +80,17 @@ def _exercise(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpe
 def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
     head = top.table("exercise")
     # An exercise with answers.toml alone has no package, and its trials have no node.
-    package = head.text("package", ROS_NAME, NAME, default=None if "package" in head.values else "")
+    package = head.string("package", ROS_NAME, NAME, default=None if "package" in head.values else "")
     trials = _trials(top, package)
     checks = _checks(top, tuple(trial.id for trial in trials), kinds)
     exercise = Exercise(
-        id=head.text("id", ID, "small letters, digits and single dashes, as in 03-circle-publisher"),
-        title=head.text("title"),
+        id=head.string("id", ID, "small letters, digits and single dashes, as in 03-circle-publisher"),
+        title=head.string("title"),
         package=package,
         trials=trials,
         checks=checks,
         hints=tuple(_hint(table, checks) for table in top.tables("hint")),
-        unsolved=head.texts("starting_point_fails"),
+        unsolved=head.strings("starting_point_fails"),
         folder=folder,
         digest=digest,
     )
@@ -111,13 +111,13 @@ def _trials(top: Table, package: str) -> tuple[TrialSpec, ...]:
 
 
 def _trial(table: Table, package: str) -> TrialSpec:
-    id_ = table.text("id", ID, "small letters, digits and single dashes, as in figure-eight")
+    id_ = table.string("id", ID, "small letters, digits and single dashes, as in figure-eight")
     if id_:
         table.place += f" ({id_})"
     spec = TrialSpec(
         id=id_,
-        executable=table.text("executable", ROS_NAME, NAME) if package else "",
-        node=table.text("node", ROS_NAME, NAME) if package else "",
+        executable=table.string("executable", ROS_NAME, NAME) if package else "",
+        node=table.string("node", ROS_NAME, NAME) if package else "",
         scenario=_scenario(table),
     )
     table.finish()
@@ -125,12 +125,12 @@ def _trial(table: Table, package: str) -> TrialSpec:
 
 
 def _scenario(table: Table) -> Scenario:
-    start = table.text("start", re.compile("turtlesim|anywhere"), '"turtlesim" or "anywhere"', default="turtlesim")
+    start = table.string("start", re.compile("turtlesim|anywhere"), '"turtlesim" or "anywhere"', default="turtlesim")
     scenario = Scenario(
         duration_s=table.number("duration_s", 0.1, MAX_DURATION_S, f"from 0.1 to {MAX_DURATION_S:g} (s)"),
         drives=tuple(_drive(each) for each in table.tables("drive")),
         anywhere=start == "anywhere",
-        rename=table.texts("rename"),
+        rename=table.strings("rename"),
         pose_every=int(table.number("pose_every", 1, 1000, "a number of frames from 1 to 1000", default=1)),
     )
     for rule in scenario.rename:
@@ -151,9 +151,9 @@ def _drive(table: Table) -> Drive:
 
 def _hint(table: Table, checks: tuple[CheckSpec, ...]) -> Hint:
     hint = Hint(
-        table.text("text").strip(),
-        table.texts("checks"),
-        table.text("part", PART, 'a letter, as in "d"', default=""),
+        table.string("text").strip(),
+        table.strings("checks"),
+        table.string("part", PART, 'a letter, as in "d"', default=""),
     )
     for name in hint.checks:
         _must_be_check(table, "checks", name, [check.id for check in checks])
@@ -195,17 +195,17 @@ def _without_presets(tables: list[Table], trials: tuple[str, ...]) -> list[Table
 
 
 def _check(table: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) -> CheckSpec:
-    id_ = table.text("id", ID, "small letters, digits and single dashes, as in circle-radius")
+    id_ = table.string("id", ID, "small letters, digits and single dashes, as in circle-radius")
     if id_:
         table.place += f" ({id_})"
-    trial = table.text("trial", default=trials[0] if trials else "?")
+    trial = table.string("trial", default=trials[0] if trials else "?")
     if trials and trial not in trials:
         table.problem(f'"trial" is "{shorten(trial)}"; it must be the id of a [[trial]]: {", ".join(trials)}.')
-    name = table.text("kind", allowed=f"one of {', '.join(kinds)}")
+    name = table.string("kind", allowed=f"one of {', '.join(kinds)}")
     points = table.number("points", 0.0, 1000.0, "a number from 0 to 1000")
-    needs, hidden = table.texts("needs"), table.flag("hidden")
+    needs, hidden = table.strings("needs"), table.flag("hidden")
     kind = kinds.get(name)
-    title = table.text("title", default=kind.title if kind else "?")
+    title = table.string("title", default=kind.title if kind else "?")
     if kind is None:
         if name:
             guess = nearest(name, kinds)

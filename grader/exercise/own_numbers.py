@@ -78,9 +78,9 @@ def from_toml(data: bytes) -> OwnNumbers:
     student, direction = table.get("student"), table.get("direction")
     radius, rate = table.get("radius_m"), table.get("rate_hz")
     if not (isinstance(student, str) and isinstance(direction, str)):
-        message = "student or direction is missing, or no text"
+        message = "student or direction is missing, or not a string"
         raise ValueError(message)  # noqa: TRY004
     if not (isinstance(radius, int | float) and isinstance(rate, int | float)):
-        message = "radius_m or rate_hz is missing, or no number"
+        message = "radius_m or rate_hz is missing, or not a number"
         raise ValueError(message)  # noqa: TRY004
     return OwnNumbers(student, float(radius), direction, float(rate))

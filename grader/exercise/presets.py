@@ -85,7 +85,7 @@ def problem_of(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) ->
             return f'unknown key "{shorten(key)}".{_guess(key, allowed)} Allowed: {", ".join(allowed)}.'
         if key in PRESETS[name] and not isinstance(value, dict):
             return f'"{key}" must be a table, as in {key} = {{ points = 5 }}.'
-    return "" if isinstance(table.get("title", ""), str) else '"title" must be a text.'
+    return "" if isinstance(table.get("title", ""), str) else '"title" must be a string.'
 
 
 def _made(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:

@@ -54,8 +54,8 @@ class Table:
         self.problem(f'"{key}" is {shown(value)}; it must be {allowed}.')
         return default
 
-    def text(
-        self, key: str, pattern: re.Pattern[str] | None = None, allowed: str = "a text", default: str | None = None
+    def string(
+        self, key: str, pattern: re.Pattern[str] | None = None, allowed: str = "a string", default: str | None = None
     ) -> str:
         """Return a string that is not only spaces, and matches all of `pattern`."""
 
@@ -91,13 +91,13 @@ class Table:
         """Return True or False; the default is False."""
         return bool(self._get(key, "true or false", lambda value: isinstance(value, bool), default=False))
 
-    def texts(self, key: str) -> tuple[str, ...]:
+    def strings(self, key: str) -> tuple[str, ...]:
         """Return a list of strings; the default is empty."""
 
         def good(value: object) -> bool:
             return isinstance(value, list) and all(isinstance(item, str) for item in value)
 
-        return tuple(self._get(key, "a list of texts", good, default=[]))
+        return tuple(self._get(key, "a list of strings", good, default=[]))
 
     def table(self, key: str) -> Table:
         """Return the table `[key]`, which is required."""

@@ -80,7 +80,7 @@ def read_setup_py(data: bytes) -> SetupPy:
         packages_line=None if packages is None else packages.lineno,
         setup_line=call.node.lineno,
         groups=tuple(groups or ()),
-        required=tuple(_texts(call.argument(99, "install_requires"), module)),
+        required=tuple(_strings(call.argument(99, "install_requires"), module)),
         stray=_stray(module, points or ()),
     )
 
@@ -172,16 +172,16 @@ def _data_file(item: ast.expr, module: Module) -> tuple[str, tuple[str, ...]]:
     if not isinstance(item, ast.Tuple | ast.List) or len(item.elts) != 2:
         return "", ()
     folder, files = item.elts
-    return _text(folder, module), tuple(_texts(files, module))
+    return _string(folder, module), tuple(_strings(files, module))
 
 
-def _texts(node: ast.expr | None, module: Module) -> Iterator[str]:
+def _strings(node: ast.expr | None, module: Module) -> Iterator[str]:
     resolved = _resolved(node, module)
     if isinstance(resolved, ast.List | ast.Tuple):
         for item in resolved.elts:
-            yield _text(item, module)
+            yield _string(item, module)
 
 
-def _text(node: ast.expr, module: Module) -> str:
+def _string(node: ast.expr, module: Module) -> str:
     value = evaluate(node, module.names)
     return value if isinstance(value, str) else ""

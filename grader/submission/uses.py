@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
     from grader.submission.code import Module
 
-BY_TEXT = frozenset({"getattr", "attrgetter", "methodcaller", "__getattribute__", "__getattr__", "get", "exec", "eval"})
+BY_STRING = frozenset(
+    {"getattr", "attrgetter", "methodcaller", "__getattribute__", "__getattr__", "get", "exec", "eval"}
+)
 """Functions that get the name of a function as a string."""
 
 
@@ -165,7 +167,7 @@ def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
     written: str | None = None
     if isinstance(node, ast.Call):
         written = (dotted(node.func) or "").rpartition(".")[2] or getattr(node.func, "attr", "")
-        name = written if written in names else _by_text(node, names) if written in BY_TEXT else None
+        name = written if written in names else _by_string(node, names) if written in BY_STRING else None
     elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
         name, written = file.functions.get(node.id), node.id
     elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load) and node.attr in names:
@@ -184,7 +186,7 @@ def _is_of_a_module(node: ast.expr) -> bool:
     return isinstance(node, ast.Call) or getattr(node, "attr", "") == "__dict__"
 
 
-def _by_text(call: ast.Call, names: Collection[str]) -> str | None:
+def _by_string(call: ast.Call, names: Collection[str]) -> str | None:
     """Return the function that a string argument names, or that source code in a string uses."""
     for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
         if isinstance(argument, ast.Constant) and isinstance(argument.value, str):

@@ -123,7 +123,7 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
             'id = "99 Test"',
             '[exercise]: "id" is "99 Test"; it must be small letters, digits and single dashes, as in 03-circle-publisher.',  # noqa: E501
         ),
-        ('title = "A test"\n', "", '[exercise]: the key "title" is missing; it must be a text.'),
+        ('title = "A test"\n', "", '[exercise]: the key "title" is missing; it must be a string.'),
         (
             'title = "A test"',
             'titel = "A test"',
@@ -188,7 +188,11 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
             'needs = ["rat"]',
             '[[check]] 2 (values): "needs" names "rat", which is no check. Did you mean "rate"? Allowed: rate, values.',
         ),
-        ('needs = ["rate"]', 'needs = "rate"', '[[check]] 2 (values): "needs" is "rate"; it must be a list of texts.'),
+        (
+            'needs = ["rate"]',
+            'needs = "rate"',
+            '[[check]] 2 (values): "needs" is "rate"; it must be a list of strings.',
+        ),
         ('needs = ["rate"]', 'needs = ["values"]', '"needs" goes in a circle: values -> values. Take one of them out.'),
         (
             'id = "values"',
@@ -196,7 +200,7 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
             '[[check]] 1 (rate): the id "rate" is used 2 times; each check needs one of its own.',
         ),
         ("hidden = true", 'hidden = "yes"', '[[check]] 2 (values): "hidden" is "yes"; it must be true or false.'),
-        ('text = "Think."', 'text = " "', '[[hint]] 1: "text" is " "; it must be a text.'),
+        ('text = "Think."', 'text = " "', '[[hint]] 1: "text" is " "; it must be a string.'),
         (
             'text = "Think."',
             'text = "Think."\nfor = "rate"',

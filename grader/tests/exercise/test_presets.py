@@ -167,7 +167,7 @@ def test_every_preset_is_made_of_kinds_that_there_are() -> None:
         ("start = { points = 2 }", "start = 2", '"start" must be a table, as in start = { points = 5 }.'),
         ("{ points = 2 }", '{ points = "2" }', '(eight-start): "points" is "2"; it must be a number from 0 to 1000.'),
         ('trial = "eight"', 'trial = "ate"', '"trial" is "ate"; it must be the id of a [[trial]]: drive, eight.'),
-        ('title = "b) Eight"', "title = 8", '"title" must be a text.'),
+        ('title = "b) Eight"', "title = 8", '"title" must be a string.'),
     ],
 )
 def test_each_mistake_of_an_author_is_named(tmp_path: Path, old: str, new: str, told: str) -> None:

@@ -58,7 +58,7 @@ def test_no_spelling_of_the_own_id_makes_a_friends_circle_pass() -> None:
             f"The numbers in {FILE} are not the ones that were drawn for this student.",
         ),
         (None, "alice", "no-numbers", f"There is no {FILE}."),
-        ("student = 3", "alice", "numbers-unreadable", f"{FILE}: student or direction is missing, or no text."),
+        ("student = 3", "alice", "numbers-unreadable", f"{FILE}: student or direction is missing, or not a string."),
     ],
 )
 def test_other_numbers_are_told_from_the_own(
