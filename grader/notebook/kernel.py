@@ -26,8 +26,8 @@ _AGAIN = "_GRADER_KERNEL_STARTED_AGAIN"
 def main() -> None:
     """Replace this process by the kernel.
 
-    If Jupyter was started without the ROS 2 of the set-up, that one is sourced first. Without any ROS 2, the kernel is a
-    plain Python kernel, in which `check` says what is missing.
+    If Jupyter was started without the ROS 2 of the set-up, that one is sourced first. Without any ROS 2, the kernel is
+    a plain Python kernel, in which `check` says what is missing.
     """
     from grader.errors import GraderError
     from grader.notebook.simulator import environment
