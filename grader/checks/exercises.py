@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from grader.common.refusal import of_the_machine
 from grader.common.words import a_list, nearest
 from grader.errors import UsageError
 from grader.exercise.exercise_toml import parse_exercise
@@ -56,6 +57,8 @@ def load_exercise(path: Path) -> Exercise:
     try:
         data = file.read_bytes()
     except OSError as error:
+        if of_the_machine(error):
+            raise
         message = f"{file}: cannot be read ({error.strerror})."
         raise UsageError(message) from error
     return parse_exercise(data, name=str(file), folder=file.parent, kinds=KINDS)

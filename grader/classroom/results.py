@@ -139,7 +139,7 @@ def opened(folder: Path) -> Iterator[Results]:
         (folder / REPORTS).mkdir(parents=True, exist_ok=True)
         file = lock.open("a")
     except OSError as error:
-        message = f"The results cannot be written to {folder}: {error.strerror}."
+        message = f"The results cannot be written to {folder}: {error.strerror}. Make room, or name another with --out."
         raise MachineError(message) from error
     with file:
         try:

@@ -19,12 +19,18 @@ def refusal(error: BaseException) -> Optional[str]:
     """Return the sentence for an error that the system raised; None for any other error."""
     if isinstance(error, MemoryError):
         return sentence(errno.ENOMEM)
-    if isinstance(error, RuntimeError) and "start new thread" in str(error):
-        return sentence(errno.EAGAIN)
+    if isinstance(error, RuntimeError):
+        return sentence(errno.EAGAIN) if "start new thread" in str(error) else refusal_in(str(error))
     if isinstance(error, OSError):
         where = os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes)) else ""
         return sentence(error.errno or 0, where)
     return None
+
+
+def refusal_in(said: str) -> Optional[str]:
+    """The sentence for a lack of room, memory, files or processes that a program or library told in its own words."""
+    found = next((number for number in sorted(_SCARCE) if os.strerror(number) in said), None)
+    return sentence(found) if found else None
 
 
 def of_the_machine(error: OSError) -> bool:

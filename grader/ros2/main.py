@@ -12,6 +12,7 @@ import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn
 
+from grader.common.refusal import refusal
 from grader.errors import GraderError
 from grader.ros.start import hand_over, see_to_environment
 from grader.ros2.parser import make_parser
@@ -67,11 +68,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         if os.environ.get("GRADER_DEBUG"):
             raise
+        _forget_the_terminal()
         fault = f"ros2: an error in the course's ros2, not in your code: {type(error).__name__}: {error}"
-        print(
-            f"{fault}\nType GRADER_DEBUG=1 before the command to see where it is, and please report it.",
-            file=sys.stderr,
-        )
+        more = "Type GRADER_DEBUG=1 before the command to see where it is, and please report it."
+        print(refusal(error) or f"{fault}\n{more}", file=sys.stderr)
         return 3
     return code
 
@@ -109,7 +109,8 @@ def _forget_the_terminal() -> None:
     try:
         sys.stdout.flush()
     except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        with suppress(OSError):  # nothing may be opened any more
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ import re
 import shutil
 import sys
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 from typing import Callable, List, Optional
 
@@ -56,7 +57,8 @@ def guarded(main: Callable[[], int]) -> int:
 
 def _silence() -> None:
     """Keep the interpreter from failing again at its end, when it flushes its buffers."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    with suppress(OSError):  # no file can be opened
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 def of_error(error: BaseException) -> Optional[str]:

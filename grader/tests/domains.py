@@ -1,43 +1,58 @@
-"""ROS domains for tests: up to six processes that test on one machine at the same time never share one."""
+"""ROS domains for tests: processes that test on one machine at the same time never share one."""
 
 from __future__ import annotations
 
 import fcntl
-import itertools
 import os
 import tempfile
+import time
 from functools import cache
 from pathlib import Path
 from typing import IO
 
-FIRST = 2
-"""Domain 1 is root's own, where the machine's user may be at work."""
-BLOCKS, EACH = 6, 16
-"""Up to domain 97: above 101 a domain's ports would lie among those that Linux gives to anybody."""
-_numbers = itertools.count()
-_held: list[IO[str]] = []
+from grader.tests.waiting import HANG_S
 
-
-def default_domain() -> int:
-    """The domain of what this process starts without giving it one."""
-    return FIRST + _block() * EACH
-
-
-def own_domain() -> int:
-    """Another domain of this process's block each time; after the last of them, the first again."""
-    return default_domain() + 1 + next(_numbers) % (EACH - 1)
+FIRST, LAST = 2, 101
+"""Domain 1 is root's own, where the machine's user may be at work; above 101 a domain's ports would lie among those
+that Linux gives to anybody."""
+MOST = 8
+"""So many a process keeps, beside its default one; then it takes the one again that it has not used for longest."""
+_held: dict[int, IO[str]] = {}
+_own: list[int] = []
 
 
 @cache
-def _block() -> int:
-    """A block that is this process's until it ends; shared where more than BLOCKS processes test."""
-    for number in range(BLOCKS):
-        file = (Path(tempfile.gettempdir()) / f"grader-test-domains-{os.getuid()}-{number}.lock").open("w")
+def default_domain() -> int:
+    """The domain of what this process starts without giving it one."""
+    deadline = time.monotonic() + HANG_S
+    while (domain := _free()) is None:
+        assert time.monotonic() < deadline, "all ROS domains are in use by other tests"
+        time.sleep(1.0)
+    return domain
+
+
+def own_domain() -> int:
+    """Another domain of this process's own each time; after the last of them, the first again."""
+    default_domain()
+    domain = _free() if len(_own) < MOST else None
+    if domain is None:
+        # None is free: the default one is better than one of somebody else.
+        domain = _own.pop(0) if _own else default_domain()
+    _own.append(domain)
+    return domain
+
+
+def _free() -> int | None:
+    """A domain that no process tests in, and that is this one's until it ends; None where there is no such."""
+    for domain in range(FIRST, LAST + 1):
+        if domain in _held:
+            continue
+        file = (Path(tempfile.gettempdir()) / f"grader-test-domain-{os.getuid()}-{domain}.lock").open("w")
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             file.close()
             continue
-        _held.append(file)
-        return number
-    return os.getpid() % BLOCKS
+        _held[domain] = file
+        return domain
+    return None

@@ -19,6 +19,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import grader
 from grader.common.interpreter import interpreter
+from grader.common.refusal import refusal_in
 from grader.errors import MachineError
 from grader.ros import installation
 from grader.sandbox import bubblewrap
@@ -248,7 +249,10 @@ class Trial:
         self._kill()
         self._errors.seek(0)
         output = answer.get("fault") or last_words(self._errors.read()[-2000:])
-        message = f"The simulator failed: {output or 'it output nothing'}. `grader doctor` tells what is missing."
+        # A whole sentence is one of ours, and says what to do.
+        refused = output if output.endswith(".") else refusal_in(output)
+        unknown = f"The simulator failed: {output or 'it output nothing'}. `grader doctor` tells what is missing."
+        message = f"The simulator failed. {refused}" if refused else unknown
         raise MachineError(message)
 
     def _how_it_ended(self) -> OverwhelmedError:

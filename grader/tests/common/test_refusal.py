@@ -14,6 +14,8 @@ from grader.common.refusal import of_the_machine, refusal
         (OSError(errno.EMFILE, "x", "/var/cache"), "`ulimit -n 4096`"),
         (BlockingIOError(errno.EAGAIN, "x"), "cannot start more processes for you"),
         (RuntimeError("can't start new thread"), "cannot start more processes for you"),
+        (RuntimeError("epoll: Too many open files"), "`ulimit -n 4096`"),
+        (RuntimeError("Resource temporarily unavailable"), "cannot start more processes for you"),
         (MemoryError(), "has no memory left"),
         (OSError(errno.ENOMEM, "x"), "has no memory left"),
         (

@@ -29,7 +29,7 @@ def refused(course: Clone, said: str) -> None:
 
 def test_without_a_network(tmp_path: Path) -> None:
     course = replace(clone(tmp_path), within=(*SEES, "--unshare-net"), settings=NOTHING_KEPT)
-    refused(course, "This machine does not reach the packages of Python")
+    refused(course, "This machine cannot reach the Python packages")
 
 
 def test_in_a_folder_that_cannot_be_written_to(tmp_path: Path) -> None:
@@ -41,7 +41,7 @@ def test_in_a_folder_that_cannot_be_written_to(tmp_path: Path) -> None:
 @pytest.mark.parametrize("room", [20 * MB, pytest.param(60 * MB, marks=[pytest.mark.exhaustive, pytest.mark.door])])
 def test_on_a_full_disk(tmp_path: Path, room: int) -> None:
     course = on_a_disk(clone(tmp_path), room)
-    refused(course, f"The disk is full for {course.folder}/.venv: make room there")
+    refused(course, f"The disk is full for {course.folder}/.venv: free some space there")
 
 
 def on_a_disk(course: Clone, room: int) -> Clone:

@@ -1,0 +1,124 @@
+"""Run a command of ours while the system refuses one kind of call from a certain function on."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+ARMED = """
+import ctypes, importlib, os
+
+place, name = os.environ["FAULT_FROM"].split(":")
+module = importlib.import_module(place)
+real = getattr(module, name)
+
+
+def armed(*arguments, **options):
+    ctypes.CDLL(os.environ["LD_PRELOAD"]).fault_arm()
+    return real(*arguments, **options)
+
+
+setattr(module, name, armed)
+seen = os.environ.pop("FAULT_IN_ROOMS", None)
+if seen:
+    from pathlib import Path
+
+    from grader.trial import trial
+
+    clean, view = trial.interpreter, trial.bubblewrap.ros_view
+    faults = {name: value for name, value in os.environ.items() if name.startswith(("FAULT", "LD_PRELOAD"))}
+
+    def interpreter(*arguments, env, **options):
+        return clean(*arguments, env={**env, **faults, "PYTHONPATH": seen + os.pathsep + env["PYTHONPATH"]}, **options)
+
+    trial.interpreter = interpreter
+    trial.bubblewrap.ros_view = lambda ros, *more: view(ros, Path(seen), *more)
+"""
+CALLS = {
+    "open": (errno.EMFILE, errno.ENOMEM, errno.EPERM),
+    "write": (errno.ENOSPC,),
+    "pipe": (errno.EMFILE, errno.ENFILE),
+    "mkdir": (errno.ENOSPC, errno.EPERM),
+    "rename": (errno.ENOSPC, errno.EPERM),
+    "fork": (errno.EAGAIN, errno.ENOMEM),
+    "thread": (errno.EAGAIN,),
+    "memfd": (errno.EMFILE, errno.ENOMEM),
+    "flock": (errno.EPERM, errno.ENOMEM),
+    "epoll": (errno.EMFILE, errno.ENOMEM),
+    "socket": (errno.EMFILE, errno.ENOMEM),
+}
+ALL = [(call, number, nth) for call, numbers in CALLS.items() for number in numbers for nth in (1, 2, 4, 9, 30)]
+TRACES = ("Traceback", "Exception in thread", "Exception ignored", "Fatal Python error", "terminate called")
+LIMIT_S = 300
+
+
+@dataclass(frozen=True)
+class Fault:
+    """The `nth` call of this kind and those after it fail with an errno, from a function on ("module:name")."""
+
+    call: str
+    number: int
+    nth: int
+    since: str
+    in_rooms: bool = False
+    """Whether the function is called by a conductor."""
+
+
+@dataclass(frozen=True)
+class Done:
+    """What a command has printed, how it ended, and how many calls failed."""
+
+    code: int
+    said: str
+    failures: int
+
+
+def environment(folder: Path, shim: Path, fault: Fault) -> dict[str, str]:
+    """The variables with which a command of ours meets the fault; `folder` holds what that takes."""
+    seen = folder / "seen"  # by rooms too
+    seen.mkdir(exist_ok=True)
+    (seen / "sitecustomize.py").write_text(ARMED)
+    preloaded = shutil.copy(shim, seen)
+    faults = {
+        "PYTHONPATH": str(seen),
+        "LD_PRELOAD": str(preloaded),
+        "FAULT_LOG": str(folder / "failures"),
+        "FAULT_FROM": fault.since,
+        "FAULT": f"{fault.call} {fault.number} {fault.nth}",
+    }
+    return {**os.environ, **faults, **({"FAULT_IN_ROOMS": str(seen)} if fault.in_rooms else {})}
+
+
+def run(
+    command: Sequence[str], folder: Path, shim: Path, fault: Fault, settings: Mapping[str, str] | None = None
+) -> Done:
+    """Run one of our commands, named without its folder."""
+    program = str(Path(sys.prefix, "bin", command[0]))
+    env = {**environment(folder, shim, fault), **(settings or {})}
+    done = subprocess.run(
+        [program, *command[1:]],
+        cwd=folder, env=env, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
+        timeout=LIMIT_S, check=False,
+    )  # fmt: skip
+    return Done(done.returncode, done.stdout + done.stderr, failures(folder))
+
+
+def failures(folder: Path) -> int:
+    """How many calls failed so far."""
+    log = folder / "failures"
+    return len(log.read_text("utf-8").splitlines()) if log.exists() else 0
+
+
+def no_traceback(done: Done) -> None:
+    """What was printed holds no traceback, and no fault of ours."""
+    for trace in (*TRACES, "GRADER_DEBUG=1"):
+        assert trace not in done.said, done.said

@@ -1,0 +1,139 @@
+"""What the system refuses a class, a learner's commands, `watch`, `ros2` and the set-up is a sentence, no traceback."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pexpect
+import pytest
+
+from grader.setup import machine
+from grader.tests.case import ROOT
+from grader.tests.faults.inject import ALL, LIMIT_S, Done, Fault, environment, failures, no_traceback, run
+
+STEP = "03-circle-publisher"
+COMMANDS = {
+    "class": ("grader.classroom.grade_class:grade_class", f"grader grade class --exercise {STEP} --out out"),
+    "start": ("grader.learner.steps:start", "grader start 01"),
+    "env": ("grader.ros.shell:code", "grader env"),
+    "list": ("grader.ros2.main:run", "ros2 topic list"),
+    "create": ("grader.ros2.main:run", "ros2 pkg create --build-type ament_python --node-name drive my_package"),
+    "run": ("grader.ros2.main:run", "ros2 run turtlesim nothing"),
+    "show": ("grader.ros2.main:run", "ros2 interface show turtlesim/msg/Pose"),
+}
+EVERY_DAY = [
+    ("class", "fork", errno.EAGAIN, 1),
+    ("class", "open", errno.EMFILE, 1),
+    ("class", "mkdir", errno.ENOSPC, 1),
+    ("start", "mkdir", errno.ENOSPC, 1),
+    ("env", "open", errno.EMFILE, 1),
+    ("list", "open", errno.EMFILE, 1),
+    ("create", "mkdir", errno.ENOSPC, 1),
+    ("show", "open", errno.ENOMEM, 1),
+]
+SET_UP = """
+import ctypes, os, sys
+from grader.setup import bootstrap, refused
+ctypes.CDLL(os.environ["LD_PRELOAD"]).fault_arm()
+sys.exit(refused.guarded(lambda: bootstrap.main(["learner"])))
+"""
+
+
+def commanded(name: str, folder: Path, shim: Path, call: str, number: int, nth: int) -> Done:
+    since, command = COMMANDS[name]
+    if name == "class":
+        for student in ("ada", "bob"):
+            shutil.copytree(ROOT / "solutions" / STEP, folder / "class" / student)
+    home = {"HOME": str(folder), "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")}
+    return run(command.split(), folder, shim, Fault(call, number, nth, since), home)
+
+
+def told(done: Done) -> None:
+    """It went well, or ended as a command ends that a machine does not carry."""
+    no_traceback(done)
+    if done.failures and done.code not in (0, 1):
+        assert done.code == 3, done
+        assert done.said.strip().splitlines()[-1].endswith("."), done
+
+
+@pytest.mark.parametrize(("name", "call", "number", "nth"), EVERY_DAY)
+def test_what_the_system_refuses_a_command_is_a_sentence(
+    tmp_path: Path, shim: Path, name: str, call: str, number: int, nth: int
+) -> None:
+    done = commanded(name, tmp_path, shim, call, number, nth)
+    told(done)
+    assert done.failures > 0
+
+
+@pytest.mark.parametrize(("call", "number"), [("fork", errno.EAGAIN), ("open", errno.EMFILE), ("mkdir", errno.ENOSPC)])
+def test_what_the_system_refuses_watch_is_said_and_it_ends_as_it_was_asked_to(
+    tmp_path: Path, shim: Path, call: str, number: int
+) -> None:
+    package = tmp_path / "my_robot_controller"
+    shutil.copytree(ROOT / "solutions" / STEP / "my_robot_controller", package)
+    env = environment(tmp_path, shim, Fault(call, number, 1, "grader.grading.grade:grade"))
+    screen: pexpect.spawn[str] = pexpect.spawn(
+        str(Path(sys.prefix, "bin/grader")),
+        ["watch", str(package), "--exercise", STEP],
+        env={**env, "TERM": "xterm-256color"},
+        cwd=tmp_path,
+        encoding="utf-8",
+        timeout=LIMIT_S,
+    )
+    said = ""
+    if screen.expect(["Watching .*quit", pexpect.EOF]) == 0:
+        said = f"{screen.before}{screen.after}"
+        screen.send("q")
+        screen.expect(pexpect.EOF)
+    screen.close()
+    no_traceback(Done(screen.exitstatus or 0, said + (screen.before or ""), failures(tmp_path)))
+
+
+def set_up(folder: Path, shim: Path, call: str, number: int, nth: int) -> Done:
+    """Begin the set-up in a folder that holds what it needs for that."""
+    for name in ("grader/setup", "grader/common"):
+        shutil.copytree(ROOT / name, folder / name)
+    for name in ("grader/__init__.py", "requirements.lock", "pyproject.toml"):
+        shutil.copy(ROOT / name, folder / name)
+    env = environment(folder, shim, Fault(call, number, nth, "os:getpid"))
+    python = next(python for python in machine.find_pythons("/usr/bin") if python.venv)
+    done = subprocess.run(
+        [python.path, "-Es", "-c", f"import sys; sys.path.insert(0, {str(folder)!r})\n{SET_UP}"],
+        cwd=folder,
+        env={**env, "INSTALL_SYSTEM": "0", "PIP_INDEX_URL": "http://127.0.0.1:9/", "PIP_CONFIG_FILE": os.devnull},
+        capture_output=True,
+        text=True,
+        timeout=LIMIT_S,
+        check=False,
+    )
+    return Done(done.returncode, done.stdout + done.stderr, failures(folder))
+
+
+@pytest.mark.parametrize(
+    ("call", "number"),
+    [
+        ("open", errno.EMFILE),
+        ("open", errno.ENOMEM),
+        ("fork", errno.EAGAIN),
+        ("fork", errno.ENOMEM),
+        ("flock", errno.EPERM),
+    ],
+)
+def test_what_the_system_refuses_the_set_up_is_a_sentence(tmp_path: Path, shim: Path, call: str, number: int) -> None:
+    done = set_up(tmp_path, shim, call, number, 1)
+    told(done)
+    assert (done.code, done.failures > 0) == (3, True), done
+
+
+@pytest.mark.exhaustive
+@pytest.mark.parametrize(("call", "number", "nth"), ALL)
+@pytest.mark.parametrize("name", COMMANDS)
+def test_nothing_that_the_system_refuses_a_command_is_a_traceback(
+    tmp_path: Path, shim: Path, name: str, call: str, number: int, nth: int
+) -> None:
+    told(commanded(name, tmp_path, shim, call, number, nth))
