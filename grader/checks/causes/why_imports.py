@@ -51,7 +51,7 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
     if beside is not None:
         text = f"{beside} exists, but you must import it with its package name: FOLDER.{top}."
         return Cause("sibling-import", text)
-    guess = nearest(name, ros_names.MODULES, alike=0.8)
+    guess = nearest(name, {*ros_names.MODULES, *(each.partition(".")[0] for each in ros_names.MODULES)}, alike=0.8)
     if guess is not None:
         text = f"There is a module {guess}. Compare the two names letter by letter."
         return Cause("module-misspelt", text).mended_by(at(scene.crash.where, name, guess.partition(".")[0]))
