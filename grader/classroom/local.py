@@ -32,12 +32,12 @@ def default_jobs() -> int:
 
 
 def _processors() -> int:
-    here = len(os.sched_getaffinity(0))
+    processors = len(os.sched_getaffinity(0))
     try:
         quota, period = Path("/sys/fs/cgroup/cpu.max").read_text().split()
-        return max(1, min(here, round(int(quota) / int(period))))
+        return max(1, min(processors, round(int(quota) / int(period))))
     except (OSError, ValueError):
-        return here  # there is no control group, or it has no limit
+        return processors  # there is no control group, or it has no limit
 
 
 def _memory() -> int:

@@ -110,11 +110,11 @@ MANAGERS = (
 
 def find_manager(path: str) -> Optional[Manager]:
     """Return the package manager of this system; if several are installed, the usual one for this distribution."""
-    here = [manager for manager in MANAGERS if find_program(manager.program, path)]
-    if len(here) > 1:
+    found = [manager for manager in MANAGERS if find_program(manager.program, path)]
+    if len(found) > 1:
         own = _systems()
-        here.sort(key=lambda manager: not own.intersection(manager.systems))
-    return here[0] if here else None
+        found.sort(key=lambda manager: not own.intersection(manager.systems))
+    return found[0] if found else None
 
 
 def find_program(name: str, path: str) -> Optional[str]:

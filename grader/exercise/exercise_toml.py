@@ -235,16 +235,16 @@ def _circle(specs: tuple[CheckSpec, ...]) -> list[str]:
     done: set[str] = set()
 
     def walk(path: list[str]) -> list[str]:
-        here = path[-1]
-        if here in path[:-1]:
-            return path[path.index(here) :]
-        if here in done:
+        last = path[-1]
+        if last in path[:-1]:
+            return path[path.index(last) :]
+        if last in done:
             return []
-        for need in needs[here]:
+        for need in needs[last]:
             found = walk([*path, need])
             if found:
                 return found
-        done.add(here)
+        done.add(last)
         return []
 
     for start in needs:

@@ -32,7 +32,7 @@ class CodeLine:
 
     number: int
     pieces: tuple[Piece, ...]
-    here: bool
+    marked: bool
 
 
 @dataclass(frozen=True)

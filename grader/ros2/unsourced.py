@@ -33,8 +33,8 @@ def where_it_is(package: str) -> str:
 
 def _workspaces() -> Iterator[Path]:
     """Return folders that look like workspaces: this one, those above it, and that of the tutorials."""
-    here = Path.cwd()
-    for folder in dict.fromkeys([here, *here.parents, Path.home() / "ros2_ws"]):
+    cwd = Path.cwd()
+    for folder in dict.fromkeys([cwd, *cwd.parents, Path.home() / "ros2_ws"]):
         if folder != folder.parent and any((folder / name).is_dir() for name in ("install", "src")):
             yield folder
 

@@ -109,8 +109,8 @@ def _parents() -> list[Path]:
         # In a container the path may be that of the host. Then the group is the top of the container's tree.
         places = [(TREE / name / own[name].lstrip("/"), TREE / name) for name in CONTROLLERS]
         return [next((place for place in both if os.access(place, os.W_OK)), both[0]) for both in places]
-    here = TREE / own.get("", "/").lstrip("/")
-    for place in (here, *here.parents):
+    own_group = TREE / own.get("", "/").lstrip("/")
+    for place in (own_group, *own_group.parents):
         if not place.is_relative_to(TREE):
             break
         with suppress(OSError):

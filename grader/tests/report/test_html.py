@@ -144,7 +144,7 @@ def test_the_page_has_the_checks_of_the_report() -> None:
 def test_the_line_of_a_check_is_shown_once_and_marked() -> None:
     given = evidence(SHAPES["radius 2.2"](), node(("linear.x = 2.0", "linear.x = 2.2")))
     page = page_of(given)
-    (line,) = re.findall(r'<span class="line here">(.*?)\n</span>', page, re.DOTALL)
+    (line,) = re.findall(r'<span class="line marked">(.*?)\n</span>', page, re.DOTALL)
     assert re.sub(r"<.*?>", "", line).split(maxsplit=2)[2] == "msg.linear.x = 2.2"
     assert "This line is shown" in page
 
@@ -153,7 +153,7 @@ def test_the_line_of_a_check_is_shown_once_and_marked() -> None:
 def test_lines_are_counted_as_python_counts_them(newline: str) -> None:
     code = ("# \x0c a form feed\n" + NODE.replace("linear.x = 2.0", "linear.x = 2.2")).replace("\n", newline)
     page = page_of(evidence(SHAPES["radius 2.2"](), submission({NODE_FILE: code.encode()})))
-    (line,) = re.findall(r'<span class="line here">(.*?)\n</span>', page, re.DOTALL)
+    (line,) = re.findall(r'<span class="line marked">(.*?)\n</span>', page, re.DOTALL)
     assert "linear.x" in re.sub(r"<.*?>", "", line)
 
 
