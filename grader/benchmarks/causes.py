@@ -2,12 +2,12 @@
 
     python -m grader.benchmarks.causes [--count 200] [--seed 1] [--only OPERATOR ...] [--keep FOLDER]
 
-Makes right packages wrong by the operators of grader/tests/operators, two at once in a third of them, and judges
-them in simulated time. The right packages are the solutions and those cases of tests/unusual that follow ROS time. A
-package that passes all the same was not made wrong, and is left out. Printed are, of the others:
+It makes correct packages wrong with the operators of grader/tests/operators, with two operators in a third of the
+packages, and judges them in simulated time. The correct packages are the solutions and the cases of tests/unusual that
+follow ROS time. A package that still passes is not wrong, and is ignored. For the others, it prints:
 
 - first: the first failed check names the cause, at a line that must change;
-- at all: some failed check does;
+- at all: any failed check names it;
 - false: a failed check names a wrong cause. A diagnosis that only repeats what was observed does not count.
 
 It also lists what the reports missed. `--keep` stores the recordings, and `--again` judges them again without running

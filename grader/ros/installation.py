@@ -112,7 +112,7 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
     """Return the whole environment of a child process; nothing from the caller's environment gets in.
 
     `overlays` are install folders of packages (install/<package>), searched first. `home` must be writable: HOME,
-    ROS_LOG_DIR and TMPDIR lie there. `domain` is None in a room (grader.sandbox), which has a network of its own.
+    ROS_LOG_DIR and TMPDIR are in it. `domain` is None in a room (grader.sandbox), which has a network of its own.
     """
     local = [*overlays, *([ros.underlay] if ros.underlay else [])]
     env = {
