@@ -46,6 +46,10 @@ def interpreter(
 
     Raises:
         ValueError: the script's path is relative.
+
+    Example:
+        >>> start = interpreter("-m", "compileall", "lib", python="/usr/bin/python3")
+        >>> subprocess.call(start.argv, env=start.env)  # doctest: +SKIP
     """
     kind = arguments[0]
     if not kind.startswith("-") and not Path(kind).is_absolute():
