@@ -15,6 +15,7 @@ import select
 import signal
 import time
 import traceback
+from contextlib import suppress
 from dataclasses import is_dataclass
 from enum import Enum
 from importlib import import_module
@@ -103,14 +104,21 @@ def _run(sends: int, function: Callable[[], object]) -> NoReturn:
         gc.disable()  # it would touch, and so copy, all that the parent has
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
-        os.closerange(3, sends)
-        os.closerange(sends + 1, resource.getrlimit(resource.RLIMIT_NOFILE)[0])
+        _close_all_but(sends)
         _limit()
         with open(sends, "wb") as pipe:
             pipe.write(_answer(function))
     except BaseException:
         os._exit(1)
     os._exit(0)
+
+
+def _close_all_but(sends: int) -> None:
+    """Close what the parent has open: nothing is read from it, and a pipe must not stay open for longer than there."""
+    for number in [int(entry.name) for entry in Path("/proc/self/fd").iterdir()]:
+        if number > 2 and number != sends:
+            with suppress(OSError):  # the descriptor that listed them
+                os.close(number)
 
 
 def _limit() -> None:
