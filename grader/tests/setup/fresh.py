@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    import signal
+    from collections.abc import Mapping
 
 ROOT = Path(__file__).parents[3]
 SET_UP_S = 900
@@ -40,31 +41,21 @@ class Clone:
         Raises:
             AssertionError: it did not end with this exit code.
         """
-        done = subprocess.run(
-            [*self.within, "bash", "-c", f'cd "$0" && {command}', cwd or self.folder],
+        started = self._start(command, cwd or self.folder, environment)
+        try:
+            printed, _ = started.communicate(timeout=SET_UP_S)
+        finally:
+            if started.poll() is None:
+                os.killpg(started.pid, signal.SIGKILL)
+                started.wait()
+        assert started.returncode == ends, f"{command}: {started.returncode}\n{printed}"
+        return printed
+
+    def _start(self, command: str, folder: Path, environment: Mapping[str, str]) -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            [*self.within, "bash", "-c", f'cd "$0" && {command}', str(folder)],
             cwd="/",
             env={**self.environment(), **environment},
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            timeout=SET_UP_S,
-            text=True,
-            errors="replace",
-            check=False,
-        )
-        assert done.returncode == ends, f"{command}: {done.returncode}\n{done.stdout}"
-        return done.stdout
-
-    def stop(self, command: str, at: str, number: signal.Signals) -> str:
-        """Run a command and send the signal to it and all its children once it prints `at`; returns what it printed.
-
-        Raises:
-            AssertionError: it ended without having printed that.
-        """
-        started = subprocess.Popen(
-            [*self.within, "bash", "-c", command],
-            cwd=self.folder,
-            env=self.environment(),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -72,6 +63,14 @@ class Clone:
             text=True,
             errors="replace",
         )
+
+    def stop(self, command: str, at: str, number: signal.Signals) -> str:
+        """Run a command and send the signal to it and all its children once it prints `at`; returns what it printed.
+
+        Raises:
+            AssertionError: it ended without having printed that.
+        """
+        started = self._start(command, self.folder, {})
         with started:
             printed = ""
             for line in started.stdout or ():
