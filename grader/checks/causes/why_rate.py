@@ -6,14 +6,14 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.submission.constants import dotted
+from grader.submission.constants import dotted, number
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from grader.evidence.evidence import Evidence
-    from grader.submission.code import Module
+    from grader.submission.code import Call, Module
 
 OFTEN = 0.5
 """A loop without a pause is at least this much faster than it should be, as a share of the period."""
@@ -31,7 +31,7 @@ def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> 
                 return Cause("loop-without-pause", f"This loop calls {call} without a pause.", where)
     if abs(mean_s - FRAME_S) > 0.1 * FRAME_S:
         return None
-    for module, name in _callbacks(evidence):
+    for module, name in callbacks_of(evidence):
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef) and node.name == name and _reaches(module, node, call):
                 text = f"{name} is called for every message, 62.5 times per second, and each time it calls {call}."
@@ -69,19 +69,35 @@ def why_timers_grow(evidence: Evidence) -> Cause | None:
     return Cause("timer-in-callback", text, where)
 
 
+def why_sleep_in_callback(evidence: Evidence) -> Cause | None:
+    """Return the cause if a callback sleeps, else None."""
+    found = _made_in_callback(evidence, "sleep")
+    if found is None or not any(call.where == found[1] and _length(call) for call in evidence.code.calls("sleep")):
+        return None
+    text = "While a method sleeps, nothing else in the node runs, not even its timer."
+    return Cause("sleep-in-callback", text, found[1])
+
+
+def _length(sleep: Call) -> float | None:
+    return number(sleep.argument(0, "secs"), sleep.module.names)
+
+
 def _made_in_callback(evidence: Evidence, maker: str) -> tuple[str, Where] | None:
     """Return a callback that calls the maker, and where it does, or None."""
     for module in evidence.code.modules:
-        called = {name for each, name in _callbacks(evidence, "create_timer", "create_subscription") if each is module}
+        called = {
+            name for each, name in callbacks_of(evidence, "create_timer", "create_subscription") if each is module
+        }
         for node in module.nodes:
             if isinstance(node, ast.FunctionDef) and node.name in called:
                 for inner in ast.walk(node):
-                    if isinstance(inner, ast.Call) and getattr(inner.func, "attr", "") == maker:
+                    if isinstance(inner, ast.Call) and _name(inner) == maker:
                         return node.name, Where(module.file, inner.lineno)
     return None
 
 
-def _callbacks(evidence: Evidence, *makers: str) -> Iterator[tuple[Module, str]]:
+def callbacks_of(evidence: Evidence, *makers: str) -> Iterator[tuple[Module, str]]:
+    """Yield the names of the functions that these makers get as callbacks, with their modules."""
     for maker in makers or ("create_subscription",):
         for call in evidence.code.calls(maker):
             name = dotted(call.argument(1 if maker == "create_timer" else 2, "callback") or ast.Constant(0))
@@ -91,4 +107,9 @@ def _callbacks(evidence: Evidence, *makers: str) -> Iterator[tuple[Module, str]]
 
 def _calls(node: ast.AST, *names: str) -> bool:
     calls = (each for each in ast.walk(node) if isinstance(each, ast.Call))
-    return any(getattr(call.func, "attr", getattr(call.func, "id", "")) in names for call in calls)
+    return any(_name(call) in names for call in calls)
+
+
+def _name(call: ast.Call) -> str:
+    """Return the last name of what is called."""
+    return getattr(call.func, "attr", getattr(call.func, "id", ""))

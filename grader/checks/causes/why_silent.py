@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.timers import timer_fault
 from grader.checks.causes.why_ended import SPINS, named_only
+from grader.checks.causes.why_rate import callbacks_of
 from grader.common.words import nearest, shorten
 from grader.submission.constants import dotted, evaluate
 from grader.submission.where import Where
@@ -72,6 +73,7 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
 
 def _stuck(evidence: Evidence) -> Cause | None:
     """Return the cause if something never returns: a loop or wait in __init__, or a wait in a callback; else None."""
+    callbacks = {name for _, name in callbacks_of(evidence, "create_timer", "create_subscription")}
     for module, method in _methods(evidence):
         for node in ast.walk(method):
             where = Where(module.file, getattr(node, "lineno", None))
@@ -81,7 +83,7 @@ def _stuck(evidence: Evidence) -> Cause | None:
             if method.name == "__init__" and isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS:
                 text = "__init__ loops forever, so rclpy.spin is never reached. A timer repeats without a loop."
                 return Cause("blocks-in-init", text, where)
-            if method.name != "__init__" and _waits_inside(node):
+            if method.name in callbacks and _waits_inside(node):
                 text = "This callback waits for a response, but rclpy.spin cannot receive it while the callback waits."
                 return Cause("waits-in-callback", text, where)
     return None

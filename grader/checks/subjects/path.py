@@ -117,7 +117,8 @@ def _no_circle(evidence: Evidence, trajectory: Trajectory, expected: str) -> Fin
         return failed(observed, expected, Cause("wall", _size(evidence), _line(evidence)))
     fitted = trajectory.circle
     if fitted is None or fitted.radius > STRAIGHT_RADIUS_M:
-        cause = "The turtle never turns. angular.z is the turning speed."
+        never = trajectory.turned_rad <= TURNED_RAD
+        cause = "The turtle never turns. angular.z is the turning speed." if never else ""
         return failed("The turtle drove in a straight line.", expected, Cause("straight-line", cause, _line(evidence)))
     return None
 
@@ -147,6 +148,8 @@ def _measured(evidence: Evidence, params: CircleParams, trajectory: Trajectory, 
         observed = f"The circle has the right size, but it is {centre:.2f} m away from where it should be."
         cause = (
             "The first commands differ from the others, so the turtle left its start position before the circle began."
+            if _steady(evidence) is None
+            else ""
         )
         return failed(observed, expected, Cause("wrong-centre", cause, _line(evidence)), near_edge=near)
     if not long.holds(forward):

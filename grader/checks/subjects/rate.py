@@ -10,7 +10,12 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed, ended_early
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
-from grader.checks.causes.why_rate import why_often, why_publishers_grow, why_timers_grow
+from grader.checks.causes.why_rate import (
+    why_often,
+    why_publishers_grow,
+    why_sleep_in_callback,
+    why_timers_grow,
+)
 from grader.checks.edit import at
 from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, Status, failed, passed
@@ -214,17 +219,17 @@ def _why_mean(evidence: Evidence, what: Subject, mean: float, params: Rate) -> C
     for timer, period in timers:
         if period is not None and abs(period - mean) <= SAME * mean:
             return Cause("timer-period", PERIOD, timer.where).mended_by(_right_period(timer, params))
+    asleep = why_sleep_in_callback(evidence)
+    if asleep is not None:
+        return asleep
     for sleep in code.calls("sleep"):
         length = constant(sleep.argument(0, "secs"), sleep.module.names)
-        if timers and length is not None:
-            cause = "While a method sleeps, nothing else in the node runs, not even its timer."
-            return Cause("sleep-in-callback", cause, sleep.where)
         if length is not None and abs(length - mean) <= SAME * mean:
             return Cause("sleep-period", f"The node sleeps for {length:g} s between two {what.noun}s.", sleep.where)
     if len(timers) > 1:
         return Cause(
             "several-timers",
-            f"There are {len(timers)} timers, and each of them calls its own method.",
+            f"There are {len(timers)} timers. Each of them calls its method at its own rate.",
             timers[1][0].where,
         )
     where = timers[0][0].where if timers else evidence.place(what.call)
@@ -240,9 +245,9 @@ def _uneven_cause(evidence: Evidence, what: Subject) -> str:
 
 def _late_cause(evidence: Evidence) -> str:
     if evidence.code.calls("sleep"):
-        return "The node sleeps first."
+        return "A sleep before the first one may be the reason."
     return (
-        "The node waits for something first, such as a service (wait_for_service)."
+        "The wait for a service (wait_for_service) may be the reason."
         if evidence.code.calls("wait_for_service")
         else ""
     )

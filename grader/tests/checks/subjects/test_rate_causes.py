@@ -45,6 +45,11 @@ def test_a_sleep_in_the_timers_method_is_told() -> None:
     assert (found.diagnosis, str(found.where)) == ("sleep-in-callback", f"{NODE_FILE}:13")
 
 
+def test_a_sleep_outside_of_every_callback_is_not_blamed() -> None:
+    found = rate("one hertz", ("    rclpy.init(args=args)", "    time.sleep(0.6)\n    rclpy.init(args=args)"))
+    assert found.diagnosis == "wrong-rate"
+
+
 def test_a_sleep_without_a_timer_is_told() -> None:
     found = rate("one hertz", (f"self.timer = {TIMER}", "time.sleep(1.0)"))
     assert (found.diagnosis, found.cause) == ("sleep-period", "The node sleeps for 1 s between two commands.")
@@ -93,11 +98,11 @@ def test_an_uneven_rhythm_is_explained_by_the_source(
     ("first", "line", "cause"),
     [
         ("self.count = 0", 17, ""),
-        ("time.sleep(3)", 9, "The node sleeps first."),
+        ("time.sleep(3)", 9, "A sleep before the first one may be the reason."),
         (
             "self.client.wait_for_service()",
             17,
-            "The node waits for something first, such as a service (wait_for_service).",
+            "The wait for a service (wait_for_service) may be the reason.",
         ),
     ],
 )
