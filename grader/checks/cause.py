@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class Cause:
     """A diagnosis id, the cause in words (empty if the observation says enough), and the place to look at.
 
-    `fix` is the smallest change that would mend it, if that is known. It is tried, and never shown to a student.
+    `fix` is the smallest change that would fix it, if known. It is tried, and never shown to a student.
     """
 
     diagnosis: Diagnosis
@@ -28,5 +28,5 @@ class Cause:
         return self if self.where is not None else replace(self, where=where)
 
     def mended_by(self, edits: tuple[Edit, ...]) -> Cause:
-        """Return the cause with the change that would mend it."""
+        """Return the cause with the change that would fix it."""
         return replace(self, fix=edits)

@@ -1,4 +1,4 @@
-"""Edit: the smallest change of a submission's files that would mend a cause, so that it can be tried."""
+"""Edit: the smallest change to the files of a submission that would fix a cause, to be tried."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ class Finding:
     where: Where | None = None
     near_edge: bool = False
     fix: tuple[Edit, ...] = field(default=(), compare=False)
-    """What would mend the cause, to be tried; never shown to a student."""
+    """The change that would fix the cause, to be tried. It is never shown to a student."""
     tried: str = ""
     """What came of trying it, in a sentence."""
 

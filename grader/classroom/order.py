@@ -35,7 +35,7 @@ class Order:
     clock: ClockChoice = "auto"
     seed: int | None = None
     explain: bool = True
-    """Whether causes are proved by trying to mend them."""
+    """Whether causes are proved by trying to fix them."""
     in_cell: bool = True
     """Whether there is a sandbox. It is False only if the submissions are trusted."""
     trusted: bool = False

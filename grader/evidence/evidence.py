@@ -62,7 +62,7 @@ class Evidence:
     """The results of the trials that were run, by their ids."""
     fault: Fault | None = None
     tries: Tries = field(default_factory=Tries)
-    """What came of trying to mend the causes."""
+    """The results of trying to fix the causes."""
     trial_id: str = ""
     """The id of the trial from which the evidence is seen; empty for the first trial of the exercise."""
 

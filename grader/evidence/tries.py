@@ -24,9 +24,9 @@ class Try:
 
 @dataclass(frozen=True)
 class Tries:
-    """All tries of one submission. `behind` counts the causes that showed only when others had been mended.
+    """All tries of one submission. `behind` counts the causes that showed only when others had been fixed.
 
-    `stopped` says why not all was tried that could have been; empty if all was.
+    `stopped` says why some changes were not tried; it is empty if all were.
     """
 
     made: tuple[Try, ...] = ()

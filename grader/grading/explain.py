@@ -1,6 +1,6 @@
 """Prove causes: change a copy of the submission where a failed check says that the cause is, and run it again.
 
-A mended cause stays mended while the next one is looked for, so mistakes behind mistakes show, too. The copy is built
+A fixed cause stays fixed while the next one is tried, so mistakes behind mistakes show too. The copy is built
 and run like the submission itself: in the cell, in simulated time.
 """
 
@@ -36,7 +36,7 @@ TOO_LONG = "there was no time to try more"
 
 
 def explain(evidence: Evidence, outcomes: Sequence[Outcome], build_s: float, regrade: Regrade) -> Tries:
-    """Try to mend the causes of the failed outcomes. `build_s` is how long the build took."""
+    """Try to fix the causes of the failed outcomes. `build_s` is how long the build took."""
     return _Explaining(evidence, outcomes, MOST_F * (build_s + BARE_NODE_S), regrade).run()
 
 

@@ -79,14 +79,14 @@ def _explained(
     build: Callable[..., runner.Built],
     trial: Callable[..., Trial],
 ) -> Graded:
-    """Return the grading with the causes proved by trying to mend them, if the first trial was in simulated time."""
+    """Return the grading with its causes proved by trying to fix them, if the first trial was in simulated time."""
     report, evidence = graded.report, graded.evidence
     if report.clock == "wall" or not report.with_status(Status.FAILED):
         return graded
     again = dataclasses.replace(options, clock="simulated", explain=False)
 
     def regrade(exercise: Exercise, submission: Submission) -> tuple[Outcome, ...]:
-        tell("Trying what would mend the cause")
+        tell("Trying to fix the cause")
         return grade(exercise, submission, again, build=build, trial=trial).report.outcomes
 
     begun = time.monotonic()
@@ -94,8 +94,8 @@ def _explained(
         evidence, tries=explain(evidence, report.outcomes, report.seconds.get("build", 0.0), regrade)
     )
     seconds = {**report.seconds, "explain": time.monotonic() - begun}
-    told = report_of(evidence, report.outcomes, report.ros, seconds, confined=report.confined)
-    return dataclasses.replace(graded, report=told, evidence=evidence)
+    explained = report_of(evidence, report.outcomes, report.ros, seconds, confined=report.confined)
+    return dataclasses.replace(graded, report=explained, evidence=evidence)
 
 
 @dataclass

@@ -21,5 +21,5 @@ class Options:
     clock: ClockChoice = "auto"
     seed: int | None = None
     explain: bool = False
-    """Whether causes are proved by trying to mend them."""
+    """Whether causes are proved by trying to fix them."""
     trials_at_once: int = field(default_factory=lambda: len(os.sched_getaffinity(0)))

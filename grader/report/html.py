@@ -104,7 +104,7 @@ def _page(evidence: Evidence, report: Report) -> str:
         "unconfined": UNCONFINED,
         "verdict": verdict(report),
         "tone": tone(report),
-        "mend": [each for each in shown if each.kind in ("failed", "error", "advice") and each not in unmade],
+        "to_fix": [each for each in shown if each.kind in ("failed", "error", "advice") and each not in unmade],
         "unmade": unmade,
         "skipped": [check for check in shown if check.kind == "skipped"],
         "passed": [check for check in shown if check.kind == "passed"],

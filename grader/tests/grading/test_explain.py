@@ -1,4 +1,4 @@
-"""Causes are proved by trying to mend them; the runs are made up."""
+"""Causes are proved by trying to fix them; the runs are made up."""
 
 from __future__ import annotations
 
