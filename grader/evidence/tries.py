@@ -1,4 +1,4 @@
-"""Try: what came of changing a copy of a submission where a check had said that the cause is."""
+"""Try: the result of a change to a copy of a submission, at the place that a check named as the cause."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 Result = Literal["passes", "further", "refuted"]
-"""The check passes then; it fails for another reason, so the run gets further; nothing changes."""
+"""The check passes then, or it fails for another reason (the run gets further), or nothing changes."""
 
 
 @dataclass(frozen=True)
 class Try:
-    """One try: the check and the diagnosis that it was about, its result, and the difference that was tried.
+    """One try: the check and its diagnosis, the result, and the difference that was tried.
 
     `difference` is a unified diff. It is for instructors: it gives the solution away.
     """

@@ -1,4 +1,4 @@
-"""Prove causes: change a copy of the submission where a failed check says that the cause is, and run it again.
+"""Prove causes: change a copy of the submission at the place that a failed check names, and run it again.
 
 A fixed cause stays fixed while the next one is tried, so mistakes behind mistakes show too. The copy is built
 and run like the submission itself: in the cell, in simulated time.
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 MOST_TRIES = 6
 MOST_F = 1.5
-"""All tries of a submission take no more than this many times the bare build and run of its package."""
+"""All tries of a submission take at most this many times the bare build and run of its package."""
 BARE_NODE_S = 0.35
-"""A bare process with one node (s)."""
+"""The time of a bare process with one node (s)."""
 ENOUGH = f"only {MOST_TRIES} changes are tried"
 TOO_LONG = "there was no time to try more"
 
@@ -100,7 +100,7 @@ class _Explaining:
         return Tries(tuple(self.made), len(self.behind), stopped)
 
     def _share(self, target: Outcome, found: Mapping[str, Outcome], diff: str) -> set[Key]:
-        """Note the result for the other checks that failed for the same cause; return what needs no try any more."""
+        """Note the result for other checks with the same cause; return those that need no try any more."""
         same = [
             each
             for each in self.outcomes

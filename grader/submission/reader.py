@@ -1,7 +1,7 @@
-"""Reader: what a student wrote is read in a child process with limits, so that it can take neither time nor memory.
+"""Reader: it reads the files of a student in a child process with limits on time and memory.
 
-`read` is the only door. The child is a fork: it has everything that its parent has, and hands back plain data. A test
-(grader/tests/test_reading.py) finds whatever reads a submission anywhere else.
+`read` is the only way to do so. The child is a fork with all data of its parent, and returns plain data. A test
+(grader/tests/test_reading.py) finds every other place that reads a submission.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ T = TypeVar("T")
 CPU_S = 10
 TIMEOUT_S = 120.0
 MEMORY = 1024 * 1024 * 1024
-"""Bytes of address space beyond what the grader has itself."""
+"""Address space of the child, in addition to that of the grader (bytes)."""
 MOST_ANSWER = 256 * 1024 * 1024
-"""Bytes that come back: the files of a submission are most of them."""
+"""The largest result (bytes): most of it is the files of a submission."""
 _CHUNK = 1024 * 1024
 _STANDARD = {
     "builtins": ("set", "frozenset", "bytearray", "complex"),
@@ -44,22 +44,22 @@ _STANDARD = {
     "markupsafe": ("Markup",),
     "numpy": ("_frombuffer", "_reconstruct", "dtype", "ndarray", "scalar"),
 }
-"""What comes back beside dataclasses and errors of ours: the names, by the package that they are from."""
+"""The types in a result, besides our dataclasses and errors: their names, by package."""
 
 
 class _Child:
-    """Whether this process is such a child: what reads within reads on."""
+    """Whether this process is such a child. `read` calls the function directly there."""
 
     inside = False
 
 
 def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> T:
-    """What the function returns, called in a child; dataclasses of ours and what Python is made of can come back.
+    """Call the function in a child and return its result, which may hold our dataclasses and built-in types.
 
     Raises:
-        TooLargeError: it took more time or memory than reading a submission may.
-        UnreadableError: it raised something that is no error of ours.
-        GraderError: what it raised.
+        TooLargeError: the function took too much time or memory.
+        UnreadableError: the function raised an error that is not ours.
+        GraderError: the function raised it.
     """
     if _Child.inside:
         return function(*arguments, **keywords)
@@ -83,7 +83,7 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
 
 def _fork() -> int:
     try:
-        # The child takes no lock that another thread may hold: it reads, computes, and writes into its pipe.
+        # The child needs no lock that another thread may hold: it reads, computes, and writes to its pipe.
         return os.fork()
     except OSError as error:
         message = refusal(error) or str(error)
@@ -94,14 +94,14 @@ def _ended(child: int) -> int:
     try:
         return os.waitpid(child, 0)[1]
     except ChildProcessError:
-        return 0  # whoever started us has SIGCHLD ignored: nobody knows
+        return 0  # our parent ignores SIGCHLD, so the exit status is unknown
 
 
 def _run(sends: int, function: Callable[[], object]) -> NoReturn:
-    """Be the child."""
+    """Run the function in the child, and end the process."""
     try:
         _Child.inside = True
-        gc.disable()  # it would touch, and so copy, all that the parent has
+        gc.disable()  # it would touch, and so copy, all memory of the parent
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
         _close_all_but(sends)
@@ -114,10 +114,10 @@ def _run(sends: int, function: Callable[[], object]) -> NoReturn:
 
 
 def _close_all_but(sends: int) -> None:
-    """Close what the parent has open: nothing is read from it, and a pipe must not stay open for longer than there."""
+    """Close the files of the parent: the child reads none of them, and must not keep a pipe open."""
     for number in [int(entry.name) for entry in Path("/proc/self/fd").iterdir()]:
         if number > 2 and number != sends:
-            with suppress(OSError):  # the descriptor that listed them
+            with suppress(OSError):  # the descriptor of the listing itself
                 os.close(number)
 
 
@@ -160,7 +160,7 @@ def _packed(*, fine: bool, value: object) -> bytes:
 
 
 def _received(pipe: int) -> bytes | None:
-    """All that the child sends; None where that is too late or too much."""
+    """Return all that the child sends; None if it is too late or too much."""
     poll = select.poll()
     poll.register(pipe, select.POLLIN)
     until = time.monotonic() + TIMEOUT_S
@@ -186,7 +186,7 @@ def _value(answer: bytes | None, status: int | None) -> Any:  # noqa: ANN401 - w
         message = f"it could not be read: reading it ended with {signal.Signals(number).name}"
         raise UnreadableError(message)
     if os.WEXITSTATUS(status) != 0 or not answer:
-        raise TooLargeError(_too_much())  # not even memory for the answer was left
+        raise TooLargeError(_too_much())  # there was not even memory for the answer
     try:
         fine, value = _Unpacker(io.BytesIO(answer)).load()
     except Exception as error:
@@ -202,20 +202,20 @@ def _too_much() -> str:
 
 
 class _Packer(pickle.Pickler):
-    """Packs members of enumerations and errors of ours as calls of their classes, whatever others have registered."""
+    """Pickles members of enumerations and our errors as calls of their classes, whatever else is registered."""
 
     def reducer_override(self, obj: object) -> Any:  # noqa: ANN401 - as the base class
-        """How to make it again."""
+        """Return how to create the object again."""
         if isinstance(obj, Enum):
             return type(obj), (obj.value,)
         return (type(obj), obj.args) if isinstance(obj, GraderError) else NotImplemented
 
 
 class _Unpacker(pickle.Unpickler):
-    """Takes dataclasses and errors of ours and what they are made of: the child has read what a stranger wrote."""
+    """Accepts only our dataclasses, our errors and their parts, since the child has read the files of a stranger."""
 
     def find_class(self, module: str, name: str) -> Any:  # noqa: ANN401 - a class
-        """The class, if it is one of these."""
+        """Return the class if it is one of these."""
         if name in _STANDARD.get(module.partition(".")[0], ()):
             return super().find_class(module, name)
         found = getattr(import_module(module), name, None) if module.startswith("grader.") else None
