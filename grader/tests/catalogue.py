@@ -29,6 +29,7 @@ SHOWN_BY_TESTS = {
     "numbers-of-another": "checks/subjects/test_own.py",
     "overwhelmed": "checks/test_judge.py",
     "package-xml-not-installed": "checks/subjects/test_building.py",
+    "publisher-in-callback": "checks/causes/test_why_rate.py",
     "resource-marker": "checks/subjects/test_building.py",
     "slow-stop": "checks/subjects/test_node.py",
     "square-gap": "checks/subjects/test_square.py",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.checks.causes.why_rate import FRAME_S, why_often, why_timers_grow
+from grader.checks.causes.why_rate import FRAME_S, why_often, why_publishers_grow, why_timers_grow
 from grader.tests.checks.crashes import LOOK, line_with
 from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
 
@@ -83,3 +83,19 @@ def test_a_timer_that_a_callback_makes_is_found(made: str, sent: str, *, found: 
     cause = why_timers_grow(evidence(recording([]), submission({NODE_FILE: source})))
     got = None if cause is None else (cause.diagnosis, cause.where and cause.where.line)
     assert got == (("timer-in-callback", line_with(LOOK, source)) if found else None)
+
+
+@pytest.mark.parametrize(
+    ("made", "found"),
+    [("self.create_timer(0.5, self.send)", True), (SUBSCRIBES, True), ("self.create_timer(0.5, self.other)", False)],
+)
+def test_a_publisher_that_each_call_makes_anew_is_found(made: str, *, found: bool) -> None:
+    source = NODE.format(made=made, at_send="", sent='self.publisher = self.create_publisher(Twist, "/a", 10)  # look')
+    cause = why_publishers_grow(evidence(recording([]), submission({NODE_FILE: source})))
+    told = None if cause is None else (cause.diagnosis, cause.where.line if cause.where else None)
+    assert told == (("publisher-in-callback", line_with(LOOK, source)) if found else None)
+
+
+def test_what_a_callback_calls_for_every_message_is_found_in_its_own_methods() -> None:
+    source = NODE.format(made=SUBSCRIBES, at_send="  # look", sent="self.other()")
+    assert often(source, FRAME_S) == ("every-message", line_with(LOOK, source))
