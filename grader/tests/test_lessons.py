@@ -185,7 +185,7 @@ def test_examples_can_be_imported(block: Block, tmp_path: Path) -> None:
         env=environment(ros, home=tmp_path, domain=own_domain()),
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=300,
         check=False,
     )
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
@@ -212,7 +212,7 @@ def test_the_thermometer_runs_on_the_real_rclpy(block: Block, tmp_path: Path) ->
         env=environment(ros, home=tmp_path, domain=own_domain()),
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=300,
         check=False,
     )
     assert (done.returncode, done.stdout) == (0, "thermometer 2000000000\n"), done.stderr

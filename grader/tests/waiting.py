@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-HANG_S = 60.0
+HANG_S = 180.0
 _POLL_S = 0.05
 
 

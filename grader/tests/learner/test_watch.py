@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[3]
 STEP = "03-circle-publisher"
-PATIENCE_S = 60.0
+PATIENCE_S = 180.0
 """Longer than anything in this module takes, unless it hangs (s)."""
 
 

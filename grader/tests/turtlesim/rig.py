@@ -20,7 +20,7 @@ from grader.turtlesim.turtle import FRAME_S
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-HANG_S = 30.0
+HANG_S = 120.0
 STATUS = {
     GoalStatus.STATUS_SUCCEEDED: "succeeded",
     GoalStatus.STATUS_CANCELED: "canceled",

@@ -225,7 +225,7 @@ def test_wrong_arguments_end_with_2_and_one_message(in_ros: InRos, arguments: li
         env=in_ros.environment(),
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=300,
         check=False,
     )
     assert done.returncode == 2
