@@ -6,6 +6,7 @@ import json
 import os
 import select
 import signal
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ import pytest
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
-from grader.tests.both_worlds import OUR_TURTLESIM
+from grader.tests.both_worlds import OUR_TURTLESIM, REAL_TURTLESIM
 from grader.tests.ros2.world import World, children, world
 
 if TYPE_CHECKING:
@@ -25,6 +26,11 @@ if TYPE_CHECKING:
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
     yield from world(tmp_path_factory.mktemp("command"))
+
+
+def program(of: Running) -> int:
+    """The process that simulates: `grader sim` becomes it, `ros2 run` starts it."""
+    return of.process.pid if REAL_TURTLESIM else of.program
 
 
 def whole(of: Running) -> dict[str, Any]:
@@ -59,7 +65,7 @@ def test_grader_sim_can_draw_in_the_terminal_and_says_when_there_is_none(alone: 
 
 def test_a_simulator_outlives_its_view(alone: World) -> None:
     simulator = alone.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
-    (view,) = children(simulator.program)
+    (view,) = children(program(simulator))
     os.kill(view, signal.SIGKILL)
     simulator.wait_for("The view has ended; turtlesim continues without it.")
     assert alone.run("ros2 topic echo /turtle1/pose --once").code == 0
@@ -69,8 +75,8 @@ def test_a_simulator_outlives_its_view(alone: World) -> None:
 def test_a_view_does_not_outlive_its_simulator(alone: World) -> None:
     simulator = alone.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
     whole(simulator)
-    (view,) = children(simulator.program)
-    os.kill(simulator.program, signal.SIGKILL)
+    (view,) = children(program(simulator))
+    os.kill(program(simulator), signal.SIGKILL)
     simulator.process.wait()
     ended = os.pidfd_open(view)
     try:
@@ -82,4 +88,4 @@ def test_a_view_does_not_outlive_its_simulator(alone: World) -> None:
 def test_nothing_of_the_view_is_imported_without_it(alone: World) -> None:
     listed = "[name for name in sys.modules if 'starlette' in name or 'grader.view.' in name]"
     code = f"import sys, grader.turtlesim.standalone, grader.view.turtlesim_node; print({listed})"
-    assert alone.run(f'python3 -c "{code}"').stdout == "['grader.view.turtlesim_node']\n"
+    assert alone.run(f'{sys.executable} -c "{code}"').stdout == "['grader.view.turtlesim_node']\n"
