@@ -33,6 +33,7 @@ BARE_NODE_S = 0.35
 """The time of a bare process with one node (s)."""
 ENOUGH = f"only {MOST_TRIES} changes are tried"
 TOO_LONG = "there was no time to try more"
+NOT_SIMULATED = "a changed node needs wall time"
 
 
 def explain(evidence: Evidence, outcomes: Sequence[Outcome], build_s: float, regrade: Regrade) -> Tries:
@@ -91,6 +92,9 @@ class _Explaining:
             found = {each.id: each for each in self.regrade(part_of(self.evidence.exercise, target.id), copy)}
             longest = max(longest, time.monotonic() - at)
             result = _result(target, current, found)
+            if result is None:
+                stopped = NOT_SIMULATED
+                continue
             self.made.append(Try(target.id, target.finding.diagnosis or "", result, difference(files, changed)))
             if result != "refuted":
                 tried |= self._share(target, found, difference(files, changed))
@@ -108,13 +112,16 @@ class _Explaining:
         ]
         for each in same:
             result = _result(each, {each.id: each}, found)
-            if result != "refuted":
+            if result in ("passes", "further"):
                 self.made.append(Try(each.id, each.finding.diagnosis or "", result, diff))
         return {_key(each) for each in same}
 
 
-def _result(target: Outcome, before: Mapping[str, Outcome], after: Mapping[str, Outcome]) -> Result:
+def _result(target: Outcome, before: Mapping[str, Outcome], after: Mapping[str, Outcome]) -> Result | None:
+    """Return what came of a try; None if it could not be judged."""
     now = after.get(target.id)
+    if now is not None and now.status is Status.ERROR:
+        return None
     if now is not None and now.status is Status.PASSED:
         return "passes"
     passed = [id_ for id_, each in before.items() if each.status is Status.PASSED]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import time
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from grader.checks.judge import in_words
 from grader.checks.outcome import Status
@@ -24,7 +24,7 @@ from grader.report.report import report_of
 from grader.ros import underlay
 from grader.ros.installation import find_ros
 from grader.trial.ahead import Ahead
-from grader.trial.trial import Trial
+from grader.trial.trial import Plan, Trial
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -87,7 +87,13 @@ def _explained(
 
     def regrade(exercise: Exercise, submission: Submission) -> tuple[Outcome, ...]:
         tell("Trying to fix the cause")
-        return grade(exercise, submission, again, build=build, trial=trial).report.outcomes
+        return grade(exercise, submission, again, build=build, trial=in_simulated_time).report.outcomes
+
+    def in_simulated_time(plan: Plan, *rest: Any, **more: Any) -> Trial:  # noqa: ANN401 - whatever a Trial gets
+        """A mended node may follow wall time, or never rest: then nothing is known of the try."""
+        if plan.clock == "wall":
+            raise MachineError("A try is made in simulated time only.")  # noqa: EM101
+        return trial(dataclasses.replace(plan, stop_at_doubt=True), *rest, **more)
 
     begun = time.monotonic()
     evidence = dataclasses.replace(

@@ -8,10 +8,10 @@ import pytest
 
 from grader.checks.cause import Cause
 from grader.checks.edit import Edit
-from grader.checks.outcome import Outcome, failed, passed
+from grader.checks.outcome import Finding, Outcome, Status, failed, passed
 from grader.evidence.evidence import Evidence
 from grader.evidence.tries import Tries, Try
-from grader.grading.explain import BARE_NODE_S, ENOUGH, MOST_TRIES, TOO_LONG, explain, part_of
+from grader.grading.explain import BARE_NODE_S, ENOUGH, MOST_TRIES, NOT_SIMULATED, TOO_LONG, explain, part_of
 from grader.grading.grade import grade
 from grader.grading.options import Options
 from grader.report.report import FURTHER, PASSES, REFUTED, report_of
@@ -102,6 +102,13 @@ def test_a_cause_of_several_checks_is_tried_once() -> None:
 def test_a_cause_without_a_change_that_fits_is_told_as_it_was(change: Mapping[str, str]) -> None:
     found, told = tries("a\n", lambda _: [wrong("values", **change)])  # type: ignore[arg-type]
     assert (found, told["values"].finding.cause, told["values"].finding.tried) == (Tries(), "It is so.", "")
+
+
+def test_a_try_that_could_not_be_judged_says_nothing() -> None:
+    broken = Outcome("values", "values", "values", 0.0, 5.0, Finding(Status.ERROR, "The machine."))
+    found, told = tries("a\n", lambda text: [broken if RIGHT in text else wrong("values")])
+    assert found == Tries(stopped=NOT_SIMULATED)
+    assert (told["values"].finding.cause, told["values"].finding.tried) == ("It is so.", "")
 
 
 def test_no_more_than_some_changes_are_tried() -> None:
