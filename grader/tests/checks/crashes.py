@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from grader.checks.causes.crash import START, crash_of
 from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.edit import applied
 from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
 from grader.tests.checks.shapes import crashed
 from grader.trial.recording import Output
+
+if TYPE_CHECKING:
+    from grader.checks.outcome import Finding
 
 CRASHED, LOOK = "# crashed", "# look"
 """Comments in a source: the line of the exception; the line that the learner is to be led to, if it is another one."""
@@ -52,11 +57,21 @@ def to_look_at(source: str) -> int | None:
 
 def told(source: str, error: str, files: dict[str, str] | None = None) -> Told:
     """What is told of a node with this source that ended with this error; `files` lie beside it."""
+    finding = _finding(source, error, files)
+    return Told(finding.diagnosis, None if finding.where is None else finding.where.line, finding.cause)
+
+
+def mended(source: str, error: str) -> str | None:
+    """The source after the fix of the cause that is told; None if there is none that fits."""
+    changed = applied({NODE_FILE: source.encode()}, _finding(source, error, None).fix)
+    return None if changed is None or changed[NODE_FILE] == source.encode() else changed[NODE_FILE].decode()
+
+
+def _finding(source: str, error: str, files: dict[str, str] | None) -> Finding:
     frame = f'  File "/ws/lib/python3.11/site-packages/{NODE_FILE}", line {line_with(CRASHED, source)}, in send\n'
     text = f"{START}\n{frame if CRASHED in source else ''}    the line itself\n{error}\n"
     trial = recording([], end=crashed(0.5), stderr=Output(text))
     given = evidence(trial, submission({NODE_FILE: source, **(files or {})}))
     crash = crash_of(given)
     assert crash is not None
-    finding = crash_finding(given, crash, "It crashed.", "It runs.")
-    return Told(finding.diagnosis, None if finding.where is None else finding.where.line, finding.cause)
+    return crash_finding(given, crash, "It crashed.", "It runs.")
