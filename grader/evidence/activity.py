@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
 """Topics on which every node publishes, or the grader."""
-SPINS = re.compile(r'executors\.py", line \d+, in _?spin_')
+SPINS = re.compile(r'executors\.py", line \d+, in (?:await_or_execute|handler|_execute_\w+)\b')
 """A frame of rclpy's executor that calls callbacks, in a traceback."""
 START_S = 0.2
 """The length of the first moment (s): the clock may start before the publisher of the node is known."""
