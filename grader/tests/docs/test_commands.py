@@ -95,7 +95,7 @@ def test_every_grader_command_and_option_is_there(page: str) -> None:
 def options_of(commands: dict[str, object]) -> set[str]:
     found: set[str] = set()
     for command in commands.values():
-        found |= {name for each in command.params for name in each.opts}  # type: ignore[attr-defined]
+        found |= {name for each in command.params for name in (*each.opts, *each.secondary_opts)}  # type: ignore[attr-defined]
         found |= options_of(getattr(command, "commands", {}))
     return found
 
