@@ -40,7 +40,7 @@ def test_without_a_package_answers_are_next_to_the_notebook() -> None:
     ],
 )
 def test_nothing_is_written_outside_of_the_folder(magic: str, name: str) -> None:
-    with pytest.raises(UsageError, match=f"%%{magic} wants"):
+    with pytest.raises(UsageError, match=f"%%{magic} needs"):
         part_path(magic, name, CIRCLE)
 
 
