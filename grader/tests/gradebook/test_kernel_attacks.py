@@ -151,7 +151,15 @@ def test_one_message_that_changes_many_outputs_does_not_make_a_large_notebook(tm
     assert (said(attacking), said(later)) == (TOO_MUCH, TOO_MUCH)
 
 
-def test_a_kernel_can_only_write_to_its_own_disks(tmp_path: Path) -> None:
+def test_a_kernel_can_only_write_to_its_own_disks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Kernels of other tests have their folders beside the usual one.
+    with tempfile.TemporaryDirectory(prefix="k") as own:
+        monkeypatch.setattr(tempfile, "tempdir", own)
+        assert_writes_only_to_own_disks(tmp_path)
+        assert names(own) == set()
+
+
+def assert_writes_only_to_own_disks(folder: Path) -> None:
     code = """
 for line in open('/proc/self/mountinfo'):
     before, _, after = line.partition(' - ')
@@ -160,8 +168,6 @@ for line in open('/proc/self/mountinfo'):
         print(place, kind, 'size=' in after)
 """
     fills = "with open('/tmp/large', 'wb') as file:\n    for _ in range(1150):\n        file.write(bytes(1 << 20))"
-    before = names(tempfile.gettempdir())
-    mounts, filled = executed(tmp_path, code, fills).cells
+    mounts, filled = executed(folder, code, fills).cells
     assert sorted(said(mounts).splitlines()) == ["/dev/shm tmpfs True", "/tmp tmpfs True", "/ws tmpfs True"]
     assert "No space left on device" in said(filled) or "File too large" in said(filled)
-    assert {name for name in names(tempfile.gettempdir()) - before if name.startswith("kernel-")} == set()
