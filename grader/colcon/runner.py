@@ -21,6 +21,7 @@ from grader.errors import MachineError, TooLargeError
 from grader.ros import installation
 from grader.sandbox import bubblewrap, process
 from grader.sandbox.control_group import control_group
+from grader.sandbox.limits import Limits, limited
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.tar_stream import Member, read_tar
 from grader.sandbox.user import cell_user
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from grader.submission.package import Submission
 
 MIB = 1024 * 1024
-LIMITS = bubblewrap.Limits(processes=200, cpu_s=60)
+LIMITS = Limits(processes=200, cpu_s=60)
 TIMEOUT_S = 60.0
 MOST_LOG = 256 * 1024
 MOST_TREE = 64 * MIB
@@ -101,7 +102,7 @@ def build(submission: Submission, ros: installation.Ros, *, in_cell: bool, tell:
                 if group.out_of_memory():
                     done = replace(done, out_of="memory")
         else:
-            done = _run(bubblewrap.limited(argv, LIMITS), env, submission, ())
+            done = _run(limited(argv, LIMITS), env, submission, ())
     return _read(done)
 
 

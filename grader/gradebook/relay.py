@@ -26,8 +26,9 @@ import zmq
 
 from grader.gradebook.budget import Account, Budget
 from grader.notebook.frames import CHANNELS, CHUNK, ORDER, FrameError, Unpacker, packed
-from grader.sandbox.bubblewrap import MIB, Limits, View, lone_cell
+from grader.sandbox.bubblewrap import View, lone_cell
 from grader.sandbox.control_group import control_group
+from grader.sandbox.limits import MIB, Limits
 from grader.sandbox.system_calls import call_filter
 from grader.sandbox.usage import EVERY_S, Guard
 from grader.sandbox.user import cell_user

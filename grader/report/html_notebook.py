@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
 from grader.errors import UnreadableError
+from grader.report.escaped_template import compiled, fill
 from grader.report.html import ShownCheck, without_content
 from grader.report.html_run import runs_of
-from grader.report.template import compiled, fill
 from grader.report.verdict import UNCONFINED, tone, verdict
 from grader.submission.reader import read
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
+from grader.report.escaped_template import ASSETS, fill
 from grader.report.files import not_written
-from grader.report.template import ASSETS, fill
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from grader.sandbox.bubblewrap import Limits
+    from grader.sandbox.limits import Limits
 
 TREE = Path("/sys/fs/cgroup")
 OWN = Path("/proc/self/cgroup")

@@ -16,7 +16,7 @@ from grader.sandbox.usage import EVERY_S, Guard
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from grader.sandbox.bubblewrap import Limits
+    from grader.sandbox.limits import Limits
 
 _CHUNK = 1024 * 1024
 

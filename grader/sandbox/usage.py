@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from grader.sandbox.bubblewrap import Limits
+    from grader.sandbox.limits import Limits
 
 EVERY_S = 0.1
 LAUNCHERS = 16

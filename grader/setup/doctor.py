@@ -24,6 +24,7 @@ from grader.ros import underlay
 from grader.ros.installation import DISTRO, Ros, find_ros
 from grader.sandbox import bubblewrap
 from grader.sandbox.control_group import control_group
+from grader.sandbox.limits import NODE_LIMITS
 from grader.setup import bootstrap, machine
 from grader.setup.shares import shares
 from grader.setup.talk import why_not_heard
@@ -213,7 +214,7 @@ def look_at_sandbox() -> Line:
 
 def look_at_limits() -> Line:
     """Return how the memory and the processes of a cell are counted."""
-    with control_group(bubblewrap.NODE_LIMITS) as group:
+    with control_group(NODE_LIMITS) as group:
         if group:
             return Line("limits", "memory and processes of a cell are counted by the kernel")
     return Line(

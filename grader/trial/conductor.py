@@ -21,6 +21,7 @@ from grader.common.interpreter import interpreter
 from grader.common.refusal import refusal
 from grader.ros import installation
 from grader.sandbox import bubblewrap
+from grader.sandbox.limits import NODE_LIMITS, limited
 from grader.trial.inputs import Inputs
 from grader.trial.node_process import LaunchError, NodeProcess
 from grader.trial.recording import Pose, Recording, frames_of, to_json
@@ -77,7 +78,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
         recording = AloneTrial(start, prefixes, inputs).record(order["duration_s"], order["seed"])
         _say(answers, {"recording": to_json(recording)})
         return
-    with NodeProcess(lambda *fds: _command(ros, order, *fds), bubblewrap.NODE_LIMITS, in_cell=order["in_cell"]) as node:
+    with NodeProcess(lambda *fds: _command(ros, order, *fds), NODE_LIMITS, in_cell=order["in_cell"]) as node:
         # These imports are slow. They run here, while the launcher imports too.
         from grader.trial.simulated import SimulatedTrial
         from grader.trial.wall import WallTrial
@@ -158,11 +159,11 @@ def _command(ros: installation.Ros, order: dict[str, Any], info_fd: int, filter_
             "env",
             "-i",
             *(f"{key}={value}" for key, value in env.items()),
-            *bubblewrap.limited(launch, bubblewrap.NODE_LIMITS),
+            *limited(launch, NODE_LIMITS),
         ]
     view = bubblewrap.ros_view(ros, installation.FASTDDS_PROFILE, LAUNCHER)
     return bubblewrap.cell(
-        launch, view, env=env, limits=bubblewrap.NODE_LIMITS, network=True, info_fd=info_fd, filter_fd=filter_fd
+        launch, view, env=env, limits=NODE_LIMITS, network=True, info_fd=info_fd, filter_fd=filter_fd
     )
 
 

@@ -20,7 +20,7 @@ from grader.trial.recording import Output, ProcessEnd
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from grader.sandbox.bubblewrap import Limits
+    from grader.sandbox.limits import Limits
 
 READY = b"\x00ready\n"
 """What the launcher writes on standard output before any of the student's code runs."""

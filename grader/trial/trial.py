@@ -24,6 +24,7 @@ from grader.errors import MachineError
 from grader.ros import installation
 from grader.sandbox import bubblewrap
 from grader.sandbox.control_group import ControlGroup, control_group
+from grader.sandbox.limits import MIB, NODE_LIMITS
 from grader.sandbox.user import cell_user
 from grader.trial.inputs import Inputs
 from grader.trial.recording import from_json
@@ -34,9 +35,9 @@ if TYPE_CHECKING:
 _FOLDER = Path(grader.__file__).parent
 CONDUCTORS_ROOMS = ("common", "ros", "sandbox", "trial", "turtlesim")
 """What grader.trial.conductor imports from, beside the package's own modules."""
-MOST_MEMORY = 3 * 1024 * bubblewrap.MIB
+MOST_MEMORY = 3 * 1024 * MIB
 """Address space of the conductor (bytes)."""
-MOST_ANSWER = 256 * bubblewrap.MIB
+MOST_ANSWER = 256 * MIB
 """What the conductor may say at once (bytes): the messages of a recording are most of it."""
 
 
@@ -190,7 +191,7 @@ class Trial:
             view = bubblewrap.ros_view(self._ros, _FOLDER)
             # Messages of the node fill the memory of the conductor, which itself needs 1 GiB of addresses.
             argv = ["prlimit", f"--as={MOST_MEMORY}:", "--", *argv]
-            self._group = self._stack.enter_context(control_group(bubblewrap.NODE_LIMITS))
+            self._group = self._stack.enter_context(control_group(NODE_LIMITS))
             user = self._stack.enter_context(cell_user())
             argv = self._group.joined(bubblewrap.room(argv, bubblewrap.View(view.read_only), env=env, user=user))
         self._process = subprocess.Popen(

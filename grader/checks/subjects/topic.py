@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,17 +10,16 @@ from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_silent import why_nothing, why_qos
-from grader.checks.edit import at
+from grader.checks.causes.wrong_topic import right_name, why_topic
 from grader.checks.kind import Kind, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
 from grader.evidence import activity
-from grader.submission.constants import evaluate, written
-from grader.submission.where import Where
+from grader.submission.constants import evaluate
 
 if TYPE_CHECKING:
-    from grader.checks.edit import Edit
     from grader.evidence.evidence import Evidence
+    from grader.submission.where import Where
     from grader.trial.recording import Endpoint
 
 
@@ -80,39 +78,9 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     guess = nearest(params.topic, topics)
     shown = [guess] if guess is not None else topics
     observed = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but no turtle subscribes to that."
-    why = _why_topic(params.topic, shown[0])
-    why = why.mended_by(_right_name(evidence, "create_publisher", shown[0], params.topic))
+    why = why_topic(params.topic, shown[0])
+    why = why.mended_by(right_name(evidence, "create_publisher", shown[0], params.topic))
     return failed(observed, _expected(params), why.at(_publisher_line(evidence, shown[0])))
-
-
-def _why_topic(wanted: str, topic: str) -> Cause:
-    """Return the cause of a wrong topic name, as far as the two names show it."""
-    last = wanted.rpartition("/")[2]
-    if topic == f"/{last}":
-        return Cause(
-            "topic-without-turtle", "Each turtle has its own topic, so the topic name contains the name of the turtle."
-        )
-    if topic.lower() == wanted.lower():
-        return Cause("topic-capitals", "Upper and lower case matter.")
-    if topic.endswith(wanted):
-        return Cause(
-            "topic-namespace",
-            "The node adds its namespace to the name. A name that starts with a slash stays as it is.",
-        )
-    if topic.endswith(f"/{last}") and topic.count("/") == 2 and nearest(topic, [wanted]):
-        return Cause("topic-other-turtle", "There is no turtle with that name.")
-    return Cause(
-        "wrong-topic", "The topic name is the second argument of create_publisher. Compare it letter by letter."
-    )
-
-
-def _right_name(evidence: Evidence, maker: str, topic: str, wanted: str) -> tuple[Edit, ...]:
-    """Return the edit that puts the right name in the place of a topic's, where the source has it as a string."""
-    for call in evidence.code.calls(maker):
-        node = written(call.argument(1, "topic"), call.module.names)
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and topic.endswith(node.value.strip("/")):
-            return at(Where(call.module.file, node.lineno), node.value, wanted)
-    return ()
 
 
 def _no_publisher(evidence: Evidence, params: Topic) -> Finding:
@@ -200,7 +168,7 @@ def subscribes(evidence: Evidence, params: Topic) -> Finding:
     if found:
         observed = f"The node subscribes to {a_list(sorted({shorten(each.topic) for each in found}))}."
         cause = "The topic name is the second argument of create_subscription. Compare it letter by letter."
-        fixes = [_right_name(evidence, "create_subscription", each.topic, params.topic) for each in found]
+        fixes = [right_name(evidence, "create_subscription", each.topic, params.topic) for each in found]
         why = Cause("wrong-topic", cause, where).mended_by(next(filter(None, fixes), ()))
         return failed(observed, expected, why)
     crash = crash_of(evidence)

@@ -12,7 +12,7 @@ from grader.errors import UsageError
 from grader.exercise.exercise_toml import SCHEMA, parse_exercise
 from grader.gradebook import relay
 from grader.gradebook.budget import Budget
-from grader.sandbox.bubblewrap import MIB, MOST_SIGNALS, NODE_LIMITS, Limits
+from grader.sandbox.limits import MIB, MOST_SIGNALS, NODE_LIMITS, Limits
 from grader.sandbox.user import FEW_USERS, FIRST_USER, USERS
 from grader.submission import answers, code, package_xml, reader, tree
 from grader.tests.docs.pages import ROOT, text_of

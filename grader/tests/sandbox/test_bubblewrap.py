@@ -9,6 +9,7 @@ import pytest
 
 from grader.errors import MachineError
 from grader.sandbox import bubblewrap, process
+from grader.sandbox.limits import MIB, Limits
 from grader.sandbox.system_calls import DENIED, call_filter, program
 from grader.sandbox.user import cell_user
 
@@ -21,7 +22,7 @@ SEEN = bubblewrap.View((Path(sys.base_prefix), Path(sys.prefix)))
 
 def run(
     code: str,
-    limits: bubblewrap.Limits = bubblewrap.Limits(),  # noqa: B008
+    limits: Limits = Limits(),  # noqa: B008
     view: bubblewrap.View = SEEN,
 ) -> process.Finished:
     """Run Python code in a cell of its own."""
@@ -99,13 +100,13 @@ def test_a_cell_can_only_write_to_its_writable_folders(place: str) -> None:
 
 def test_a_cell_that_uses_too_much_memory_in_total_is_ended() -> None:
     code = "blocks = [bytearray(60 << 20) for _ in range(4)]; import time; time.sleep(20)"
-    done = run(code, bubblewrap.Limits(total_memory=128 * bubblewrap.MIB))
+    done = run(code, Limits(total_memory=128 * MIB))
     assert (done.out_of, done.timed_out) == ("memory", False)
 
 
 def test_a_cell_with_too_many_files_is_ended() -> None:
     code = "[open(f'/tmp/{n}', 'w').close() for n in range(2000)]; import time; time.sleep(20)"
-    done = run(code, bubblewrap.Limits(files=1000))
+    done = run(code, Limits(files=1000))
     assert (done.out_of, done.timed_out) == ("files", False)
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from grader.sandbox import control_group as module
-from grader.sandbox.bubblewrap import MIB, Limits
 from grader.sandbox.control_group import ControlGroup, control_group
+from grader.sandbox.limits import MIB, Limits
 
 SMALL = Limits(total_memory=64 * MIB)
 HOARD = "x = bytearray({mib} * 1024 * 1024); print(len(x) // 1024 // 1024)"
@@ -61,7 +61,7 @@ def test_a_group_is_removed_afterwards() -> None:
 def test_the_group_of_a_killed_grader_is_removed_by_the_next_one() -> None:
     script = """
 from grader.sandbox.control_group import control_group
-from grader.sandbox.bubblewrap import Limits
+from grader.sandbox.limits import Limits
 import os, signal
 with control_group(Limits()) as group:
     print(*group.folders, flush=True)

@@ -7,22 +7,23 @@ import sys
 
 import pytest
 
-from grader.sandbox import bubblewrap, process
+from grader.sandbox import process
+from grader.sandbox.limits import MIB, Limits, limited
 
 
 def test_limits_alone_need_no_bubblewrap() -> None:
-    done = subprocess.run(bubblewrap.limited(["true"], bubblewrap.Limits()), check=False)
+    done = subprocess.run(limited(["true"], Limits()), check=False)
     assert done.returncode == 0
 
 
 def test_limits_never_exceed_those_of_the_user() -> None:
     """Only root can raise a hard limit. For other users, prlimit would refuse to start the command."""
-    code = "from grader.sandbox.bubblewrap import *; print(*limited([], Limits()))"
-    command = ["prlimit", f"--fsize={100 * bubblewrap.MIB}", "--nofile=512", "--", sys.executable, "-c", code]
+    code = "from grader.sandbox.limits import *; print(*limited([], Limits()))"
+    command = ["prlimit", f"--fsize={100 * MIB}", "--nofile=512", "--", sys.executable, "-c", code]
     told = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    assert f"--fsize={100 * bubblewrap.MIB} " in told
+    assert f"--fsize={100 * MIB} " in told
     assert "--nofile=512 " in told
-    assert f"--as={bubblewrap.Limits().memory} " in told
+    assert f"--as={Limits().memory} " in told
 
 
 @pytest.mark.parametrize(
@@ -33,7 +34,7 @@ def test_limits_never_exceed_those_of_the_user() -> None:
     ],
 )
 def test_without_a_cell_the_grader_counts_the_total_of_all_processes(code: str, out_of: str) -> None:
-    limits = bubblewrap.Limits(processes=20, total_memory=100 * bubblewrap.MIB)
-    command = bubblewrap.limited([sys.executable, "-c", code], limits)
+    limits = Limits(processes=20, total_memory=100 * MIB)
+    command = limited([sys.executable, "-c", code], limits)
     done = process.run(command, timeout_s=15.0, most_stdout=1000, most_stderr=1000, watch=limits)
     assert (done.out_of, done.timed_out) == (out_of, False)

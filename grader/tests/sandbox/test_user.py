@@ -13,6 +13,7 @@ import pytest
 
 from grader.errors import MachineError
 from grader.sandbox import bubblewrap, user
+from grader.sandbox.limits import MOST_SIGNALS, Limits
 from grader.sandbox.user import FEW_USERS, FIRST_USER, USERS, cell_user
 
 SEEN = bubblewrap.View(())
@@ -68,9 +69,7 @@ def test_a_cell_has_its_user_outside_and_user_1000_inside() -> None:
     code = "import os; print(os.getuid(), os.stat('/proc/self').st_uid, flush=True); input()"
     view = bubblewrap.View((Path(sys.base_prefix), Path(sys.prefix)))
     with cell_user() as mine:
-        argv = bubblewrap.lone_cell(
-            [sys.executable, "-I", "-c", code], view, env=ENV, limits=bubblewrap.Limits(), user=mine
-        )
+        argv = bubblewrap.lone_cell([sys.executable, "-I", "-c", code], view, env=ENV, limits=Limits(), user=mine)
         with subprocess.Popen(argv, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as cell:
             assert cell.stdout is not None
             said = cell.stdout.readline()
@@ -116,4 +115,4 @@ print(json.dumps([made, larger, libc.inotify_init(), fcntl.fcntl(os.pipe()[0], f
 """
     from grader.tests.sandbox.test_bubblewrap import run
 
-    assert json.loads(run(code).stdout) == [bubblewrap.MOST_SIGNALS, 0, -1, True]
+    assert json.loads(run(code).stdout) == [MOST_SIGNALS, 0, -1, True]

@@ -1,0 +1,66 @@
+"""What a cell may use: memory, processes, files, processor time and disk.
+
+The kernel enforces the limits of a process, by prlimit. usage.py and control_group.py watch the totals of a cell.
+"""
+
+from __future__ import annotations
+
+import resource
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+MIB = 1024 * 1024
+MOST_SIGNALS = 1000
+"""How many signals and POSIX timers of a cell may be pending. The kernel also counts them for the user."""
+MOST_OTHERS = 4096
+"""How many processes and threads a user may have in addition to a grading without a cell."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a cell may use. `memory` limits the address space of each process, `disk` each writable tmpfs (bytes)."""
+
+    memory: int = 4096 * MIB
+    total_memory: int = 2048 * MIB
+    """The memory of all processes and disks of a cell together (usage.py)."""
+    processes: int = 600
+    """Processes and threads together. A node with 400 timers needs no thread for them."""
+    open_files: int = 1024
+    file_size: int = 256 * MIB
+    disk: int = 256 * MIB
+    files: int = 50_000
+    """Files on the writable disks together (usage.py)."""
+    cpu_s: int = 120
+
+
+NODE_LIMITS = Limits()
+"""What the node of a trial may use."""
+
+
+def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> list[str]:
+    """Return the command that runs `argv` under resource limits: all that is possible without bubblewrap."""
+    # Outside of a cell the kernel counts all processes of the user, and usage.py counts those of `argv`.
+    processes = limits.processes if in_cell else limits.processes + MOST_OTHERS
+    return [
+        "prlimit",
+        f"--nproc={_allowed(resource.RLIMIT_NPROC, processes)}",
+        f"--as={_allowed(resource.RLIMIT_AS, limits.memory)}",
+        f"--nofile={_allowed(resource.RLIMIT_NOFILE, limits.open_files)}",
+        f"--fsize={_allowed(resource.RLIMIT_FSIZE, limits.file_size)}",
+        f"--cpu={_allowed(resource.RLIMIT_CPU, limits.cpu_s)}",
+        "--core=0",
+        *([f"--sigpending={_allowed(resource.RLIMIT_SIGPENDING, MOST_SIGNALS)}"] if in_cell else []),
+        "--",
+        # If the machine runs out of memory, the kernel should kill this first.
+        *("choom", "-n", "1000", "--"),
+        *argv,
+    ]
+
+
+def _allowed(which: int, wanted: int) -> int:
+    """Return the limit, or the user's own if that is lower. Only root can raise it."""
+    hard = resource.getrlimit(which)[1]
+    return wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
