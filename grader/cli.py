@@ -199,12 +199,21 @@ def main() -> None:
         refused = refusal(error)
         if refused:
             typer.secho(f"grader: {refused}", err=True)
+            _drop_unwritten()
             sys.exit(3)
         told = f"grader: internal error of the grader, not of your work: {type(error).__name__}: {error}"
         typer.secho(
             f"{told}\nPut GRADER_DEBUG=1 before the command to see where it happened. Please report it.", err=True
         )
         sys.exit(3)
+
+
+def _drop_unwritten() -> None:
+    """Drop what standard output does not take. Python would try again when it exits, and exit with code 120."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 def _judged(recording: Path, read_exercise: Callable[[Path], Exercise]) -> tuple[Archived, tuple[Outcome, ...]]:

@@ -179,7 +179,7 @@ def test_a_turtlesim_without_a_window_says_where_to_look(terminals: list[Termina
 
 def test_grader_shell(terminals: list[Terminal]) -> None:
     terminal = terminals[0]
-    terminal.begin("SHELL=/bin/bash grader shell --domain 57", "in domain 57")
+    terminal.begin("SHELL=/bin/bash grader shell --domain 57", "in ROS domain 57")
     terminal.shell.sendline(f"PS1='{PROMPT}'; echo sees $ROS_DISTRO $ROS_DOMAIN_ID")
     terminal.shell.expect_exact("sees jazzy 57")
     terminal.shell.expect_exact(PROMPT)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from grader.checks.causes.why_ended import named_only, why_ended, why_no_node
+from grader.evidence.activity import START_S
 from grader.tests.checks.crashes import LOOK, line_with
 from grader.tests.checks.made import NODE_FILE, evidence, recording, submission
 from grader.trial.recording import ProcessEnd
@@ -50,7 +51,8 @@ def test_an_end_before_ctrl_c_is_explained_by_the_source(body: str, diagnosis: s
 
 def test_an_end_at_the_start_is_told_as_such() -> None:
     source = SOURCE.format(body="rclpy.spin(Driver())")
-    assert [ended(source, t_s)[0] for t_s in (-0.1, 0.0, 0.1)] == ["ends-at-once", "ends-at-once", "ended-early"]
+    found = [ended(source, t_s)[0] for t_s in (-0.1, 0.0, START_S, START_S + 0.1)]
+    assert found == ["ends-at-once", "ends-at-once", "ends-at-once", "ended-early"]
 
 
 @pytest.mark.parametrize("name", ["rclpy.init", "rclpy.spin", "main"])

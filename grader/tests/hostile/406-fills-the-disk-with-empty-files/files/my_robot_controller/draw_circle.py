@@ -5,6 +5,6 @@ import os
 
 def main():
     os.makedirs("/tmp/hostile-406", exist_ok=True)
-    for count in range(60_000):
+    for count in range(200_000):
         os.close(os.open(f"/tmp/hostile-406/{count}", os.O_CREAT | os.O_WRONLY))
-    print("TRA" "CE 60000 files")
+    print("TRA" "CE 200000 files")
