@@ -1,1 +1,1 @@
-"""Helpers that every room may use."""
+"""Helpers that every other package of the grader may use."""

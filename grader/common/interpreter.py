@@ -1,8 +1,9 @@
-"""Command lines for Python: they never import a module from the current folder, which may be a student's.
+"""Command lines for Python that never import a module from the current folder, which may be a student's.
 
 `python -m` and `python -c` put the current folder first on sys.path, and an empty or relative entry of PYTHONPATH names
 the current folder too. A `numpy.py` or a package `grader` in the folder where somebody typed a command would then run
-with that user's rights. So every command line of an interpreter is made here, and a test finds any other one.
+with that user's rights. So every command line of an interpreter is built here, and a test fails if one is built
+elsewhere.
 
 Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
@@ -18,7 +19,7 @@ SEARCHED = (
 )
 """Variables that hold a path or a list of paths from which programs, libraries or modules are loaded."""
 _CODE = "import sys; sys.path[:] = filter(None, sys.path)\n"
-"""Python 3.11 has the option -P for that, but with it IPython hides a notebook's folder from the notebook's cells."""
+"""Python 3.11 has the option -P for this, but IPython then hides a notebook's folder from the notebook's cells."""
 _RUN = "import runpy; runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)\n"
 _MODULE = _CODE + "del sys.argv[0]; " + _RUN
 _MODULE_BELOW = "import sys; sys.path.insert(0, sys.argv[1]); del sys.argv[:2]; " + _RUN
@@ -40,9 +41,9 @@ def interpreter(
 ) -> Start:
     """Return the command that starts Python with `-m MODULE ...`, `-c CODE ...` or the absolute path of a script.
 
-    `python` is the path of the interpreter; `env` is by default the caller's environment. With `searches`, Python uses
-    PYTHONPATH, as programs that import rclpy need; without it, the interpreter is isolated (-I). `root` is the folder
-    that holds the module's package, if the package is not installed yet.
+    `python` is the path of the interpreter; `env` defaults to the caller's environment. With `searches`, Python uses
+    PYTHONPATH, which programs that import rclpy need. Without it, the interpreter is isolated (-I). `root` is the
+    folder that contains the module's package, if the package is not installed yet.
 
     Raises:
         ValueError: the script's path is relative.
@@ -60,7 +61,7 @@ def interpreter(
     elif not searches:
         argv = [python, "-I", *arguments]
     elif not kind.startswith("-"):
-        argv = [python, *arguments]  # its folder comes first on the path, and belongs to the grader
+        argv = [python, *arguments]  # the script's folder comes first on sys.path, and it belongs to the grader
     elif kind == "-m":
         argv = [python, "-c", _MODULE, *arguments[1:]]
     else:
@@ -69,7 +70,7 @@ def interpreter(
 
 
 def clean(env: Mapping[str, str]) -> Dict[str, str]:
-    """Return the environment without entries of search paths that mean the current folder: empty and relative ones."""
+    """Return the environment without the empty and relative entries of search paths: they mean the current folder."""
     cleaned = dict(env)
     for name in SEARCHED:
         if name in cleaned:
@@ -80,7 +81,7 @@ def clean(env: Mapping[str, str]) -> Dict[str, str]:
 
 
 def clean_own() -> None:
-    """Clean the environment of this process, and so of the processes that it starts."""
+    """Clean the environment of this process, and thereby that of the processes that it starts."""
     cleaned = clean(os.environ)
     for name in [name for name in os.environ if name not in cleaned]:
         del os.environ[name]

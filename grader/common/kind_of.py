@@ -1,4 +1,4 @@
-"""See that a value of a JSON file is of the kind that we write there: somebody else may have written the file."""
+"""Check that a value in a JSON file has the type that the grader writes: somebody else may have written the file."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TypeVar
 
 T = TypeVar("T")
 MOST = 1e9
-"""No number of ours in a report is larger, or so far below 0."""
+"""The largest absolute value of any number that the grader writes in a report."""
 
 
 def text(value: object) -> str:
@@ -20,13 +20,13 @@ def text_or_none(value: object) -> str | None:
 
 
 def whole_or_none(value: object) -> int | None:
-    """Return the value. Raises TypeError if it is neither a whole number nor None."""
+    """Return the value. Raises TypeError if it is neither an integer nor None."""
     return None if value is None else _is(int, value)
 
 
 def number(value: object) -> float:
-    """Return the value. Raises TypeError if it is not a number, ValueError if it is too large or not a number (NaN)."""
-    if isinstance(value, int | float) and -MOST <= value <= MOST:  # NaN is not in between either
+    """Return the value. Raises TypeError if it is not a number, and ValueError if it is too large or NaN."""
+    if isinstance(value, int | float) and -MOST <= value <= MOST:  # false for NaN too
         return value
     message = f"{value!r:.40} is not a number that the grader writes"
     raise ValueError(message) if isinstance(value, int | float) else TypeError(message)

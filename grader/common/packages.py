@@ -1,4 +1,4 @@
-"""The system's package managers: how they name the packages that the course needs, and how they install them.
+"""Package managers: what they call the packages that the course needs, and how they install them.
 
 Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
@@ -12,7 +12,7 @@ from typing import FrozenSet, Iterable, List, Mapping, NamedTuple, Optional, Seq
 SYSTEM_PATH = ("/usr/local/sbin", "/usr/local/bin", "/usr/sbin", "/usr/bin", "/sbin", "/bin")
 OS_RELEASE = Path("/etc/os-release")
 PACMAN_LISTS = Path("/var/lib/pacman/sync")
-"""Empty in a fresh container."""
+"""The package lists of pacman. This folder is empty in a fresh container."""
 
 
 class Need(NamedTuple):
@@ -21,11 +21,11 @@ class Need(NamedTuple):
     what: str
     package: str
     lost: str = ""
-    """What does not work without it; empty if nothing works without it."""
+    """What does not work without it. Empty if nothing works without it."""
 
 
 class Manager(NamedTuple):
-    """A package manager. Its commands are shell lines; `quiet` has the options for when nobody can answer questions."""
+    """A package manager. Its commands are shell lines; `quiet` holds the options for use without a user to ask."""
 
     program: str
     systems: Tuple[str, ...]
@@ -34,15 +34,15 @@ class Manager(NamedTuple):
     install: str
     quiet: str
     names: Mapping[str, str]
-    """Debian's name of a package -> the name here, where the two differ."""
+    """Debian's name of a package -> the name in this package manager, if the two differ."""
     python: str = ""
-    """The package of a Python with the module venv: a pattern with the version as 3.12 (`dotted`) or 312 (`joined`)."""
+    """Pattern for the package of a Python with venv. It contains the version as 3.12 (`dotted`) or 312 (`joined`)."""
     headers: str = ""
     newer: str = ""
-    """Debian's name of a Python -> a newer Python to install if the default Python is too old."""
+    """Debian's name of a newer Python, which is installed if the default Python is too old."""
 
     def packages(self, needs: Iterable[Need]) -> List[str]:
-        """Return the names of the needed packages here."""
+        """Return the names that this package manager uses for the packages needed."""
         names = (self._name(need.package) for need in needs)
         return list(dict.fromkeys(name for name in names if name))
 
@@ -64,7 +64,7 @@ MANAGERS = (
         systems=("debian", "ubuntu"),
         update="apt-get update",
         install="apt-get install -y",
-        # Wait for a mirror that does not answer, or for another installation, but not for ever.
+        # Set a limit on how long to wait for a mirror that does not answer or for another installation.
         quiet="-q --no-install-recommends -o DPkg::Lock::Timeout=60 -o Acquire::http::Timeout=20",
         names={},
     ),
@@ -109,7 +109,7 @@ MANAGERS = (
 
 
 def find_manager(path: str) -> Optional[Manager]:
-    """Return the package manager of this system; if several are installed, the usual one for this distribution."""
+    """Return the package manager of this system. If several are installed, prefer the usual one for this system."""
     found = [manager for manager in MANAGERS if find_program(manager.program, path)]
     if len(found) > 1:
         own = _systems()
@@ -118,12 +118,12 @@ def find_manager(path: str) -> Optional[Manager]:
 
 
 def find_program(name: str, path: str) -> Optional[str]:
-    """Return the path of a system program; /sbin and the like are searched too."""
+    """Return the path of a system program. Folders such as /sbin are searched as well as `path`."""
     return shutil.which(name, path=os.pathsep.join([path, *SYSTEM_PATH]))
 
 
 def command(manager: Optional[Manager], needs: Sequence[Need], *, root: bool) -> str:
-    """Return the command line that installs what is missing, with Debian's names if the manager is unknown."""
+    """Return the command line that installs what is missing. If the manager is unknown, list Debian's package names."""
     if manager is None:
         return "your package manager (Debian's names: {})".format(", ".join(dict.fromkeys(n.package for n in needs)))
     sudo = "" if root else "sudo "
@@ -132,7 +132,7 @@ def command(manager: Optional[Manager], needs: Sequence[Need], *, root: bool) ->
 
 
 def script(manager: Manager, groups: Sequence[Sequence[Need]]) -> str:
-    """Return shell lines that install each group separately: a missing package must not stop the others."""
+    """Return shell lines that install each group separately, so that a missing package does not stop the others."""
     lines = ["export LC_ALL=C DEBIAN_FRONTEND=noninteractive", *([manager.update + " -q"] if manager.update else [])]
     for group in groups:
         words = [_install(manager), manager.quiet, *manager.packages(group)]

@@ -1,4 +1,4 @@
-"""Errors of the system in one sentence with what to do: no disk space, no memory, no more files or processes.
+"""One sentence for each system error, saying what to do: no disk space, no memory, no more files or processes.
 
 Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
@@ -9,14 +9,14 @@ import resource
 from typing import Optional
 
 OF_THE_DISK = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS})
-"""Errors of a disk that is full or broken; any other error is about a single file."""
+"""Errors that mean the disk is full or broken. Any other error concerns a single file."""
 ROOM = "free some space there, or set another folder with XDG_CACHE_HOME, XDG_STATE_HOME or TMPDIR"
 _SCARCE = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN, errno.EIO})
 _NOT_ALLOWED = "see what `grader doctor` says"
 
 
 def refusal(error: BaseException) -> Optional[str]:
-    """Return the sentence for an error that the system raised; None for any other error."""
+    """Return the sentence for an error raised by the operating system, or None for any other error."""
     if isinstance(error, MemoryError):
         return sentence(errno.ENOMEM)
     if isinstance(error, RuntimeError):
@@ -28,7 +28,7 @@ def refusal(error: BaseException) -> Optional[str]:
 
 
 def refusal_in(said: str) -> Optional[str]:
-    """The sentence for a lack of room, memory, files or processes that a program or library told in its own words."""
+    """Return the sentence for a lack of disk space, memory, files or processes that the message `said` mentions."""
     found = next((number for number in sorted(_SCARCE) if os.strerror(number) in said), None)
     return sentence(found) if found else None
 
@@ -39,7 +39,7 @@ def of_the_machine(error: OSError) -> bool:
 
 
 def sentence(number: int, where: str = "", room: str = ROOM) -> str:
-    """The sentence for an errno; `where` is the path that it was about, `room` what to do where a disk is full."""
+    """Return the sentence for an errno. `where` is the path concerned; `room` says what to do if a disk is full."""
     at = f" for {where}" if where else ""
     if number in (errno.ENOSPC, errno.EDQUOT):
         return f"The disk is full{at}: {room}."

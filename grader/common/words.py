@@ -1,4 +1,4 @@
-"""Helpers for messages: quote foreign text, write numbers and lists, find the most similar name."""
+"""Helpers for messages: quote text of others safely, format numbers and lists, find the most similar name."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ def _one_line(text: str) -> str:
 
 
 def shorten(text: str, limit: int = 60) -> str:
-    """Return the text on one line, printable, with at most `limit` characters."""
+    """Return the text as one printable line of at most `limit` characters."""
     line = printable(text[: 4 * limit])
     return line if len(line) <= limit and len(text) <= 4 * limit else line[: limit - 3].rstrip() + "..."
 
 
 def nearest(name: str, candidates: Iterable[str], alike: float = 0.6) -> str | None:
-    """Return the candidate most similar to `name`; None if all of them have a difflib ratio below `alike`."""
+    """Return the candidate most similar to `name`, or None if all of them have a difflib ratio below `alike`."""
     found = difflib.get_close_matches(name[:200], [candidate[:200] for candidate in candidates], n=1, cutoff=alike)
     return found[0] if found else None
 
@@ -46,7 +46,7 @@ def a_list(items: Sequence[str], last: str = "and", *, most: int = 12) -> str:
 
 
 def number(value: float, unlike: float | None = None) -> str:
-    """Return the number with four digits, or more if it would look equal to `unlike`; NaN and infinity in words."""
+    """Return the number with four digits, or more if it would look equal to `unlike`. Spell out NaN and infinity."""
     if math.isnan(value):
         return "NaN (not a number)"
     if math.isinf(value):

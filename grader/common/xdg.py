@@ -1,4 +1,4 @@
-"""The folders for the grader's own files of a user, as in the XDG Base Directory Specification 0.8."""
+"""The folders for the files that the grader keeps for a user, following the XDG Base Directory Specification 0.8."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from pathlib import Path
 
 
 def cache() -> Path:
-    """Return the folder for files that the grader can make again."""
+    """Return the folder for files that the grader can create again."""
     return _folder("XDG_CACHE_HOME", ".cache")
 
 
 def state() -> Path:
-    """Return the folder for files that must be kept and cannot be made again."""
+    """Return the folder for files that must be kept because they cannot be created again."""
     return _folder("XDG_STATE_HOME", ".local/state")
 
 
 def _folder(variable: str, default: str) -> Path:
-    """Return our folder below the one in `variable`; a relative path is ignored, as the specification asks."""
+    """Return the grader's folder inside the one named by `variable`. As specified, a relative path is ignored."""
     named = os.environ.get(variable, "")
     return (Path(named) if named.startswith("/") else Path.home() / default) / "grader"
