@@ -1,1 +1,1 @@
-"""Checks: pure functions of the evidence of a submission. `judge.judge` runs them; each subject has one module."""
+"""Checks: pure functions of the evidence about a submission. `judge.judge` runs them; each subject has one module."""

@@ -1,4 +1,4 @@
-"""Cause: why a check failed."""
+"""Why a check failed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 class Cause:
     """A diagnosis id, the cause in words (empty if the observation says enough), and the place to look at.
 
-    `fix` is the smallest change that would fix it, if known. It is tried, and never shown to a student.
+    `fix` is the smallest change that would fix the mistake, if known. The grader tries it but never shows it to a
+    student.
     """
 
     diagnosis: Diagnosis
@@ -24,7 +25,7 @@ class Cause:
     fix: tuple[Edit, ...] = ()
 
     def at(self, where: Where | None) -> Cause:
-        """Return the cause with this place to look at, unless it names a better one itself."""
+        """Return the cause with this place to look at, unless it already has one."""
         return self if self.where is not None else replace(self, where=where)
 
     def mended_by(self, edits: tuple[Edit, ...]) -> Cause:

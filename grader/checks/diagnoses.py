@@ -1,8 +1,8 @@
-"""Diagnoses: the stable id of each known mistake, with its meaning in one line.
+"""The stable id of each known mistake, with its meaning in one line.
 
-A failed check carries one of these ids. Reports, class pages and instructors' scripts count by them, so the meaning of
-an id never changes; the wording of a message may. `python -m grader.tests.catalogue` writes the table of all ids to
-grader/checks/README.md.
+Each failed check has one of these ids. Reports, class pages and instructors' scripts count them, so the meaning of an
+id never changes, although the wording of a message may. `python -m grader.tests.catalogue` writes the table of all ids
+to grader/checks/README.md.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Diagnosis: every id that a failed check may carry, as a type that mypy checks; diagnoses.py says what they mean."""
+"""Every id that a failed check may have, as a type that mypy checks. See diagnoses.py for the meaning of each id."""
 
 from __future__ import annotations
 

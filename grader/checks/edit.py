@@ -1,4 +1,4 @@
-"""Edit: the smallest change to the files of a submission that would fix a cause, to be tried."""
+"""A small change to the files of a submission that would fix a mistake. The grader tries it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Edit:
-    """On a line (from 1) of a file, `old` becomes `new`. With an empty `old`, `new` is a line put before that line."""
+    """Replace `old` with `new` on a line of a file (counted from 1), or insert `new` before it if `old` is empty."""
 
     file: str
     line: int
@@ -24,14 +24,14 @@ class Edit:
 
 
 def at(where: Where | None, old: str, new: str) -> tuple[Edit, ...]:
-    """Return the edit of this line; nothing if the place has no line."""
+    """Return an edit of this line, or an empty tuple if the place has no line number."""
     return () if where is None or where.line is None else (Edit(where.file, where.line, old, new),)
 
 
 def applied(files: Mapping[str, bytes], edits: Sequence[Edit]) -> dict[str, bytes] | None:
-    """Return the files after all edits; None if one of them does not find what it replaces."""
+    """Return the files after all edits, or None if the text that an edit replaces does not exist."""
     changed = dict(files)
-    # From the last line to the first, so that a new line does not move the others.
+    # Edit from the last line to the first, so that an inserted line does not move the lines of later edits.
     for edit in sorted(edits, key=lambda each: -each.line):
         lines = changed.get(edit.file, b"").decode("utf-8", "surrogateescape").split("\n")
         if not 1 <= edit.line <= len(lines):
@@ -57,7 +57,7 @@ def difference(before: Mapping[str, bytes], after: Mapping[str, bytes]) -> str:
 
 
 def _replaced(line: str, edit: Edit) -> str | None:
-    """Return the line with the first `old` replaced; a name only where it stands for itself, not inside another."""
+    """Return the line with the first `old` replaced. If possible, replace a whole name, not part of a longer one."""
     begin = r"(?<![\w.])" if re.match(r"\w", edit.old) else ""
     end = r"(?!\w)" if re.search(r"\w$", edit.old) else ""
     found = re.search(begin + re.escape(edit.old) + end, line) or re.search(re.escape(edit.old), line)

@@ -1,4 +1,4 @@
-"""Find and load exercises by path, by name or by a folder of the course."""
+"""Find and load exercises by path, by name or by course folder."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def find_exercise(name: str, course: Path | None = None) -> Exercise:
-    """Return the exercise with this id, or the only one whose id starts with `name`, such as "03" or "3".
+    """Return the exercise with the id `name`, or the only one whose id starts with `name`, such as "03" or "3".
 
-    Raises UsageError if there is none, or more than one.
+    Raises UsageError if no exercise matches, or more than one.
     """
     files = catalogue(course)
     name = f"{int(name):02}" if name.isascii() and name.isdigit() else name
@@ -37,7 +37,7 @@ def find_exercise(name: str, course: Path | None = None) -> Exercise:
 
 
 def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | None:
-    """Return the exercise of a folder below exercises/ or solutions/, or None for another folder."""
+    """Return the exercise of a folder below exercises/ or solutions/, or None for any other folder."""
     parts = path.resolve().parts
     files = catalogue(course)
     for parent, name in zip(reversed(parts[:-1]), reversed(parts[1:]), strict=True):
@@ -47,11 +47,11 @@ def exercise_of_folder(path: Path, course: Path | None = None) -> Exercise | Non
 
 
 def load_exercise(path: Path) -> Exercise:
-    """Return the exercise in a file, or in the file exercise.toml of a folder.
+    """Return the exercise in this file, or in the file exercise.toml of this folder.
 
     Raises UsageError with every problem in the file: the key, its value, and the allowed values.
     """
-    from grader.checks.kinds import KINDS  # (imports all checks, so only where an exercise is read)
+    from grader.checks.kinds import KINDS  # imported here because it imports all checks
 
     file = path / FILE_NAME if path.is_dir() else path
     try:

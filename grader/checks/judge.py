@@ -1,4 +1,4 @@
-"""Judge a submission: run every check of the exercise, each after the checks that it needs."""
+"""Judge a submission: run every check of the exercise, each one after the checks that it needs."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 class Judgement:
     """What the checks found so far.
 
-    `findings` has a finding for every check. Those of `settled` stand, whatever the next stages bring: the evidence
-    of their stage was complete. The others say that the node was not run, or that a needed check did not pass yet.
+    `findings` has a finding for every check. The findings in `settled` are final, because the evidence of their stage
+    was complete. The others say that the node was not run, or that a check that they need has not passed yet.
     """
 
     exercise: Exercise
@@ -44,7 +44,7 @@ class Judgement:
         )
 
     def wants(self, trial: str) -> bool:
-        """Return whether any check would use a recording of this trial (an id). If not, it does not have to run."""
+        """Return whether any check would use a recording of this trial (an id). If not, the trial need not run."""
         return any(
             _judges_trial(spec, trial) and not any(_blocks(self.findings[need]) for need in spec.needs)
             for spec in self.exercise.checks
@@ -54,14 +54,15 @@ class Judgement:
 def judge(evidence: Evidence) -> tuple[Outcome, ...]:
     """Return the outcome of every check, in the order of the exercise.
 
-    A check is skipped when a check that it needs did not pass; its message names the first such check. A check whose
-    evidence the machine could not produce (`evidence.fault`) is an `error`, and so is every check that needs it.
+    A check is skipped if a check that it needs did not pass; its message names the first such check. If the machine
+    could not produce the evidence for a check (`evidence.fault`), its status is `error`, and so is that of every check
+    that needs it.
     """
     return judge_so_far(evidence, {}).outcomes
 
 
 def judge_so_far(evidence: Evidence, settled: Mapping[str, Finding]) -> Judgement:
-    """Judge the evidence of the stages that are done. Checks whose findings are `settled` are not run again."""
+    """Judge the evidence of the stages completed so far. Checks whose findings are `settled` are not run again."""
     findings: dict[str, Finding] = {}
     causes: dict[str, CheckSpec] = {}
     stands = dict(settled)
@@ -85,19 +86,19 @@ def judge_so_far(evidence: Evidence, settled: Mapping[str, Finding]) -> Judgemen
 
 @dataclass(frozen=True)
 class Early:
-    """What is certain before any code of the submission runs: failed outcomes, and ids of checks that cannot pass."""
+    """What is known before any code of the submission runs: failed outcomes, and ids of checks that cannot pass."""
 
     failed: tuple[Outcome, ...]
     blocked: frozenset[str]
 
     def may_run(self, evidence: Evidence) -> bool:
-        """Return whether the trial may still be needed: at least one of its checks is not blocked."""
+        """Return whether the trial may still be needed because at least one of its checks is not blocked."""
         specs = evidence.exercise.checks
         return any(_judges_trial(spec, evidence.trial.id) and spec.id not in self.blocked for spec in specs)
 
 
 def judge_early(evidence: Evidence) -> Early:
-    """Judge the files alone: nothing is built and no process starts."""
+    """Judge only the files, without building anything or starting a process."""
     failed_: list[Outcome] = []
     blocked: set[str] = set()
     for spec in _in_order(evidence.exercise.checks):
@@ -107,7 +108,7 @@ def judge_early(evidence: Evidence) -> Early:
             continue
         try:
             finding = kind.judge_early(evidence.from_trial(spec.trial), spec.params)
-        except Exception:  # (the check runs again at the end and reports the error then)
+        except Exception:  # the check runs again later and reports the error then
             continue
         if finding is not None and finding.status is Status.FAILED and not kind.advice:
             blocked.add(spec.id)
@@ -124,7 +125,7 @@ def _blocks(finding: Finding) -> bool:
 
 
 def _in_order(specs: Iterable[CheckSpec]) -> list[CheckSpec]:
-    """Sort the checks so that each comes after all that it needs (the exercise was read without cycles)."""
+    """Sort the checks so that each one comes after all those that it needs. No exercise has a cycle of needs."""
     waiting = list(specs)
     done: dict[str, CheckSpec] = {}
     while waiting:
@@ -135,12 +136,12 @@ def _in_order(specs: Iterable[CheckSpec]) -> list[CheckSpec]:
 
 
 def _is_made(evidence: Evidence, stage: Stage) -> bool:
-    """Return whether the evidence of this stage is there."""
+    """Return whether the evidence of this stage exists."""
     return {"source": True, "build": evidence.build is not None, "trial": evidence.run.recording is not None}[stage]
 
 
 def _is_complete(evidence: Evidence, spec: CheckSpec) -> bool:
-    """Return whether nothing more comes that this check would look at."""
+    """Return whether no later stage can add evidence that this check would use."""
     stage = KINDS[spec.kind].stage
     return _is_made(evidence, stage) or (stage == "trial" and evidence.run.overwhelmed is not None)
 
@@ -161,14 +162,15 @@ def _judge_one(evidence: Evidence, spec: CheckSpec) -> Finding:
         return kind.judge(evidence, spec.params)
     except MachineError as error:
         return Finding(Status.ERROR, str(error))
-    except Exception as error:  # (one failing check must not lose the other outcomes of a class)
+    except Exception as error:  # an exception in one check must not discard the other outcomes of a class
         return unreadable(in_words(error))
 
 
 def unreadable(how: str) -> Finding:
     """Return a failed finding about a submission that the grader cannot read.
 
-    It is not an error: a check reads only what the submission produced, so only the submission can make it fail.
+    Its status is not `error`, because a check reads only what the submission produced, so only the submission can
+    make it fail.
     """
     observed = f"The submission could not be read: {shorten(how, 150)}."
     expected = "The grader can read the submitted files and the data that the node sends."
@@ -177,7 +179,7 @@ def unreadable(how: str) -> Finding:
 
 
 def in_words(error: Exception) -> str:
-    """Return the exception on one line; of ours, the text alone."""
+    """Return the type and text of the exception on one line, or only the text if it is an UnreadableError."""
     if isinstance(error, UnreadableError):
         return str(error).rstrip(".")
     return f"{type(error).__name__}: {error}".rstrip(" :.")

@@ -1,7 +1,7 @@
-"""Kind: a type of check, with the parameters that exercise.toml may set.
+"""A kind is a type of check, with the parameters that exercise.toml may set.
 
 The parameters of a kind are a dataclass next to the check function. The functions `number`, `string`, `strings` and
-`choice` create its fields, each with its name, default and allowed values. A new exercise needs no Python code.
+`choice` create its fields with their defaults and allowed values. A new exercise needs no Python code.
 """
 
 # ruff: noqa: ANN401 (the functions below return what dataclasses.field returns)
@@ -36,7 +36,7 @@ P = TypeVar("P")
 class Kind(Generic[P]):
     """A type of check. `check` is a pure function: the same evidence and parameters give the same finding.
 
-    `title` is the line that a student reads if exercise.toml has none. `about` tells the author of an exercise what is
+    `title` is what a student reads if exercise.toml sets no title. `about` tells the author of an exercise what is
     checked (docs/kinds.md). A kind with `advice` is worth no points and never fails a submission.
     """
 
@@ -48,13 +48,13 @@ class Kind(Generic[P]):
     about: str
     advice: bool = False
     early: Callable[[Evidence, P], Finding | None] | None = None
-    """For a check that needs a build or a trial: the finding when the files alone show that it fails, else None."""
+    """For a check that needs a build or a trial: return a finding if the files alone show a failure, else None."""
     drives: bool = False
-    """Whether a node must command the turtle to pass."""
+    """Whether a node must send velocity commands to the turtle to pass."""
     requested: Callable[[Evidence, P], Requested | None] | None = None
-    """What there is to draw of it; None where this submission leaves that open."""
+    """Return what the check requests, for a drawing, or None if the submission does not determine that."""
     radius_m: Callable[[P], float] | None = None
-    """The radius of the circle that must have room on either side of a start that is drawn."""
+    """Return the radius (m) of a circle that must fit on either side of a randomly drawn start position."""
 
     def parameters(self) -> dict[str, Allowed]:
         """Return the name of every parameter with its allowed values."""
@@ -75,11 +75,11 @@ class Kind(Generic[P]):
         return self.early(evidence, self.params(**values)) if self.early is not None else None
 
     def request(self, evidence: Evidence, values: Mapping[str, Param]) -> Requested | None:
-        """What there is to draw of a check with these parameter values; None where there is nothing."""
+        """Return what a check with these parameter values requests, for a drawing, or None."""
         return self.requested(evidence, self.params(**values)) if self.requested is not None else None
 
     def radius(self, values: Mapping[str, Param]) -> float | None:
-        """The radius (m) of the circle that a drawn start must leave room for; None where there is none."""
+        """Return the radius (m) of the circle that a random start position must leave room for, or None."""
         return self.radius_m(self.params(**values)) if self.radius_m is not None else None
 
 

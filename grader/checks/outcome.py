@@ -1,4 +1,4 @@
-"""Outcome: the result of one check."""
+"""The result of one check."""
 
 from __future__ import annotations
 
@@ -13,7 +13,11 @@ if TYPE_CHECKING:
 
 
 class Status(str, Enum):
-    """`failed`: the student's work is wrong. `error`: the grader or the machine failed; there are no points yet."""
+    """The status of a check.
+
+    `failed` means that the student's work is wrong. `error` means that the grader or the machine failed, so there are
+    no points yet.
+    """
 
     PASSED = "passed"
     FAILED = "failed"
@@ -23,10 +27,10 @@ class Status(str, Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """What a check found: `seen`, `expected` and `cause` are sentences for a beginner; `diagnosis` is a stable id.
+    """What a check found. `observed`, `expected` and `cause` are text for a beginner; `diagnosis` is a stable id.
 
-    `near_edge` is True when the measured value is within a fifth of the tolerance from its edge, or when the node did
-    not stop in simulated time. Such a check is judged again in wall time.
+    `near_edge` is True if the distance of the measured value from the edge of the tolerance is at most a fifth of the
+    tolerance, or if the node did not stop in simulated time. Such a check is judged again in wall time.
     """
 
     status: Status
@@ -37,9 +41,9 @@ class Finding:
     where: Where | None = None
     near_edge: bool = False
     fix: tuple[Edit, ...] = field(default=(), compare=False)
-    """The change that would fix the cause, to be tried. It is never shown to a student."""
+    """The change that would fix the mistake. The grader tries it but never shows it to a student."""
     tried: str = ""
-    """What came of trying it, in a sentence."""
+    """A sentence about the result of trying the change."""
 
     def because(self, cause: Cause) -> Finding:
         """Return the finding with this cause instead of its own."""
@@ -61,7 +65,7 @@ def failed(observed: str, expected: str, cause: Cause, *, near_edge: bool = Fals
 class Outcome:
     """A finding with the id, kind and points of its check.
 
-    With `advice`, the finding is worth no points and never fails the submission, whatever its status.
+    If `advice` is True, the finding is worth no points and never fails the submission, whatever its status.
     """
 
     id: str

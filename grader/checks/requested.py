@@ -1,4 +1,4 @@
-"""Requested: what a check asks of the node, so far as it can be drawn beside what was observed."""
+"""What a check requests of the node, as far as it can be drawn next to what was observed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class Interval:
-    """The time between two commands (s): as requested, and from `low` to `high` at most."""
+    """The time between two commands (s): the requested value and the allowed range."""
 
     requested_s: float
     low_s: float
@@ -28,10 +28,10 @@ class Interval:
 
 @dataclass(frozen=True)
 class Requested:
-    """The path of the turtle as `circles` (centre, radius in m) and `lines` (m); `path` says in words what it is.
+    """The path of the turtle as `circles` (centre, radius in m) and `lines` (m); `path` describes it in words.
 
-    `fits`: the path is one circle, so the circle that fits best belongs beside it. `interval` is that between two
-    commands, `values` are the six of each command (m/s three times, rad/s three times).
+    If `fits` is True, the path is one circle, so the best-fitting circle is drawn too. `interval` is the time between
+    two commands. `values` are the six values of each command (three in m/s, three in rad/s).
     """
 
     path: str = ""
@@ -43,7 +43,7 @@ class Requested:
 
 
 def first_heading(evidence: Evidence) -> Pose:
-    """Where the turtle starts, looking in the direction in which it first drives: it may have turned before."""
+    """Return the start position, facing the direction of the first movement: the turtle may turn before it drives."""
     start, trajectory = evidence.recording.start, evidence.trajectory
     if not trajectory.finite:
         return start

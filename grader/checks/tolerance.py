@@ -1,4 +1,4 @@
-"""Tolerances: whether a measured value is inside, and whether it is so close to an edge that wall time must judge."""
+"""Whether a measured value is within its tolerance, or so close to an edge that wall time must decide."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 NEAR = 0.2
-"""A value is near an edge when its distance to the edge is at most this share of the tolerance."""
+"""A value is near an edge if its distance to the edge is at most this fraction of the tolerance."""
 
 
 @dataclass(frozen=True)
 class Band:
-    """The values from `low` to `high`; `low_width` and `high_width` are the tolerances that gave these edges.
+    """The values from `low` to `high`; `low_width` and `high_width` are the tolerances that define these edges.
 
-    None means no edge on that side. NaN is never inside: every comparison with NaN is False, so each comparison below
-    states what must be true.
+    None means that there is no edge on that side. NaN is never inside: every comparison with NaN is False, so each
+    comparison below states what must be true.
     """
 
     low: float | None
@@ -44,13 +44,13 @@ class Band:
         return cls(limit, None, abs(limit), 0.0)
 
     def holds(self, value: float) -> bool:
-        """Return whether the value is inside. The edges are inside."""
+        """Return whether the value is inside, including the edges."""
         above_low = self.low is None or self.low <= value
         below_high = self.high is None or value <= self.high
-        return above_low and below_high and value == value  # (NaN, where there is only one edge or none)
+        return above_low and below_high and value == value  # false for NaN, even without edges
 
     def near(self, *values: float) -> bool:
-        """Return whether any value is within a fifth of the tolerance from an edge."""
+        """Return whether the distance of any value from an edge is at most a fifth of the tolerance."""
         return any(self._near(value) for value in values)
 
     def _near(self, value: float) -> bool:
@@ -62,7 +62,7 @@ class Band:
 def unless_starved(finding: Finding, recording: Recording, off: float, per_s: float) -> Finding:
     """Return the finding, or an error finding if stalls of the machine explain the failure.
 
-    `off` is the distance of the value from its tolerance; `per_s` is how much the value changes per second. While the
+    `off` is how far the value is outside its tolerance; `per_s` is how much the value changes per second. While the
     machine stalls, the turtle continues with its last command.
     """
     if finding.status is Status.FAILED and recording.stalls and off <= per_s * recording.stalled_s:
