@@ -1,4 +1,4 @@
-"""Crash: the exception that ended a student's node, read from its stderr."""
+"""The exception that crashed a student's node, read from its stderr."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 START = "Traceback (most recent call last):"
 IGNORED = "Exception ignored in"
-"""Python's words before the traceback of an exception that ended nothing, as one in a destructor."""
+"""Python prints this before the traceback of an exception that it ignores, such as one in a destructor."""
 PACKAGES = ("site-packages", "dist-packages")
-"""Folders that hold what is installed: a module beside setup.py lies directly in one of them."""
+"""Folders of installed modules. A module next to setup.py is installed directly into one of them."""
 FRAME = re.compile(r'\s*File "(?P<file>[^"]*)", line (?P<line>\d{1,7})(?:, in (?P<function>.*))?')
 ERROR = re.compile(r"(?P<type>[A-Za-z_][\w.]*)(?:: (?P<message>.*))?")
 GUESS = re.compile(r" \(/[^)]*\)$|\.? Did you mean: .*| The following argument types are supported:.*")
-"""Hints that differ between Python versions are removed from an error; the diagnosis suggests a name itself."""
+"""Hints that differ between Python versions. They are removed, because the diagnosis suggests a name itself."""
 STOPS = frozenset({"KeyboardInterrupt", "ExternalShutdownException"})
-"""The exceptions that Ctrl-C raises in a node written like the tutorial's."""
+"""The exceptions that Ctrl-C raises in a node written like the one in the tutorial."""
 
 RCLPY_ERRORS = frozenset({"InvalidNodeNameException", "InvalidTopicNameException", "NotInitializedException"})
 
@@ -56,7 +56,7 @@ MEANINGS = {
 
 @dataclass(frozen=True)
 class Crash:
-    """An exception in the student's node: `error` is its class, `where` is the last line of student code."""
+    """An exception in the student's node. `error` is its class; `where` is the last line of student code."""
 
     error: str
     message: str
@@ -69,20 +69,20 @@ class Crash:
 
     @property
     def meaning(self) -> str:
-        """What such an exception usually means; empty if that is not known."""
+        """What such an exception usually means, or an empty string if that is unknown."""
         if self.error == "AssertionError" and "field must be of type 'float'" in self.message:
             return "This field is a float. Write the number with a decimal point."
         return MEANINGS.get(self.error, "")
 
 
 def crash_of(evidence: Evidence) -> Crash | None:
-    """Return the crash that ended the node before the scenario was over, or None."""
+    """Return the crash because of which the node exited before the end of the scenario, or None."""
     end = evidence.recording.end
     if end.out_of is not None:
         return Crash(f"it used all the {end.out_of} that a node may use", "")
     if end.by != "itself":
         return None
-    # The exit code of a crashed node is not always Python's, so the traceback decides.
+    # A crashed node does not always exit with Python's exit code, so the traceback decides.
     found = read_traceback(evidence.recording.stderr.text, evidence.submission.files)
     if found is not None or end.exit_code == 0:
         return found
@@ -92,9 +92,9 @@ def crash_of(evidence: Evidence) -> Crash | None:
 
 
 def ended_early(evidence: Evidence) -> str:
-    """Return a sentence that the node ended before the scenario was over, or an empty string if it did not.
+    """Return a sentence saying that the node exited before the end of the scenario, or an empty string.
 
-    The sentence has no time and no exception message. They may differ from run to run, but a cause must not.
+    The sentence contains neither the time nor the exception message, because a cause must not differ from run to run.
     """
     if evidence.recording.end.by != "itself":
         return ""
@@ -106,7 +106,7 @@ def ended_early(evidence: Evidence) -> str:
 
 
 def end_observed(evidence: Evidence) -> str:
-    """Return a sentence that the node ended before the scenario was over, with the time, or an empty string."""
+    """Return a sentence saying when the node exited before the end of the scenario, or an empty string."""
     end = evidence.recording.end
     if end.by != "itself":
         return ""
@@ -116,20 +116,20 @@ def end_observed(evidence: Evidence) -> str:
 
 
 def read_traceback(text: str, files: Mapping[str, bytes]) -> Crash | None:
-    """Return the last exception in stderr. In a chain, it is the first exception that Ctrl-C did not cause."""
+    """Return the last exception in stderr. For a chain of exceptions, return the first that Ctrl-C did not cause."""
     last: list[Crash] = []
     for chained, crash in read_tracebacks(text, files):
         last = [*last, crash] if chained else [crash]
     roots = [crash for crash in last if crash.error not in STOPS]
     if not roots:
         return None
-    # rclpy's own exceptions are the clearest. The first exception of a chain may have no line of student code.
+    # rclpy's own exceptions are the clearest. The first exception of a chain may not include a line of student code.
     root = next((crash for crash in roots if crash.error in RCLPY_ERRORS), roots[0])
     return replace(root, where=root.where or next((crash.where for crash in last if crash.where is not None), None))
 
 
 def read_tracebacks(text: str, files: Mapping[str, bytes]) -> Iterable[tuple[bool, Crash]]:
-    """Yield every exception in stderr, and whether it happened while the one before it was handled."""
+    """Yield every exception in stderr, and whether it occurred while the previous one was being handled."""
     for chained, lines in _blocks(text.splitlines()):
         crash = _crash(lines, files)
         if crash is not None:
@@ -137,9 +137,9 @@ def read_tracebacks(text: str, files: Mapping[str, bytes]) -> Iterable[tuple[boo
 
 
 def _blocks(lines: list[str]) -> Iterable[tuple[bool, list[str]]]:
-    """Yield the lines of each traceback after its first, and whether another exception was being handled.
+    """Yield the lines of each traceback after its first line, and whether another exception was being handled.
 
-    Tracebacks of exceptions that Python ignored are left out: they did not end the node.
+    Tracebacks of exceptions that Python ignored are left out, because they did not crash the node.
     """
     starts = [index for index, line in enumerate(lines) if line.strip() == START]
     for index, start in enumerate(starts):
@@ -168,7 +168,7 @@ def _crash(lines: list[str], files: Mapping[str, bytes]) -> Crash | None:
 
 
 def _own_file(path: str, files: Mapping[str, bytes]) -> str | None:
-    """Return the file of the submission that was installed or linked at this path: the longest path that matches."""
+    """Return the file of the submission that was installed or linked at this path, preferring the longest match."""
     tail = f"/{path}"
     ends = [
         file
@@ -179,7 +179,7 @@ def _own_file(path: str, files: Mapping[str, bytes]) -> str | None:
 
 
 def _is_beside(path: str) -> bool:
-    """Return whether a file that lies beside setup.py may be at this path: rclpy has a node.py, too."""
+    """Return whether a file next to setup.py may be at this path. Files of another package, such as rclpy, are not."""
     folders = path.split("/")[:-1]
     return not any(name in folders for name in PACKAGES) or folders[-1] in PACKAGES
 

@@ -1,4 +1,4 @@
-"""CrashScene: the student's source code around the line that raised an exception."""
+"""The student's source code around the line that raised an exception."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 @dataclass(frozen=True)
 class CrashScene:
-    """An exception and the module that raised it. Without a line in the source code, everything is empty."""
+    """An exception and the module that raised it. If the line is unknown, the other attributes are empty."""
 
     evidence: Evidence
     crash: Crash
@@ -39,7 +39,7 @@ class CrashScene:
 
     @property
     def line(self) -> int:
-        """The line number, or 0 if it is not known."""
+        """The line number, or 0 if it is unknown."""
         where = self.crash.where
         return (where.line if where is not None else None) or 0
 
@@ -50,13 +50,13 @@ class CrashScene:
 
     @cached_property
     def on_line(self) -> tuple[ast.AST, ...]:
-        """The nodes on the line."""
+        """The nodes of the syntax tree on the line."""
         return tuple(
             node for node in self.nodes if getattr(node, "lineno", 0) <= self.line <= _end(node) and _small(node)
         )
 
     def calls_on_line(self, name: str) -> list[ast.Call]:
-        """Return the calls on the line of a function or method with this name (without module or object)."""
+        """Return the calls on the line to a function or method with this name (without module or object)."""
         calls = [node for node in self.on_line if isinstance(node, ast.Call)]
         return [call for call in calls if _last(call.func) == name]
 
@@ -99,7 +99,7 @@ class CrashScene:
         return [node for node in self.nodes if isinstance(node, Function) and node.name == name]
 
     def at(self, node: ast.AST | int | None) -> Where | None:
-        """Return the place of a node or line of this module; for None, the place of the exception."""
+        """Return the place of a node or line of this module, or the place of the exception if `node` is None."""
         if node is None or self.module is None:
             return self.crash.where
         return Where(self.module.file, node if isinstance(node, int) else getattr(node, "lineno", None))
@@ -111,7 +111,7 @@ def methods(of: ast.ClassDef) -> list[Function]:
 
 
 def attributes_set(of: ast.ClassDef) -> Iterator[tuple[str, int]]:
-    """Yield every attribute that is given a value on self, with its line; += needs one before it."""
+    """Yield every attribute of self that is assigned, with its line. Operators such as += do not count."""
     raised = {id(node.target) for node in ast.walk(of) if isinstance(node, ast.AugAssign)}
     for node in ast.walk(of):
         if id(node) in raised:
@@ -130,7 +130,7 @@ def _end(node: ast.AST) -> int:
 
 
 def _small(node: ast.AST) -> bool:
-    """Return whether the node is part of one statement. A function or block is around a line, not on it."""
+    """Return whether the node is part of a single statement, and not a function or block that surrounds the line."""
     return not isinstance(
         node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef | ast.If | ast.For | ast.While | ast.Try | ast.With
     )

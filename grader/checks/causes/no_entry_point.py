@@ -1,4 +1,4 @@
-"""Why the executable of the exercise does not exist: what setup.py has instead."""
+"""Why the executable of the exercise does not exist, and what setup.py has instead."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FORM = "An entry point has the form NAME = PACKAGE.MODULE:FUNCTION in the list c
 
 
 def line(evidence: Evidence) -> Where:
-    """Return the line of setup.py with the entry point of the exercise, else the line with the call of setup()."""
+    """Return the line of setup.py with the entry point of the exercise, or else the line that calls setup()."""
     setup = evidence.setup_py
     point = setup.entry_point(evidence.trial.executable) if setup is not None else None
     return Where("setup.py", point.line if point is not None else setup.setup_line if setup is not None else None)
@@ -121,7 +121,7 @@ def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
 
 
 def _looks_like_a_node(evidence: Evidence, targets: list[str | None]) -> str | None:
-    """Return a file that creates a publisher and that no entry point names, or None."""
+    """Return a file that creates a publisher but is not named by any entry point, or None."""
     taken = [module_file((target or "").partition(":")[0], evidence.submission.files) for target in targets]
     everything = read_code(evidence.submission.files, first=None)
     files = [call.module.file for call in everything.calls("create_publisher")]

@@ -62,7 +62,7 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
     (r"forgot a comma", "comma-missing", "Put a comma between two arguments and between two items of a list."),
     (r"instead of '='|cannot assign", "equals", "= gives a value to a name. == compares two values."),
 )
-"""(pattern of Python's message, diagnosis, cause). The first pattern that matches counts."""
+"""(pattern of Python's message, diagnosis, cause). The first pattern that matches is used."""
 NOT_CLOSED = re.compile(r"does not match opening parenthesis '(?P<bracket>.)' on line (?P<line>\d+)")
 ENTRY_POINT = re.compile(r"\s*\w+\s*=\s*[\w.]+:\w+\s*,?\s*")
 CONFLICT = r"^(<<<<<<<|=======|>>>>>>>)"
@@ -70,7 +70,7 @@ OTHERWISE = "The mistake is often at the end of the line before: a bracket, a co
 
 
 def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
-    """Return the cause of a SyntaxError, with the line to look at if it is another one than Python's."""
+    """Return the cause of a SyntaxError, with the line to look at if it differs from the one that Python names."""
     conflict = line_of(data, CONFLICT)
     if conflict is not None:
         text = (
@@ -91,7 +91,7 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
 
 
 def _fix(diagnosis: Diagnosis, file: str, unreadable: Unreadable, data: bytes) -> tuple[Edit, ...]:
-    """Return the edit that adds a colon or closes a bracket at the end of the line, if that may be what is missing."""
+    """Return the edit that adds a colon or closing bracket at the end of the line, if one of them may be missing."""
     missing = {"colon-missing": ":", "bracket-open": ")"}.get(diagnosis)
     line = _line(unreadable, data).rstrip()
     if missing is None or not line.strip():
@@ -106,7 +106,7 @@ def _line(unreadable: Unreadable, data: bytes) -> str:
 
 
 def _unquoted(unreadable: Unreadable, data: bytes) -> int | None:
-    """Return the line of Python's message if it is an entry point without quotation marks, else None."""
+    """Return the line number in Python's message if that line is an entry point without quotation marks, else None."""
     return unreadable.line if ENTRY_POINT.fullmatch(_line(unreadable, data)) else None
 
 

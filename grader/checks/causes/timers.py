@@ -1,4 +1,4 @@
-"""Why a timer never calls its callback, if the source code shows it."""
+"""Why a timer never calls its callback, if the source code shows the reason."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Commands that were lost because no subscription was connected yet: only the start of the trajectory is missing."""
+"""Commands that were lost because no subscription was connected yet, so the start of the trajectory is missing."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ WAITS_FOR_SUBSCRIBER = ("get_subscription_count", "count_subscribers")
 
 
 def too_soon(finding: Finding, evidence: Evidence) -> Finding:
-    """Return the finding about a trajectory with a short beginning, with the cause `too-soon` if that explains it.
+    """Return the finding about a trajectory whose beginning is too short, with the cause `too-soon` if that applies.
 
-    In simulated time the clock starts when publisher and subscription are connected, so nothing is lost. Nothing is
+    In simulated time, the clock starts when publisher and subscription are connected, so nothing is lost. Nothing is
     lost either if the node checks its number of subscriptions.
     """
     if evidence.recording.clock != "wall" or any(evidence.code.calls(name) for name in WAITS_FOR_SUBSCRIBER):

@@ -36,9 +36,9 @@ PLAIN = {
     "dict": "a dictionary",
     "set": "a set",
 }
-"""Python's own types -> what a beginner calls such a value."""
+"""Built-in type -> what a beginner calls such a value."""
 MOST_LETTERS = 2
-"""A typing error makes a name longer or shorter by no more than this."""
+"""The largest number of letters by which a typing error makes a name longer or shorter."""
 MODULES_READ = {"math": math, "time": time, "random": random}
 
 
@@ -113,7 +113,7 @@ def _is_message(value: ast.expr) -> bool:
 
 
 def _of_none(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause if a value is None: no message has set it yet, or rclpy.spin was called with None."""
+    """Return the cause if a value is None, for example because no message has arrived yet."""
     holders = [dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name]
     for holder in filter(None, holders):
         values = [node for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)]
@@ -178,7 +178,7 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
 
 
 def _members(scene: CrashScene, own: ast.ClassDef) -> set[str]:
-    """Return the methods and attributes of a class and of those of its base classes that the node's files have."""
+    """Return the methods and attributes of a class and of its base classes that are defined in the node's files."""
     nodes = [node for module in scene.evidence.code.modules for node in module.nodes]
     known = {node.name: node for node in nodes if isinstance(node, ast.ClassDef)}
     family, waiting = [own], [own]

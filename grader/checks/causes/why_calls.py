@@ -140,7 +140,7 @@ def _too_few(scene: CrashScene, function: str, names: str) -> Cause:
 
 
 def _init_misspelt(scene: CrashScene) -> Cause | None:
-    """Return the cause if a class has a method that looks like __init__ but is not called so, else None."""
+    """Return the cause if a class has a method with a misspelt name like __init__, else None."""
     for own in scene.classes:
         names = {each.name: each for each in methods(own)}
         found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]
@@ -207,7 +207,7 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
 
 
 def why_refused(scene: CrashScene) -> Cause | None:
-    """Return the cause of an error that rclpy raises about names, types, periods, callbacks or a second init."""
+    """Return the cause of an error that rclpy raises about a type, a period, a callback or a second init."""
     text = scene.crash.message
     if "must only be called once" in text:
         lines = [

@@ -45,7 +45,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
 
 
 def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
-    """Return the cause of a crash. If the source code does not show it, explain only the exception."""
+    """Return the cause of a crash. If the source code does not show the cause, explain only the exception."""
     explain = EXPLANATIONS.get(crash.error)
     cause = explain(CrashScene(evidence, crash)) if explain is not None else None
     return cause or Cause("crash", crash.meaning)

@@ -1,4 +1,4 @@
-"""Why a program ended by itself or ran without a node, according to its source code."""
+"""Why a program exited by itself or ran without a node, according to its source code."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SPINS = ("spin", "spin_once", "spin_until_future_complete")
 
 
 def why_ended(evidence: Evidence) -> Cause:
-    """Return the cause of a program that ended before Ctrl-C without an exception."""
+    """Return why a program exited before Ctrl-C without an exception."""
     code = evidence.code
     bare = named_only(evidence, "rclpy.init", "rclpy.spin", "main")
     if bare is not None:
@@ -33,7 +33,7 @@ def why_ended(evidence: Evidence) -> Cause:
 
 
 def why_no_node(evidence: Evidence) -> Cause:
-    """Return the cause of a program that runs without creating a node."""
+    """Return why a program runs without creating a node."""
     code = evidence.code
     bare = named_only(evidence, "rclpy.init", "main")
     if bare is not None:

@@ -1,4 +1,4 @@
-"""Why a message field refused a value: the assertions in the message classes of ROS 2."""
+"""Why a message field rejected a value, according to the assertion in the ROS 2 message class."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ READS = ("input", "get", "str", "format", "getenv")
 
 
 def why_field(scene: CrashScene) -> Cause | None:
-    """Return the cause of a wrong value: an int, a string or a NumPy number for a float, or a number for a message."""
+    """Return the cause of a wrong value, such as an int, a string or a NumPy number in a float field."""
     match = FIELD.search(scene.crash.message)
     if match is None:
         if "Invalid arguments passed to constructor" in scene.crash.message:
@@ -86,6 +86,6 @@ def _assigned(scene: CrashScene, field: str) -> ast.expr | None:
 
 
 def _resolved(scene: CrashScene, value: ast.expr) -> ast.expr:
-    """Return the expression, or the expression that its name stands for. The scene must have a module."""
+    """Return the expression, or the value assigned to it if it is a name. The scene must have a module."""
     assert scene.module is not None
     return scene.module.names.get(dotted(value) or "") or value

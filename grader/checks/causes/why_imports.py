@@ -18,13 +18,13 @@ NOT_HERE = {
     "_tkinter": "tkinter is Python's own module for windows.",
     "example_interfaces": "example_interfaces is a package of ROS 2.",
 }
-"""Modules that a right program may import, and that are not where the grader runs it."""
+"""Modules that a correct program may import but that are not available where the grader runs it."""
 NO_MODULE = re.compile(r"No module named '(?P<name>[\w.]+)'")
 NO_NAME = re.compile(r"cannot import name '(?P<name>\w+)' from '(?P<module>[\w.]+)'")
 
 
 def why_no_import(scene: CrashScene) -> Cause | None:
-    """Return the cause of a missing module, or of a name that the module does not have."""
+    """Return the cause of an error about a missing module or a missing name in a module."""
     text = scene.crash.message
     module, name = NO_MODULE.search(text), NO_NAME.search(text)
     if module is not None:

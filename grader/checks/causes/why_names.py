@@ -29,12 +29,12 @@ MEMBERS = {
     "time": frozenset({"sleep", "perf_counter", "monotonic"}),
     "random": frozenset(name for name in dir(random) if name.islower() and not name.startswith("_")),
 }
-"""Module -> what learners use of it, and forget to say that it belongs there."""
+"""Module -> its names that learners use and often forget to prefix with the module."""
 CONSTANTS = {"true": "True", "false": "False", "none": "None", "null": "None", "TRUE": "True", "FALSE": "False"}
 
 
 def why_no_name(scene: CrashScene) -> Cause | None:
-    """Return the cause of a NameError: self or an import is missing, or the name is misspelt or local elsewhere."""
+    """Return the cause of a NameError, such as a missing self or import, a misspelling, or a local name elsewhere."""
     match = NO_NAME.search(scene.crash.message)
     if match is None:
         return None
@@ -88,7 +88,7 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _import(scene: CrashScene, line: str) -> tuple[Edit, ...]:
-    """Return the edit that puts an import before the first one of the file."""
+    """Return the edit that inserts an import before the first import of the file."""
     places = [node.lineno for node in scene.nodes if isinstance(node, ast.Import | ast.ImportFrom)]
     where = scene.crash.where
     return (Edit(where.file, min(places), "", line),) if where is not None and places else ()
@@ -107,7 +107,7 @@ def _bound_elsewhere(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _stores(scene: CrashScene, name: str) -> Iterator[tuple[int, Function | None]]:
-    """Yield each line that gives the name a value or a meaning, with the function that it is local to."""
+    """Yield each line that assigns or defines the name, with the function that the name is local to."""
     for node in scene.nodes:
         stored = isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
         defined = isinstance(node, Function | ast.ClassDef) and node.name == name

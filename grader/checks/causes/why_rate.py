@@ -1,4 +1,4 @@
-"""Why messages or log lines arrive far too often: loops, callbacks of subscriptions, timers created again and again."""
+"""Why messages or log lines arrive too often: loops, callbacks of subscriptions, timers that are created repeatedly."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from grader.submission.code import Call, Module
 
 OFTEN = 0.5
-"""A loop without a pause is at least this much faster than it should be, as a share of the period."""
+"""In a loop without a pause, the mean interval is less than this fraction of the expected period."""
 FRAME_S = 0.016
-"""turtlesim publishes the pose once per frame."""
+"""The duration of a frame of turtlesim (s). turtlesim publishes the pose once per frame."""
 
 
 def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
@@ -40,7 +40,7 @@ def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> 
 
 
 def _reaches(module: Module, function: ast.FunctionDef, call: str) -> bool:
-    """Return whether a function calls `call` itself or in another method of its object."""
+    """Return whether a method calls `call`, either directly or through another method of the same object."""
     if _calls(function, call):
         return True
     names = [dotted(node.func) or "" for node in ast.walk(function) if isinstance(node, ast.Call)]
@@ -83,7 +83,7 @@ def _length(sleep: Call) -> float | None:
 
 
 def _made_in_callback(evidence: Evidence, maker: str) -> tuple[str, Where] | None:
-    """Return a callback that calls the maker, and where it does, or None."""
+    """Return the name of a callback that calls `maker` and the place of the call, or None."""
     for module in evidence.code.modules:
         called = {
             name for each, name in callbacks_of(evidence, "create_timer", "create_subscription") if each is module
@@ -97,7 +97,7 @@ def _made_in_callback(evidence: Evidence, maker: str) -> tuple[str, Where] | Non
 
 
 def callbacks_of(evidence: Evidence, *makers: str) -> Iterator[tuple[Module, str]]:
-    """Yield the names of the functions that these makers get as callbacks, with their modules."""
+    """Yield the names of the functions that are passed to these makers as callbacks, with their modules."""
     for maker in makers or ("create_subscription",):
         for call in evidence.code.calls(maker):
             name = dotted(call.argument(1 if maker == "create_timer" else 2, "callback") or ast.Constant(0))
@@ -111,5 +111,5 @@ def _calls(node: ast.AST, *names: str) -> bool:
 
 
 def _name(call: ast.Call) -> str:
-    """Return the last name of what is called."""
+    """Return the name of the called function, without module or object."""
     return getattr(call.func, "attr", getattr(call.func, "id", ""))

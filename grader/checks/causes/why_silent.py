@@ -1,4 +1,4 @@
-"""Why a running node sends nothing: its timers, methods or messages are blocked."""
+"""Why a running node sends nothing: something blocks its timers, methods or messages."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from grader.submission.code import Module
 
 INCOMPATIBLE = "incompatible QoS"
-"""rclpy logs this about a publisher and a subscription that cannot communicate."""
+"""rclpy logs this if a publisher and a subscription cannot communicate."""
 WAKES = ("create_timer", "create_subscription", "create_service", "create_client", "ActionServer", "ActionClient")
 """Functions that give a node something to do in spin_once."""
 ALWAYS = ("True", "1", "rclpy.ok()")
@@ -62,7 +62,7 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
     if any(evidence.code.calls(name) for name in WAKES):
         return None
     for call in evidence.code.calls("spin_once"):
-        # rclpy.spin_once takes node and executor before the timeout; the method of an executor takes only the timeout.
+        # In rclpy.spin_once, the timeout comes after node and executor. In Executor.spin_once, it comes first.
         of_rclpy = dotted(call.node.func) in ("rclpy.spin_once", "spin_once")
         limit = call.argument(2 if of_rclpy else 0, "timeout_sec")
         if limit is None or (isinstance(limit, ast.Constant) and limit.value is None):
@@ -72,7 +72,7 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
 
 
 def _stuck(evidence: Evidence) -> Cause | None:
-    """Return the cause if something never returns: a loop or wait in __init__, or a wait in a callback; else None."""
+    """Return the cause if a loop or wait in __init__, or a wait in a callback, never returns. Otherwise return None."""
     callbacks = {name for _, name in callbacks_of(evidence, "create_timer", "create_subscription")}
     for module, method in _methods(evidence):
         for node in ast.walk(method):
@@ -110,7 +110,7 @@ def _waits_inside(node: ast.AST) -> bool:
 
 
 def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
-    """Return the cause if the method that sends is never called and is not a callback, else None."""
+    """Return the cause if a method that sends something is never called and is not a callback, else None."""
     for module, method in _methods(evidence):
         called = [
             node for node in ast.walk(method) if isinstance(node, ast.Call) and getattr(node.func, "attr", "") in sends
