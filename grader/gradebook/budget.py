@@ -1,8 +1,8 @@
-"""Limit the messages of a kernel that reach nbgrader: they must be valid, and there must not be too many.
+"""Limit the messages from a kernel to nbgrader: they must be valid, and there must not be too many.
 
-nbgrader keeps every message in memory: as text, as Python objects, and in the notebook that it writes. So the budget
-limits the number of messages, their bytes, and the number of values in their JSON. `[[],[],[]]` is 30 times as large in
-memory as in bytes.
+nbgrader keeps every message in memory: as text, as Python objects, and in the notebook that it writes. Therefore the
+budget limits the number of messages, their size in bytes, and the number of values in their JSON. For example,
+`[[],[],[]]` takes 30 times as much space in memory as it does as text.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 MIB = 1024 * 1024
 DELIMITER = b"<IDS|MSG>"
-"""The end of the identities in a message, https://jupyter-client.readthedocs.io/en/stable/messaging.html."""
+"""The end of the identities in a message. See https://jupyter-client.readthedocs.io/en/stable/messaging.html."""
 MOST_IDENTITIES = 4
 MOST_DIGITS = 400
 _HEADER = {"msg_id": str, "msg_type": str}
@@ -29,22 +29,22 @@ _HEADER = {"msg_id": str, "msg_type": str}
 
 @dataclass(frozen=True)
 class Budget:
-    """What the kernel of one notebook may send."""
+    """The limits on what the kernel of one notebook may send."""
 
     message: int = 4 * MIB
-    """The bytes of one message."""
+    """The largest size of one message in bytes."""
     total: int = 16 * MIB
-    """The bytes of all messages together."""
+    """The largest total size of all messages in bytes."""
     messages: int = 10_000
     values: int = 1_000_000
-    """The values in the JSON of all messages: objects, lists, strings and numbers."""
+    """The largest number of values (objects, lists, strings and numbers) in the JSON of all messages."""
     depth: int = 50
     """How deeply objects and lists may be nested."""
 
 
 @dataclass
 class Account:
-    """Count what a kernel has sent so far. `key` is the key of its signatures."""
+    """Count what a kernel has sent so far. `key` is the key with which it signs messages."""
 
     key: bytes
     budget: Budget = Budget()
@@ -75,7 +75,7 @@ class Account:
             _refuse()
 
     def _read(self, part: bytes) -> dict[str, Any]:
-        """Return a part of a message, which must be a JSON object."""
+        """Parse a part of a message, which must be a JSON object, and return it."""
         try:
             read = json.loads(
                 part.decode("utf-8", "replace"), parse_int=_integer, parse_float=_number, parse_constant=_refuse
@@ -109,7 +109,7 @@ def _refuse(what: str = "something that is not a message of a kernel") -> NoRetu
 
 
 def _writable(text: str) -> bool:
-    """Return whether the text can be encoded: half of a surrogate pair cannot."""
+    """Return whether the text can be encoded. One half of a surrogate pair, for example, cannot."""
     try:
         text.encode()
     except UnicodeEncodeError:

@@ -37,7 +37,7 @@ def make_class(folder: Path, roster: Path | None) -> int:
         raise UsageError(message)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        # If colcon were called in this folder, it would run the setup.py of every submission outside of the sandbox.
+        # Without this file, colcon in this folder would run the setup.py of every submission outside the sandbox.
         (folder / IGNORE_MARKER).touch()
         shutil.copytree(root / "course", folder / "course", ignore=_LEFTOVERS)
         for name in catalogue():
@@ -58,10 +58,10 @@ def make_class(folder: Path, roster: Path | None) -> int:
 
 
 def read_students(file: Path) -> list[dict[str, str]]:
-    """Return the students of a roster, each with COLUMNS. Raises UsageError if the file is not a roster."""
+    """Return the students of a roster, each as a dict of COLUMNS. Raises UsageError if the file is not a roster."""
     rows = read_roster(file, COLUMNS[:1], COLUMNS[1:])
     for line, student in rows.items():
-        # nbgrader makes folders of ids, and uses + in names in the exchange.
+        # nbgrader uses ids as folder names, and puts + into names in the exchange.
         if "/" in student["id"] or student["id"].startswith(".") or "+" in student["id"]:
             why = 'nbgrader uses it as a folder name, so it must not contain "/" or "+" or begin with "."'
             message = f'{file}, line {line}: the id is "{shorten(student["id"])}"; {why}.'

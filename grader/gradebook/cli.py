@@ -133,7 +133,7 @@ def install(
     from grader.ros.installation import find_ros
 
     with progress() as tell:
-        # This is done now, so that Jupyter need not wait for it.
+        # Build the interfaces now, so that Jupyter need not wait for them.
         underlay.ensure(find_ros(), tell)
     typer.echo(f'The kernel "{DISPLAY_NAME}": {install_kernel(prefix)}')
     if prefix is None:

@@ -1,4 +1,4 @@
-"""The settings in course/nbgrader_config.py: nbgrader uses the course's folders, and additional steps of ours."""
+"""The settings for course/nbgrader_config.py: nbgrader uses the course's folders and some steps of the grader."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from grader.gradebook.folders import CLASS
 
 COURSE_ID = "ros2-topics"
 BUSY_S = 60
-"""How long nbgrader waits for a locked database."""
+"""How long nbgrader waits for a locked database (s)."""
 
 
 def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Config, whose sections appear when named
-    """Set nbgrader up for the course in `root`, the folder with solutions/ and exercises/."""
+    """Configure nbgrader for the course in `root`, the folder that contains solutions/ and exercises/."""
     from nbgrader import preprocessors as steps
 
     from grader.gradebook.confined import CHECK_S, ConfinedExecute
@@ -39,7 +39,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     (root / CLASS).mkdir(exist_ok=True)
     folders.db_url = f"sqlite:///{root / CLASS / 'gradebook.db'}?timeout={BUSY_S}"
 
-    # exercises/ already exists in git. nbgrader makes it again.
+    # exercises/ already exists in git. Let nbgrader create it again.
     config.GenerateAssignment.force = True
     config.GenerateAssignment.preprocessors = [
         steps.LockCells,
@@ -53,8 +53,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
         steps.CheckCellMetadata,
         ReleaseFiles,
     ]
-    # `nbgrader validate` runs our notebooks with nbgrader's own limit of 30 s per cell. This is too short for four
-    # trials.
+    # By default, `nbgrader validate` limits each cell to 30 s, which is too short for four trials.
     config.Execute.timeout = CHECK_S
     config.Autograde.sanitize_preprocessors = [
         steps.ClearOutput,
@@ -73,7 +72,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
         steps.AssignLatePenalties,
         steps.CheckCellMetadata,
     ]
-    # What a student changed is graded as it is, and solutions do not fill in missing parts.
+    # Grade what students changed as it is, and do not replace missing files with those of the solution.
     config.Autograde.exclude_overwriting = {
         step.name: [path for path in _files(step) if not path.endswith(".ipynb")]
         for step in sorted((root / "solutions").glob("*"))
@@ -89,7 +88,7 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
 
 
 def _see_own_commands() -> None:
-    """Put the commands of this Python on PATH, because nbgrader runs one of them (alembic) to create its database."""
+    """Add this Python's scripts to PATH, because nbgrader runs one of them (alembic) to create its database."""
     path, ours = os.environ.get("PATH", os.defpath), str(Path(sys.prefix, "bin"))
     if ours not in path.split(os.pathsep):
         os.environ["PATH"] = f"{path}{os.pathsep}{ours}"

@@ -1,7 +1,8 @@
-"""Autograde's kernels: each runs in a cell (grader.sandbox) and is reached through a relay with a budget (relay.py).
+"""Autograde's kernels. Each one runs in a cell (grader.sandbox), behind a relay with a budget (relay.py).
 
 The cells of a notebook are student code. A sandbox cell has only its own loopback network and its own disks, so the
-kernel is reached through pipes. Interrupts are sent as messages, because a signal would reach the relay.
+relay communicates with the kernel through pipes. Interrupts are sent as messages, because a signal would go to the
+relay.
 """
 
 from __future__ import annotations
@@ -38,9 +39,9 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 CHECK_S = 300
-"""The time limit for an instructor's cell (s). It builds and runs a package, perhaps in wall time."""
+"""The time limit for an instructor's cell (s). Such a cell builds and runs a package, perhaps in wall time."""
 SHOWN = ("stream", "display_data", "execute_result", "error", "update_display_data")
-"""The types of messages that become outputs of a cell."""
+"""The types of messages that become outputs of a notebook cell."""
 
 
 class ConfinedKernelManager(AsyncKernelManager):
@@ -49,18 +50,18 @@ class ConfinedKernelManager(AsyncKernelManager):
     submission = Unicode("")
     trusted = Bool(default_value=False)
     why = ""
-    """The reason why the kernel was ended, or an empty string if it ended by itself."""
+    """The reason why the kernel was stopped, or an empty string if it exited by itself."""
     _folder = Instance(tempfile.TemporaryDirectory, allow_none=True)
     _life = -1
 
     @property
     def kernel_spec(self) -> KernelSpec:
-        """The course's own kernel, whatever the notebook names."""
+        """The course's own kernel, whatever kernel the notebook names."""
         argv = interpreter("-m", "grader.gradebook.relay", "{relay_folder}").argv
         return KernelSpec(argv=argv, display_name="", language="python", interrupt_mode="message")
 
     async def _async_pre_start_kernel(self, **kw: Any) -> Any:  # noqa: ANN401 - as the base class
-        # Only the caller can enter this folder. The cell does not see it.
+        # Only the current user can access this folder. It is not visible in the cell.
         self._folder = tempfile.TemporaryDirectory(prefix="kernel-")
         folder = Path(self._folder.name)
         self.transport = "ipc"
@@ -74,7 +75,7 @@ class ConfinedKernelManager(AsyncKernelManager):
         _order(Path(self.submission), folder, self.connection_file, trusted=self.trusted).write(folder)
         argv = [word.replace("{relay_folder}", str(folder)) for word in kernel_cmd]
         kw.pop("cwd", None)
-        # The relay ends when this pipe is closed, however this process ends.
+        # The relay exits when this pipe is closed, however this process exits.
         ends, self._life = os.pipe()
         try:
             kw |= {"env": interpreter("-c", "").env, "cwd": "/", "stdin": ends, "stdout": subprocess.DEVNULL}
@@ -83,7 +84,7 @@ class ConfinedKernelManager(AsyncKernelManager):
             os.close(ends)
 
     def read_why(self) -> str:
-        """Return why the relay has ended the kernel, if it has."""
+        """Return the reason why the relay stopped the kernel, or an empty string if it did not."""
         if self._folder is not None and not self.why:
             with suppress(OSError):
                 self.why = (Path(self._folder.name) / WHY_FILE).read_text("utf-8")
@@ -102,7 +103,7 @@ class ConfinedKernelManager(AsyncKernelManager):
 
 
 class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
-    """Run a submitted notebook in a cell, to its end even if the kernel dies. Cells that did not run get an error."""
+    """Run a submitted notebook in a cell. If the kernel dies, the remaining cells of the notebook get an error."""
 
     trust_submissions = Bool(
         default_value=False,
@@ -128,7 +129,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         except MachineError:
             raise
         except Exception as error:
-            # The kernel did not start or did not stop, or nbclient could not handle what it sent.
+            # The kernel did not start or stop, or nbclient could not process what it sent.
             self._ended = self._ended or self._reason(error)
             self.log.warning("The kernel ended: %s", self._ended)
             for cell in nb.cells:
@@ -140,7 +141,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         return nb, resources
 
     def create_kernel_manager(self) -> Any:  # noqa: ANN401 - as the base class
-        """Create the manager of this submission's kernel, whatever kernel the notebook's metadata name."""
+        """Create the manager of this submission's kernel, whatever kernel the notebook's metadata names."""
         self.km = ConfinedKernelManager(submission=self._submission, trusted=self.trust_submissions, config=self.config)
         self._manager = self.km
         return self.km
@@ -160,7 +161,7 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         return cell, resources
 
     def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> NotebookNode | None:
-        """Handle a message of the kernel, unless all of them together are too long."""
+        """Process a message from the kernel, unless the total size of its output is too large."""
         if msg["msg_type"] in SHOWN:
             self._printed += len(str(msg["content"]))
             if self._printed > MOST_OUTPUT:
@@ -175,14 +176,14 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
             return None
 
     def on_comm_open_jupyter_widget(self, msg: dict[str, Any]) -> None:
-        """Do not act as the front end of a widget, because the kernel could make the answers arbitrarily long."""
+        """Do not act as the front end of a widget, because the kernel could make the replies arbitrarily long."""
 
     def _get_timeout(self, cell: NotebookNode | None) -> int | None:
         locked = cell is not None and cell.get("metadata", {}).get("nbgrader", {}).get("locked")
         return CHECK_S if locked or cell is None else self.cell_s
 
     def _reason(self, error: Exception) -> str:
-        """Return why no more cells can be run."""
+        """Return the reason why no more cells can be run."""
         why: str = self._manager.read_why()
         if why or isinstance(error, DeadKernelError):
             return why or "The kernel died."
@@ -201,14 +202,14 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
 
 
 def _copy(folder: Path, copy: Path) -> None:
-    """Copy the files of the submission that are safe to read. Links that lead out of it are left out."""
+    """Copy the files of the submission that are safe to read. Links that point outside the folder are left out."""
     found = read(tree.read_folder, folder)
     files = {path: data for path, data in found.files.items() if not path.endswith(".ipynb")}
     write_copy(Submission("", folder, files, (), "", frozenset(found.executable & files.keys())), copy)
 
 
 def _order(submission: Path, folder: Path, connection_file: str, *, trusted: bool) -> Order:
-    """Return what the relay must start; `folder` is the relay's own folder."""
+    """Return the order that says what the relay must start. `folder` is the relay's own folder."""
     confined = bubblewrap.require(trusted=trusted)
     copy, home, workspace = folder / "submission", HOME, WORKSPACE
     _copy(submission, copy)
@@ -227,7 +228,7 @@ def _environment(copy: Path, home: Path) -> tuple[dict[str, str], View]:
     package = Path(__file__).resolve().parent.parent
     exercises = course.parent / "exercises"
     shown = ros_view(ros, *(path for path in (package, course, exercises, copy) if path.exists()))
-    # The grader's tests contain solutions too, and so does the folder next to the course if it is installed.
+    # Solutions are also in the grader's tests, and next to the course if it is installed.
     hidden = [path for path in shown.hidden if path.name == "solutions"]
     hidden += [path for path in (package / "tests",) if path.is_dir()]
     view = View(shown.read_only, tuple(hidden))

@@ -1,9 +1,9 @@
 """The scores that count in nbgrader's gradebook: those that the grader has confirmed, and manual grades.
 
 The output of an autograded cell comes from a kernel that runs student code, so its score is provisional. For such a
-cell, `autograde` writes 0 points and "needs manual grade" (unconfirmed.py). `grader gradebook sync` then replaces them
-by the grader's own score. A score without a result of the grader is withheld: it becomes 0 points, and a person has to
-look at it. Manual grades and extra credit stay unchanged. Other assignments than the exercises of this course do, too.
+cell, `autograde` writes 0 points and "needs manual grade" (unconfirmed.py). `grader gradebook sync` then replaces these
+with the grader's own score. A score without a result from the grader is withheld: it becomes 0 points, and a person has
+to review it. Manual grades and extra credit stay unchanged. So do assignments that are not exercises of this course.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Name = tuple[str, str]
 
 @dataclass(frozen=True)
 class Unconfirmed:
-    """Cells of one submission that count 0 points until a person grades them, and the reason."""
+    """Cells of one submission that are worth 0 points until a person grades them, and the reason."""
 
     student: str
     step: str
@@ -54,7 +54,7 @@ def withhold_unconfirmed(
     steps: Collection[str] = (),
     unread: Collection[Name] = (),
 ) -> list[Unconfirmed]:
-    """Withhold every score that is not confirmed. Return the cells that count 0 points now, as `unconfirmed` does."""
+    """Withhold every score that is not confirmed. Return the cells that are now worth 0 points, as in `unconfirmed`."""
     for _, _, grade, _ in _doubts(gradebook, results, steps, unread):
         if grade.auto_score != 0.0 or grade.manual_score is None:
             withhold(grade)
@@ -68,9 +68,9 @@ def unconfirmed(
     steps: Collection[str] = (),
     unread: Collection[Name] = (),
 ) -> list[Unconfirmed]:
-    """Return the cells that no result of the grader confirms, by exercise and student, without manual grades.
+    """Return the cells that no result of the grader confirms, by exercise and student, except manual grades.
 
-    `steps` limits the exercises; all are used if it is empty. `unread` are submissions that could not be read this
+    `steps` selects the exercises; if it is empty, all are used. `unread` are submissions that could not be read this
     time, so their stored results do not count.
     """
     names: dict[tuple[str, str, str], list[str]] = {}
@@ -96,7 +96,7 @@ def _doubts(
 
 
 def submissions_of(gradebook: Any, steps: Collection[str]) -> Iterator[tuple[str, str, Any]]:  # noqa: ANN401
-    """Yield (student, exercise, nbgrader's submission) for all submissions to our exercises in the gradebook."""
+    """Yield (student, exercise, nbgrader's submission) for all submissions of the course's exercises."""
     wanted = [step for step in catalogue() if not steps or step in steps]
     assignments = {assignment.name: assignment for assignment in gradebook.assignments}
     for step in wanted:
@@ -108,7 +108,7 @@ def submissions_of(gradebook: Any, steps: Collection[str]) -> Iterator[tuple[str
 def provisional_grades(submission: Any) -> list[Any]:  # noqa: ANN401 - nbgrader's SubmittedAssignment
     """Return the grades that autograde reads from a kernel's output: those of code cells that are not solutions.
 
-    Those of the exercise's own notebook come first.
+    The grades of the exercise's own notebook come first.
     """
     step = submission.assignment.name
     grades = []
@@ -119,7 +119,7 @@ def provisional_grades(submission: Any) -> list[Any]:  # noqa: ANN401 - nbgrader
 
 
 def _doubt(grade: Any, report: Report | None) -> str:  # noqa: ANN401 - nbgrader's Grade
-    """Return why a score is not confirmed, or an empty string."""
+    """Return the reason why a score is not confirmed, or an empty string if it is."""
     if report is None:
         return NOT_SYNCED
     outcome = outcome_of(grade, report)

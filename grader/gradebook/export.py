@@ -1,4 +1,4 @@
-"""`nbgrader export`: only confirmed scores leave the gradebook, and the missing ones are reported."""
+"""`nbgrader export`: only confirmed scores are exported, and the others are reported."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from grader.gradebook.folders import CLASS, RESULTS
 
 
 class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]
-    """Export nbgrader's table. Every provisional score counts 0 points in it."""
+    """Export nbgrader's table, with 0 points for every provisional score."""
 
     def export(self, gradebook: Any) -> None:  # noqa: ANN401 - as the base class
         """Withhold scores that are not confirmed, report them, and write the table."""

@@ -1,4 +1,4 @@
-"""Our steps of `nbgrader generate_feedback`: they add the grader's reasons and remove hidden tests."""
+"""Additional steps of `nbgrader generate_feedback` that add the grader's reasons and remove hidden tests."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class HideHiddenTests(ClearHiddenTests):  # type: ignore[misc, unused-ignore]
     """Remove hidden tests from the feedback: their lines, and all output of a kernel that has seen them.
 
     A kernel runs student code. This code can store the source of a hidden test and print it below any cell: below a
-    later one, below an instructor's cell by a hook, below an earlier one by updating its display, or in a widget. So if
-    a notebook has hidden tests, no output of its kernel is shown.
+    later cell, below an instructor's cell with a hook, below an earlier cell by updating its display, or in a widget.
+    So if a notebook has hidden tests, no output of its kernel is shown.
     """
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
@@ -66,10 +66,10 @@ def _points(cell: NotebookNode) -> str:
 
 
 class GraderReasons(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
-    """Replace the kernel's output below the cells of checks by the grader's own reasons, after sync."""
+    """After sync, replace the kernel's output below the cells of checks with the grader's own reasons."""
 
     def preprocess(self, nb: NotebookNode, resources: Resources) -> tuple[NotebookNode, Resources]:
-        """Replace these outputs if the submission was synced."""
+        """Replace the outputs if the submission was synced."""
         about = resources["nbgrader"]
         folder = Path(self.parent.parent.coursedir.root) / CLASS / RESULTS
         result = Results(folder).load(about["student"], about["assignment"])

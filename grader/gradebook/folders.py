@@ -1,4 +1,4 @@
-"""The folders of a class, as the nbgrader_config.py of a course sets them."""
+"""The folders of a class, as configured in the nbgrader_config.py of a course."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ CONFIG = "nbgrader_config.py"
 CLASS = "class"
 """The folder of a class, which git ignores: submitted/, autograded/, feedback/, reports/ and gradebook.db."""
 RESULTS = "results"
-"""The folder of the grader's own results, below the folder of the class. See grader/classroom/results.py."""
+"""The folder of the grader's own results, inside the folder of the class. See grader/classroom/results.py."""
 HANDED_IN = "handed-in"
-"""The folder of submissions that were completed with files from their notebooks, below the folder of the class."""
+"""The folder of submissions completed with files from their notebooks, inside the folder of the class."""
 
 
 @dataclass(frozen=True)
 class ClassFolders:
-    """The folders of a class: nbgrader's course directory, and those of the grader next to it."""
+    """The folders of a class: nbgrader's course directory, and the grader's folders in the same place."""
 
     course: Any
     config: Any
@@ -46,11 +46,11 @@ class ClassFolders:
         return Path(self.course.root) / CLASS / HANDED_IN / student / step
 
     def autograded(self, student: str, step: str) -> Path:
-        """Return the path of the notebook that autograde ran. It may not exist."""
+        """Return the path of the notebook that autograde ran. The file may not exist."""
         return Path(self.course.format_path(self.course.autograded_directory, student, step)) / f"{step}.ipynb"
 
     def submissions(self, steps: Sequence[str]) -> list[tuple[str, str]]:
-        """Return (student, step) for everything that was collected. Raises UsageError for an unknown step."""
+        """Return (student, step) for every collected submission. Raises UsageError for an unknown step."""
         wanted = [find_exercise(step).id for step in steps] or list(catalogue())
         root = Path(self.course.root) / self.course.submitted_directory
         students = sorted(
@@ -67,7 +67,7 @@ def _is_folder(path: Path) -> bool:
 
 
 def remember(folder: Path) -> None:
-    """Store that this user made the class in `folder`. Raises MachineError if it cannot be stored."""
+    """Record that this user created the class in `folder`. Raises MachineError if this cannot be recorded."""
     file = _made()
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -79,7 +79,7 @@ def remember(folder: Path) -> None:
 
 
 def _is_known(course: Path) -> bool:
-    """Return whether the folder is the course of this grader, or was made by `grader class new`."""
+    """Return whether the folder is the course of this grader, or was created by `grader class new`."""
     try:
         made = _made().read_text("utf-8").splitlines()
     except (OSError, UnicodeDecodeError):
@@ -88,15 +88,15 @@ def _is_known(course: Path) -> bool:
 
 
 def _made() -> Path:
-    """Return the file with the classes that this user has made, one per line."""
+    """Return the file that lists the classes created by this user, one per line."""
     return xdg.state() / "classes"
 
 
 def open_class(folder: Path | None) -> ClassFolders:
     """Open the class whose nbgrader_config.py is in `folder` or its course/. None means the current folder.
 
-    nbgrader_config.py is a program and is run. The current folder may be a student's, so it is used only if it is a
-    class that this user made.
+    nbgrader_config.py is a program, and this function runs it. The current folder may be a student's, so it is used
+    only if it is a class that this user created.
 
     Raises:
         UsageError: there is no nbgrader_config.py, or this user did not make the class.

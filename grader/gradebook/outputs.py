@@ -1,4 +1,4 @@
-"""The outputs of an autograded notebook: they must be valid and not too long, and graded cells must give points."""
+"""Check the outputs of an autograded notebook: they must be valid and not too long; graded cells must return points."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 MOST_OUTPUT = 4_000_000
-"""Characters of all outputs together. A notebook that prints more is stopped."""
+"""The largest number of characters in all outputs together. A notebook that prints more is stopped."""
 TOO_MUCH = f"The notebook printed more than {MOST_OUTPUT // 1_000_000} million characters."
 
 
 def mark(cell: NotebookNode, why: str) -> None:
-    """Replace the output of a cell by the reason why it did not run or does not count."""
+    """Replace the output of a cell with the reason why it did not run or does not count."""
     cell.outputs = [new_output("error", ename="NotRun", evalue=why, traceback=[why])]  # type: ignore[no-untyped-call]
 
 
 def honest(cell: NotebookNode) -> None:
-    """Replace the result of a cell that should give its points by an error if it is not a valid number.
+    """If a cell should return its points but the result is not a valid number, replace the result with an error.
 
-    nbgrader gives full marks to a cell without output.
+    Without this, nbgrader would give full marks to a cell that has no output.
     """
     about = cell.get("metadata", {}).get("nbgrader", {})
     if not about.get("grade") or cell.cell_type != "code" or ".points(" not in cell.source:
@@ -40,14 +40,14 @@ def honest(cell: NotebookNode) -> None:
 
 
 def put_right(nb: NotebookNode) -> None:
-    """Make sure that the notebook can be written: every output of the kernel must be valid for nbformat."""
+    """Make sure that the notebook can be written: every output from the kernel must be valid for nbformat."""
     left = MOST_OUTPUT
     for cell in nb.cells:
         if cell.cell_type != "code":
             continue
         if not isinstance(cell.get("execution_count"), int | None):
             cell.execution_count = None
-        # One message may have changed many outputs, so only the outputs at the end show the total size.
+        # One message may change many outputs, so the total size is known only at the end.
         for number, output in enumerate(cell.outputs):
             left -= _length(output)
             if left < 0:

@@ -1,8 +1,8 @@
 """Complete a submitted package with the files that only its notebook contains.
 
 A student may have written a node in a cell and never run it, or may have handed in only the notebook. The text of the
-cell then counts if the file next to the notebook is missing or still the starting point. Nothing is run for this, and
-files that a kernel wrote under autograde do not count.
+cell then counts if the file next to the notebook is missing or is still the starting point. No cell is run for this,
+and files that a kernel wrote during autograde do not count.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:
-    """Return the folder to grade: `submitted`, or `together`, to which the completed package is written.
+    """Return the folder to grade: `submitted`, or `together` after writing the completed package to it.
 
     Raises:
         UnreadableError: the submission cannot be read.
@@ -54,7 +54,7 @@ def _together(exercise: Exercise, submitted: Path) -> Submission | None:
 
 
 def _worked_on(exercise: Exercise, notebook: bytes) -> list[Part]:
-    """Return the files that the notebook's cells write, without those that are still the starting point."""
+    """Return the files that the notebook's cells write, except those that are still the starting point."""
     try:
         cells = json.loads(notebook)["cells"]
         sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]

@@ -1,12 +1,11 @@
-"""Relay: run a kernel in its cell and pass its messages to nbgrader, within a budget.
+"""Run a kernel in a cell and pass its messages to nbgrader, within a budget.
 
     python -m grader.gradebook.relay FOLDER
 
-FOLDER contains `order.json` (what to start) and the connection file of nbgrader. The relay creates its sockets there,
-and
-only the caller has access to it. The cell does not see it: the messages of the kernel come through a pipe
-(grader.notebook.bridge). If a budget or a limit is exceeded, the relay ends the cell, writes the reason to `why`, and
-ends. It also ends when its standard input is closed, that is, with nbgrader.
+FOLDER contains `order.json` (what to start) and nbgrader's connection file. The relay creates its sockets there. Only
+the caller has access to this folder. It is not visible in the cell: messages from the kernel come through a pipe
+(grader.notebook.bridge). If a budget or a limit is exceeded, the relay stops the cell, writes the reason to `why`, and
+exits. It also exits when its standard input is closed, which happens when nbgrader exits.
 """
 
 from __future__ import annotations
@@ -38,16 +37,16 @@ if TYPE_CHECKING:
 
 ORDER_FILE, WHY_FILE = "order.json", "why"
 MOST_MEMORY = 1024 * MIB
-"""The address space of the relay (bytes)."""
+"""The limit on the address space of the relay (bytes)."""
 MOST_WAITING = MIB
-"""Bytes waiting for the kernel. If there are more, nothing is read from nbgrader until the kernel has read some."""
+"""The relay reads nothing more from nbgrader while at least this many bytes are waiting for the kernel."""
 LINGER_MS = 1000
 _IOPUB = CHANNELS.index("iopub")
 
 
 @dataclass(frozen=True)
 class Order:
-    """What to start: a bridge, which runs in a cell if `confined`."""
+    """What to start: a bridge, which runs in a cell if `confined` is True."""
 
     argv: Sequence[str]
     env: Mapping[str, str]
@@ -56,12 +55,12 @@ class Order:
     connection_file: str
 
     def write(self, folder: Path) -> None:
-        """Write the order into the relay's folder."""
+        """Write the order to the relay's folder."""
         (folder / ORDER_FILE).write_text(json.dumps(asdict(self), default=str), encoding="utf-8")
 
     @classmethod
     def read(cls, folder: Path) -> Order:
-        """Read an order that `write` has written."""
+        """Read an order that was written by `write`."""
         data = json.loads((folder / ORDER_FILE).read_text("utf-8"))
         view = View(**{name: tuple(map(Path, paths)) for name, paths in data.pop("view").items()})
         return cls(**data, view=view)
@@ -71,7 +70,7 @@ class Relay:
     """The connection between nbgrader's sockets and the pipes of a cell."""
 
     def __init__(self, info: Mapping[str, Any], cell: subprocess.Popen[bytes]) -> None:
-        """Open the sockets; `info` is the content of the connection file."""
+        """Open the sockets. `info` is the content of the connection file."""
         assert cell.stdin is not None
         assert cell.stdout is not None
         self._in, self._out = cell.stdin.fileno(), cell.stdout.fileno()
@@ -87,14 +86,14 @@ class Relay:
 
     def _bind(self, name: str, address: str) -> zmq.Socket[bytes]:
         socket = self._context.socket(zmq.XPUB if name == "iopub" else zmq.ROUTER)
-        # Messages to nbgrader have a budget. Messages from nbgrader are read only as fast as the kernel reads them.
+        # A budget limits messages to nbgrader. Messages from nbgrader are read only as fast as the kernel reads them.
         socket.sndhwm, socket.rcvhwm = 0, 1
         socket.linger = LINGER_MS
         socket.bind(address)
         return socket
 
     def serve(self, over: Sequence[str]) -> None:
-        """Pass messages on until the cell or nbgrader ends, or `over` is not empty.
+        """Pass messages on until the cell or nbgrader exits, or `over` is no longer empty.
 
         Raises:
             FrameError: the kernel has exceeded its budget, or has sent something that is not a message.
@@ -116,11 +115,11 @@ class Relay:
             self._take_from_nbgrader(ready)
 
     def close(self) -> None:
-        """Close nbgrader's sockets after all messages have been delivered."""
+        """Deliver the remaining messages, then close nbgrader's sockets."""
         self._context.destroy()
 
     def _hear(self) -> bool:
-        """Read what the kernel sends. Return False at its end."""
+        """Read what the kernel sends. Return False at the end of the stream."""
         data = os.read(self._out, CHUNK)
         for channel, parts in self._unpacker.feed(data):
             self._account.take(parts)
@@ -150,11 +149,11 @@ class Relay:
             except BlockingIOError:
                 pass
             except BrokenPipeError:
-                self._to_kernel.clear()  # it has ended, and `_hear` reports this
+                self._to_kernel.clear()  # the kernel has exited, and `_hear` reports this
 
 
 def run(order: Order, info: Mapping[str, Any]) -> str:
-    """Run the cell to its end. Return why it was ended, or an empty string."""
+    """Run the cell until it exits. Return the reason why it was stopped, or an empty string."""
     limits = Limits()
     over: list[str] = []
     with ExitStack() as stack:
@@ -169,7 +168,7 @@ def run(order: Order, info: Mapping[str, Any]) -> str:
             env=dict(order.env),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            # Output of a student on these would control the instructor's terminal.
+            # A student's output could otherwise control the instructor's terminal.
             stderr=subprocess.DEVNULL,
             pass_fds=() if filter_fd is None else (filter_fd,),
         )

@@ -1,7 +1,7 @@
-"""`grader gradebook sync` and `compare`: the scores that count, and where the kernel's scores differ.
+"""`grader gradebook sync` and `compare`: the scores that count, and the scores of the kernel that differ from them.
 
-Scores from a kernel are provisional. The scores here come from the submitted package, graded in the sandbox, and are
-written into nbgrader's gradebook through its API. A check that the grader cannot judge counts 0 points and needs a
+Scores from a kernel are provisional. The scores here result from grading the submitted package in the sandbox, and are
+written to nbgrader's gradebook through its API. A check that the grader cannot judge is worth 0 points and needs a
 manual grade (confirmed.py). A manual grade is never changed.
 """
 
@@ -45,20 +45,20 @@ class Synced:
     submissions: int
     changed: int
     kept: int
-    """Manual grades, which were not changed."""
+    """The number of manual grades, which were not changed."""
     unjudged: tuple[str, ...]
     elsewhere: tuple[str, ...]
-    """Checks that have a result but no cell in the notebook, so they are not in the gradebook."""
+    """Checks that have a result but no cell in the notebook, and are therefore not in the gradebook."""
     unconfirmed: tuple[Unconfirmed, ...]
-    """The cells that count 0 points until a person grades them."""
+    """The cells that are worth 0 points until a person grades them."""
 
 
 @dataclass(frozen=True)
 class Difference:
-    """A check on which kernel and grader disagree.
+    """A check on which the kernel and the grader disagree.
 
-    `kernel` is None if the notebook was not run to its end. `grader` is None if the grader has confirmed nothing. The
-    check then counts 0 points, for the reason `why`.
+    `kernel` is None if the notebook gave no score for the check. `grader` is None if the grader has not confirmed a
+    score. The check is then worth 0 points, for the reason `why`.
     """
 
     student: str
@@ -79,11 +79,11 @@ def sync(
     say: Callable[[str], None],
     tell: Callable[[str], None],
 ) -> Synced:
-    """Grade collected submissions that have no valid result, and write every score into the gradebook.
+    """Grade collected submissions that have no valid result, and write every score to the gradebook.
 
     Raises:
         UsageError: nothing was collected, a step is not in the gradebook, or another sync is running.
-        MachineError: nothing can be graded or written. Scores that are not confirmed still count 0 points.
+        MachineError: nothing can be graded or written. Unconfirmed scores are then still worth 0 points.
     """
     from nbgrader.api import Gradebook
     from sqlalchemy.exc import SQLAlchemyError
@@ -93,7 +93,7 @@ def sync(
     results = Results(folders.results)
     with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
         _require_assignments(gradebook, {step for _, step in submissions})
-        # This is done first, so that no provisional score stays if grading is interrupted.
+        # Do this first, so that no provisional score remains if grading is interrupted.
         withhold_unconfirmed(gradebook, results, wanted)
     if not submissions:
         message = (
@@ -113,7 +113,7 @@ def sync(
             try:
                 elsewhere.update(dict.fromkeys(_write(gradebook, folders, result, tally)))
             except (SQLAlchemyError, ValueError) as error:
-                # The database cannot store a name that is not UTF-8.
+                # For example, the database cannot store a name that is not valid UTF-8.
                 gradebook.db.rollback()
                 why.setdefault(name, f"its scores could not be written: {_in_words(error)}")
         withheld = withhold_unconfirmed(gradebook, results, wanted, why)
@@ -126,7 +126,7 @@ def sync(
 
 
 def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
-    """Return where autograde's kernel and the grader disagree, and scores that the grader has not confirmed."""
+    """Return the checks on which autograde's kernel and the grader disagree, and the scores that are not confirmed."""
     from nbgrader.api import Gradebook
 
     kept = Results(folders.results)
@@ -152,7 +152,7 @@ def compare(folders: ClassFolders, steps: Sequence[str]) -> list[Difference]:
 def _put_together(
     folders: ClassFolders, submissions: Sequence[tuple[str, str]]
 ) -> tuple[tuple[Found, ...], dict[tuple[str, str], str]]:
-    """Return the submissions to grade, and why some of them could not be read."""
+    """Return the submissions to grade, and for those that could not be read, the reason why."""
     found: list[Found] = []
     why: dict[tuple[str, str], str] = {}
     for student, step in submissions:
@@ -170,7 +170,7 @@ def _put_together(
 
 
 def _of_the_machine(error: BaseException | None) -> bool:
-    """Return whether the disk or the system failed, and not the student's files."""
+    """Return whether the disk caused the error, and not the student's files."""
     while error is not None:
         if isinstance(error, OSError) and error.errno in OF_THE_DISK:
             return True
@@ -194,7 +194,7 @@ def _require_assignments(gradebook: Any, steps: set[str]) -> None:  # noqa: ANN4
 
 
 def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter[str]) -> list[str]:  # noqa: ANN401
-    """Write the scores of one submission. Return the checks that have no cell."""
+    """Write the scores of one submission to the gradebook. Return the checks that have no cell."""
     student, step = result.student, result.report.exercise
     gradebook.update_or_create_student(student)
     timestamp = folders.course.get_existing_timestamp(str(folders.submitted(student, step)))
@@ -219,7 +219,7 @@ def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter
             grade.needs_manual_grade = outcome.status is Status.ERROR
         else:
             tally["kept"] += 1
-            # If there is something new, the person who graded by hand should look again.
+            # If the score has changed, the person who graded by hand should review the grade.
             grade.needs_manual_grade = grade.needs_manual_grade or changed
     gradebook.db.commit()
     _late(folders, student, step)
@@ -227,7 +227,7 @@ def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter
 
 
 def _late(folders: ClassFolders, student: str, step: str) -> None:
-    """Let nbgrader calculate the penalty for a late submission again, from these scores."""
+    """Let nbgrader recalculate the penalty for a late submission from the new scores."""
     from nbformat.v4 import new_notebook
     from nbgrader.preprocessors import AssignLatePenalties
 
@@ -236,7 +236,7 @@ def _late(folders: ClassFolders, student: str, step: str) -> None:
 
 
 def _kernel_scores(notebook: Path) -> dict[str, float | None] | None:
-    """Return the points of each grade cell according to its own output; None if there is no autograded notebook."""
+    """Return the points of each graded cell according to its own output, or None if there is no autograded notebook."""
     try:
         return read(_scores_in, notebook)
     except UnreadableError:
@@ -257,5 +257,5 @@ def _kernel_score(cell: Any) -> float | None:  # noqa: ANN401 - nbformat's Noteb
     try:
         score: float | None = determine_grade(cell)[0]
     except (ValueError, AttributeError, KeyError, TypeError):
-        return None  # nbgrader does not understand this output of the kernel
+        return None  # nbgrader cannot interpret this output of the kernel
     return score

@@ -1,4 +1,4 @@
-"""Our step of `nbgrader autograde` that replaces SaveAutoGrades: scores of a kernel are worth no points."""
+"""A step of `nbgrader autograde` that replaces SaveAutoGrades, because scores from a kernel are worth no points."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class SaveUnconfirmed(SaveAutoGrades):  # type: ignore[misc, unused-ignore]
-    """Give the checks of our exercises 0 points and "needs manual grade", until `sync` confirms more."""
+    """Give the checks of the course's exercises 0 points and "needs manual grade" until `sync` confirms a score."""
 
     def _add_score(self, cell: NotebookNode, resources: dict[str, Any]) -> None:
         if self.assignment_id not in catalogue() or cell.cell_type != "code" or is_solution(cell):
