@@ -1,1 +1,1 @@
-"""For authors: make exercises from solutions, and validate the course."""
+"""Tools for authors: create exercises from solutions, and validate the course."""

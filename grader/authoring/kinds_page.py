@@ -2,7 +2,7 @@
 
     python -m grader.authoring.kinds_page [--check]
 
-The examples come from the course: the first check of each kind.
+The example for each kind is the first check of this kind in the course.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ UNITS = {
     "_m": "m",
     "_s": "s",
 }
-"""Ending of a parameter's name -> its unit. Longer endings come first."""
+"""Suffix of a parameter's name -> its unit. Longer suffixes come first."""
 STAGES = {
     "source": ("Judged from the files", "These checks read the submission's files. Nothing is built or run for them."),
     "build": ("Judged from the build", "These checks read what `colcon build` printed and installed."),
@@ -76,7 +76,7 @@ def _contents() -> str:
 
 
 def _examples() -> dict[str, tuple[str, CheckSpec]]:
-    """Return kind -> the first step and check of this kind in the course. Raises UsageError if there is none."""
+    """Map each kind to the first step and check of this kind in the course. Raises UsageError if one is not used."""
     found: dict[str, tuple[str, CheckSpec]] = {}
     for step, file in catalogue().items():
         exercise = load_exercise(file)
@@ -107,7 +107,7 @@ def _section(kind: Kind[Any], step: str, spec: CheckSpec) -> str:
 
 
 def _default(value: Param) -> str:
-    """Return a default as text. An empty string as default only means that the parameter is optional."""
+    """Return a default value as text. If the default is an empty string, the parameter is just optional."""
     return f"`{_toml(value)}`" if str(value).strip() else "empty"
 
 
@@ -117,7 +117,7 @@ def unit_of(parameter: str) -> str:
 
 
 def _check(kind: Kind[Any], spec: CheckSpec) -> Iterable[str]:
-    """Return the check as an author writes it, without the defaults of its kind."""
+    """Yield the lines of the check as an author would write them, without the default values of its kind."""
     yield "[[check]]"
     yield f"id = {_toml(spec.id)}"
     yield f"kind = {_toml(spec.kind)}"

@@ -1,10 +1,11 @@
-"""Release: make exercises/ from solutions/, so that each has one source.
+"""Create exercises/ from solutions/, so that each exercise has a single source.
 
     python -m grader.authoring.release [--check]
 
-Marked regions (grader/exercise/markers.py) are replaced by their starting point. Notebooks are made as nbgrader makes
-them (grader/notebook/released.py). All other files are copied. A file that becomes empty is not written, because the
-student creates it. Before all this, source notebooks are updated from the files and checks of the solution.
+First, source notebooks are updated from the files and checks of the solution. Then marked regions
+(grader/exercise/markers.py) are replaced with their starting point. Notebooks are converted in the same way as by
+nbgrader (grader/notebook/released.py). All other files are copied. A file that becomes empty is not written, because
+the student creates it.
 """
 
 from __future__ import annotations
@@ -36,16 +37,16 @@ else:
 
 @dataclass(frozen=True)
 class ReleasedFile:
-    """A file as students get it."""
+    """A file as students receive it."""
 
     data: bytes
     executable: bool
 
 
 def released(solution: Path) -> dict[str, ReleasedFile]:
-    """Return the starting point as POSIX path -> file; `solution` is the folder of a step in solutions/.
+    """Return the starting point as POSIX path -> file. `solution` is the folder of a step in solutions/.
 
-    Raises UsageError, with file and line, if markers are wrong or the result does not parse.
+    Raises UsageError, with file and line, if markers are wrong or the result cannot be parsed.
     """
     files: dict[str, ReleasedFile] = {}
     found = _read(solution)
@@ -80,7 +81,7 @@ def refresh_notebook(solution: Path) -> None:
 
 
 def _fresh_notebooks(solution: Path) -> dict[str, bytes]:
-    """Return the correct text of each source notebook that is out of date."""
+    """Return the up-to-date content of each source notebook that is out of date."""
     exercise_file = solution.parent.parent / "course" / solution.name / FILE_NAME
     if not solution.is_dir() or not exercise_file.is_file():
         return {}
@@ -92,7 +93,7 @@ def _fresh_notebooks(solution: Path) -> dict[str, bytes]:
 
 
 def stale(solutions: Path, exercises: Path) -> tuple[str, ...]:
-    """Return how exercises/ differs from the result of `release`, one sentence per file."""
+    """Return one sentence for each file of exercises/ that differs from the result of `release`."""
     steps = sorted({folder.name for root in (solutions, exercises) for folder in root.iterdir() if folder.is_dir()})
     return tuple(line for step in steps for line in _stale_step(solutions / step, exercises / step))
 
@@ -116,7 +117,7 @@ def _stale_step(solution: Path, exercise: Path) -> list[str]:
 
 
 def release_file(data: bytes, path: str, name: str) -> bytes | None:
-    """Return a file as it is released, or None for a file that the student creates. Messages contain `name`."""
+    """Return the released content of a file, or None if the student creates the file. Messages contain `name`."""
     if path.endswith(".ipynb"):
         return released_notebook(data, name)
     syntax = syntax_of(path)

@@ -35,12 +35,13 @@ _CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 def validate(
     names: list[str], tell: Callable[[str], None] = lambda _: None, *, course: Path | None = None
 ) -> list[str]:
-    """Return the problems of these exercises (all if empty), each as a sentence that says what to do.
+    """Return the problems of these exercises (all if `names` is empty), one sentence for each problem.
 
-    `tell` reports the progress, because grading takes some time. `course` is the folder course/ (default: ours).
+    `tell` reports the progress, because grading takes some time. `course` is the folder course/; it defaults to the
+    one of this checkout or installation.
 
     Raises:
-        UsageError: there is no exercise of this name.
+        UsageError: there is no exercise with this name.
     """
     course = course or course_folder()
     files = catalogue(course)
@@ -61,7 +62,7 @@ def validate(
 
 
 class _Validation:
-    """Find the problems of one exercise. Its gradings start at once and run in parallel with others."""
+    """Find the problems of one exercise. Its solution and starting point are graded in the background."""
 
     def __init__(self, name: str, file: Path, root: Path, pool: Executor, tell: Callable[[str], None]) -> None:
         self._name = name
@@ -78,7 +79,7 @@ class _Validation:
             self._starting_point = pool.submit(self._graded, "starting point", "exercises")
 
     def problems(self) -> Iterator[str]:
-        """Yield the problems, one sentence each."""
+        """Yield one sentence for each problem."""
         if self._unreadable:
             yield self._unreadable
             return
@@ -105,7 +106,7 @@ def _judged(
 ) -> Iterator[str]:
     try:
         report = grading.result()
-    except UsageError as error:  # (there is no such folder, or no package in it)
+    except UsageError as error:  # the folder does not exist, or contains no package
         yield str(error)
     else:
         yield from problems(exercise, report)
