@@ -1,1 +1,1 @@
-"""The set-up behind make: the machine, .venv, the lock file, the demonstration."""
+"""The set-up that `make` runs: the machine, .venv, the lock file, and the demonstration."""

@@ -39,11 +39,11 @@ PARTS = {
 
 
 class Stamp(NamedTuple):
-    """How .venv was made. It is written at the very end, so an interrupted set-up has no stamp."""
+    """How .venv was created. The stamp is written at the very end, so an interrupted set-up has no stamp."""
 
     root: str
     ros: str
-    """The prefix of the sourced ROS 2, or WHEELS."""
+    """The prefix of the sourced ROS 2, or WHEELS if the wheels are installed."""
     python: str
     version: List[int]
     digest: str
@@ -53,7 +53,7 @@ class Stamp(NamedTuple):
 
 
 def read_stamp(path: Path = STAMP) -> Optional[Stamp]:
-    """Return the stamp of a finished set-up; None if there is none from this version."""
+    """Return the stamp of a finished set-up, or None if there is no stamp of this version of the course."""
     try:
         return Stamp(**json.loads(path.read_text()))
     except (OSError, ValueError, TypeError):
@@ -68,7 +68,7 @@ def write_stamp(stamp: Stamp, path: Path = STAMP) -> None:
 
 
 def digest() -> str:
-    """Return a hash of everything that decides which packages are installed."""
+    """Return a hash of the files that determine which packages are installed."""
     whole = hashlib.sha256()
     for name in ("requirements.lock", "pyproject.toml"):
         whole.update((ROOT / name).read_bytes())
@@ -76,7 +76,7 @@ def digest() -> str:
 
 
 def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> bool:
-    """Return whether .venv is still in its place, for this ROS 2, with the Python that made it."""
+    """Return whether .venv is still usable: at the same path, for this ROS 2, with the Python that created it."""
     now = machine.probe(str(PYTHON))
     same = now is not None and (now.path, list(now.version)) == (stamp.python, stamp.version)
     if not same or stamp.root != str(ROOT) or (wanted is not None and wanted.path != stamp.python):
@@ -87,13 +87,13 @@ def stands(stamp: Stamp, ros: Optional[machine.SourcedRos], wanted: Optional[mac
 
 
 def say(text: str) -> None:
-    """Print a heading of the set-up; bold on a terminal."""
+    """Print a heading of the set-up, in bold on a terminal."""
     bold = sys.stdout.isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
     print(f"\033[1m{text}\033[0m" if bold else text, flush=True)
 
 
 def clean_environment(env: Mapping[str, str]) -> Dict[str, str]:
-    """Return the environment without what would mislead an installer: a sourced ROS 2, an active venv."""
+    """Return the environment without variables of a sourced ROS 2 or an active venv that would mislead an installer."""
     foreign = {
         "PYTHONPATH",
         "PYTHONHOME",
@@ -103,18 +103,18 @@ def clean_environment(env: Mapping[str, str]) -> Dict[str, str]:
         "PIP_USER",
         "PIP_REQUIRE_VIRTUALENV",
     }
-    # Otherwise the ROS 2 wheels would start every interpreter twice.
+    # Without the last variable, the ROS 2 wheels would start every interpreter twice.
     return {**{name: env[name] for name in env if name not in foreign}, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
 
 
 def look(
     ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python], parts: Sequence[str], *, made: bool
 ) -> Tuple[Optional[machine.Python], List[Need]]:
-    """Return the Python for .venv (None if it is `made` already), and what the system lacks for these parts."""
+    """Return the Python for .venv (None if .venv is already `made`), and what the system lacks for these parts."""
     path = os.environ.get("PATH", "")
     tools = machine.missing_tools(path, ros)
     if "tests" in parts:
-        # Half of the tests need the sandbox.
+        # Half of the tests need the sandbox, so here it is required.
         tools = [need._replace(lost="") for need in tools] + machine.missing_of_tests(path)
     if made:
         return None, tools
@@ -132,7 +132,7 @@ def look(
 
 
 def tell_lacks(needs: Sequence[Need], why: str) -> bool:
-    """Print what the system lacks, and `why` it was not installed; return whether that stops the set-up."""
+    """Print what the system lacks, and `why` it was not installed. Return whether the set-up must stop."""
     root = os.getuid() == 0
     manager = packages.find_manager(os.environ.get("PATH", ""))
     if not all(need.lost for need in needs):
@@ -146,7 +146,7 @@ def tell_lacks(needs: Sequence[Need], why: str) -> bool:
 
 
 def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool:
-    """Make .venv, and replace an existing one; return False if Python could not."""
+    """Create .venv, replacing an existing one. Return False if Python could not create it."""
     say("Making .venv with Python {}.{}.{} ({})".format(*python.version, python.path))
     options = ["--clear"]
     if ros:
@@ -156,7 +156,7 @@ def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool
         "-m", "venv", *options, str(VENV), python=python.path, env=clean_environment(os.environ)
     )
     try:
-        # Its output is shown only if it fails: then it says why.
+        # The output is shown only if the command fails, because it then contains the reason.
         subprocess.check_output(making.argv, stderr=subprocess.STDOUT, env=making.env, cwd=str(ROOT))
     except subprocess.CalledProcessError as error:
         said = error.output.decode(errors="replace")
@@ -168,7 +168,7 @@ def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool
 
 
 def read_arguments(arguments: Sequence[str]) -> argparse.Namespace:
-    """Parse the arguments: `parts`, a name in PARTS, and `python`, by default None."""
+    """Parse the arguments: `parts`, which is a name in PARTS, and `python`, which defaults to None."""
     parser = argparse.ArgumentParser(prog="python3 -m grader.setup.bootstrap", description=__doc__.splitlines()[0])
     parser.add_argument("parts", choices=list(PARTS), help="what .venv is for; other parts in it are kept")
     parser.add_argument("--python", type=asked_python, help="the Python for .venv: a name or a path")
@@ -176,7 +176,7 @@ def read_arguments(arguments: Sequence[str]) -> argparse.Namespace:
 
 
 def asked_python(name: str) -> machine.Python:
-    """Return the interpreter with this name; raise ArgumentTypeError if it does not answer."""
+    """Return the interpreter with this name. Raises ArgumentTypeError if it does not run."""
     python = machine.probe(shutil.which(name) or name)
     if python is None:
         message = f"{name} is not a Python that runs here"
@@ -185,7 +185,7 @@ def asked_python(name: str) -> machine.Python:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Bring .venv up to date; return the exit code."""
+    """Bring .venv up to date. Return the exit code."""
     asked = read_arguments(arguments)
     ros = machine.sourced_ros(os.environ, VENV)
     problem = machine.platform_problem(platform.system(), platform.machine(), platform.libc_ver(), ros)
@@ -198,14 +198,14 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> int:
-    """Look at the machine, make .venv and fill it, each only if necessary; return the exit code."""
+    """Inspect the machine, then create and fill .venv if necessary. Return the exit code."""
     kind = ros.prefix if ros else WHEELS
     stamp = read_stamp()
     made = stamp is not None and stands(stamp, ros, wanted)
     unfinished = not (stamp and made and stamp.digest == digest() and set(parts) <= set(stamp.parts))
     python, needs = look(ros, wanted, parts, made=made)
     why = ""
-    # Optional programs are installed only when something is set up, not every time.
+    # Missing optional programs are installed only if something else has to be set up, not on every run.
     if any(unfinished or not need.lost for need in needs):
         why = provide(needs, os.environ, say)
         python, needs = look(ros, wanted, parts, made=made)
@@ -215,9 +215,9 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     if not unfinished:
         return 0
     if STAMP.exists():
-        STAMP.unlink()  # From here to the end, .venv is unfinished.
+        STAMP.unlink()  # From here until the end, .venv is unfinished.
     if stamp and made:
-        # Keep the parts that are installed already: a machine may both grade for another one and have notebooks.
+        # Keep the parts that are already installed: a machine may be part of a cluster and also have notebooks.
         parts = [part for part in PARTS["tests"] if part in parts or part in stamp.parts]
         stamp = stamp._replace(digest=digest(), parts=parts, seconds={})
     elif python:

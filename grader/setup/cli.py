@@ -1,4 +1,4 @@
-"""The commands doctor, env and shell."""
+"""The commands `grader doctor`, `grader env` and `grader shell`."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def env(domain: Domain = None) -> None:
         with progress() as tell:
             wanted = shell.users_environment(domain, tell)
     except GraderError:
-        # A shell that sources this does not see our exit code.
+        # A shell that sources this output does not receive the exit code.
         print("false")
         raise
     ros = find_ros()

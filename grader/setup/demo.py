@@ -1,7 +1,7 @@
-"""The end of `make demo`: grade the solution of a step as a learner would, show the times, say what is next.
+"""The last part of `make demo`: grade the solution of a step as a learner would, show the times, and say what is next.
 
 `python -m grader.setup.demo --since SECONDS` takes the time when `make` began, in seconds since 1970. The times of the
-set-up are shown only if this `make` did the set-up.
+set-up are shown only if it was this run of `make` that did the set-up.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ STAGES = {
     "trial": "simulator and node",
     "checks": "checks",
 }
-"""The names of the report's stages, in words."""
+"""Stage in the report -> its name in words."""
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Grade `solutions/03-circle-publisher`; return 0, or the exit code of `grader check` if it was not expected."""
+    """Grade `solutions/03-circle-publisher`. Return 0, or the exit code of `grader check` if it is unexpected."""
     parser = argparse.ArgumentParser(description="Grade the solution of a step and say what to type next.")
     parser.add_argument("--since", type=float, default=time.time(), help="when the command began, seconds since 1970")
     since = parser.parse_args(arguments).since
@@ -37,7 +37,7 @@ def main(arguments: list[str] | None = None) -> int:
     image, report = FOLDER / f"{STEP}.png", FOLDER / f"{STEP}.json"
     (ROOT / FOLDER).mkdir(parents=True, exist_ok=True)
     (ROOT / report).unlink(missing_ok=True)
-    # Students get the course without solutions; then the starting point is graded.
+    # In the students' repository, which has no solutions, the starting point is graded instead.
     side = "solutions" if (ROOT / "solutions" / STEP).is_dir() else "exercises"
     command = ["grader", "check", f"{side}/{STEP}", "--image", str(image), "--json", str(report)]
     say("$ " + " ".join(command))
@@ -59,7 +59,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def closing_words(exit_code: int) -> str:
-    """Return what to do if the course's own solution did not pass."""
+    """Return a message about what to do if the course's own solution did not pass."""
     if exit_code == MACHINE_BROKEN:
         return (
             "\nThe solution could not be graded on this machine. To see what is missing, type: .venv/bin/grader doctor"
@@ -68,7 +68,7 @@ def closing_words(exit_code: int) -> str:
 
 
 def set_up_seconds(since: float) -> list[tuple[str, float]]:
-    """Return the stages of the set-up that this command made, in seconds; empty if it was there before."""
+    """Return the seconds of each stage of the set-up, or an empty list if it was done by an earlier command."""
     stamp = read_stamp()
     if stamp is None or STAMP.stat().st_mtime < since:
         return []
@@ -76,7 +76,7 @@ def set_up_seconds(since: float) -> list[tuple[str, float]]:
 
 
 def grading_seconds(report: Path) -> list[tuple[str, float]]:
-    """Return the stages of the grading, in seconds."""
+    """Return the seconds of each stage of the grading."""
     seconds = json.loads(report.read_text(encoding="utf-8"))["seconds"]
     return [(words, float(seconds[name])) for name, words in STAGES.items() if name in seconds]
 

@@ -1,6 +1,7 @@
-"""`grader doctor`: does this machine have everything that grading needs? Each line is ok or says what to do.
+"""`grader doctor`: check whether this machine has everything that grading needs.
 
-It tries what it can: it builds the turtlesim interfaces if necessary, and lets a node publish from a cell.
+Each line of the output is ok or says what to do. Where possible, the command tries things out: it builds the turtlesim
+interfaces if necessary, and lets a node publish from a cell.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ LITTLE_MEMORY = 1 * GIB
 
 @dataclass(frozen=True)
 class Line:
-    """The result of one test. `advice` does not prevent grading; `broken` must be fixed before grading."""
+    """The result of one test. The state `advice` does not prevent grading; `broken` must be fixed before grading."""
 
     subject: str
     seen: str
@@ -52,7 +53,7 @@ class Line:
 
 
 def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] = lambda _: None) -> list[Line]:
-    """Return all lines, each after the lines that it depends on; `tell` gets a line if a test takes long."""
+    """Return all lines, each one after the lines that it depends on. `tell` is called if a test takes a long time."""
     lines = [look_at_system(), look_at_python(), *look_at_set_up(env), *look_at_tools(env), look_at_colcon()]
     lines += [look_at_disk(xdg.cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
     seen, todo = shares()
@@ -95,13 +96,13 @@ def render(lines: Iterable[Line], console: Console) -> None:
 
 
 def look_at_system() -> Line:
-    """Return the kernel, the machine and the distribution."""
+    """Return a line with the kernel, the machine and the distribution."""
     seen = f"{_distribution()}, {platform.system()} on {platform.machine()}, {os.cpu_count()} cores"
     return Line("system", seen)
 
 
 def look_at_python() -> Line:
-    """Return this interpreter, and whether the course supports it."""
+    """Return a line with this interpreter, and whether the course supports it."""
     seen = f"CPython {platform.python_version()}, {Path(sys.executable).parent}"
     if machine.OLDEST <= sys.version_info[:2] <= machine.NEWEST:
         return Line("Python", seen)
@@ -110,7 +111,7 @@ def look_at_python() -> Line:
 
 
 def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None) -> Iterator[Line]:
-    """Return whether .venv is what the lock file says now, and fits the ROS 2 that is sourced now."""
+    """Yield a line that says whether .venv matches the current lock file and the currently sourced ROS 2."""
     stamp = stamp or bootstrap.read_stamp()
     if stamp is None or Path(sys.prefix) != bootstrap.VENV:
         yield Line("set-up", "not made by `make`; its versions may differ from the lock file")
@@ -131,7 +132,7 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
 
 
 def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
-    """Return the system's programs and Python's headers, with one command for everything that is missing."""
+    """Yield lines about system programs and Python's headers, with one command to install everything missing."""
     ros = machine.sourced_ros(env, bootstrap.VENV)
     needs = machine.missing_tools(env.get("PATH", ""), ros)
     headers = Path(sysconfig.get_path("include"), "Python.h").is_file()
@@ -144,7 +145,7 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
             yield Line(name, version)
     if builds and headers:
         yield Line("headers", "Python.h is there")
-    # Each optional program has a line of its own, which says what does not work without it.
+    # Each optional program has its own line elsewhere, which says what does not work without it.
     needs = [need for need in needs if not need.lost]
     if needs:
         seen = "missing: " + "; ".join(need.what for need in needs)
@@ -153,7 +154,7 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
 
 
 def look_at_colcon() -> Line:
-    """Return the colcon that builds submissions: this Python's, not the system's."""
+    """Return a line about the colcon that builds submissions. It belongs to this Python, not to the system."""
     try:
         version = metadata.version("colcon-core")
     except metadata.PackageNotFoundError:
@@ -164,7 +165,7 @@ def look_at_colcon() -> Line:
 
 
 def look_at_disk(folder: Path) -> Line:
-    """Return the free space (bytes) on the disk of the interfaces."""
+    """Return a line with the free space on the disk that holds the built interfaces."""
     there = next(path for path in [folder, *folder.parents] if path.is_dir())
     free = shutil.disk_usage(there).free
     seen = f"{free / GIB:.1f} GiB free for {folder}"
@@ -179,7 +180,7 @@ def look_at_disk(folder: Path) -> Line:
 
 
 def look_at_memory(meminfo: str) -> Line:
-    """Return the memory that programs can get; `meminfo` is the content of /proc/meminfo."""
+    """Return a line with the memory that is available to programs. `meminfo` is the content of /proc/meminfo."""
     kib = next((int(line.split()[1]) for line in meminfo.splitlines() if line.startswith("MemAvailable:")), None)
     if kib is None:
         return Line("memory", "unknown: the system does not report it")
@@ -190,7 +191,7 @@ def look_at_memory(meminfo: str) -> Line:
 
 
 def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
-    """Return the ROS 2 that grading uses, and whether it fits this Python."""
+    """Return a line with the ROS 2 that grading uses, and whether it fits this Python."""
     sourced = machine.sourced_ros(env, bootstrap.VENV)
     if ros.kind == "sourced" and sourced and sourced.python != sys.version_info[:2]:
         wanted = ".".join(map(str, sourced.python))
@@ -205,7 +206,7 @@ def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
 
 
 def look_at_sandbox() -> Line:
-    """Make a cell like that of a student's process; it is optional for people who only check their own code."""
+    """Create a cell like that of a student's process. Cells are optional for people who only check their own code."""
     why = bubblewrap.why_unavailable()
     if why is None:
         return Line("sandbox", "bubblewrap makes cells")
@@ -213,7 +214,7 @@ def look_at_sandbox() -> Line:
 
 
 def look_at_limits() -> Line:
-    """Return how the memory and the processes of a cell are counted."""
+    """Return a line that says how the memory and the processes of a cell are counted."""
     with control_group(NODE_LIMITS) as group:
         if group:
             return Line("limits", "memory and processes of a cell are counted by the kernel")
@@ -224,9 +225,9 @@ def look_at_limits() -> Line:
 
 
 def look_at_node(ros: Ros, *, confined: bool = True) -> Line:
-    """Let a node publish to another, as in a trial: this tests the interpreter, ROS 2, the network and the interfaces.
+    """Let a node publish to another, as in a trial, to test the interpreter, ROS 2, the network and the interfaces.
 
-    With `confined`, the publisher is in a cell, and the other node is outside.
+    If `confined` is True, the publisher is in a cell, and the other node is outside.
     """
     why = why_not_heard(ros, confined=confined)
     if why is None:

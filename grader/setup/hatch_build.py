@@ -1,4 +1,4 @@
-"""Adds to a wheel what is beside the package in this repository: the course, and what a copy of it needs."""
+"""Add files from outside the package to a wheel: the course, and what is needed to create a copy of it."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ _FILES = ("LICENSE", "Makefile", "pyproject.toml", "requirements.lock", ".gitign
 
 
 class CourseHook(BuildHookInterface):  # type: ignore[type-arg]
-    """Puts the course's folders into the wheel; an editable install finds them in the repository."""
+    """Add the course's folders to the wheel. An editable install finds them in the repository instead."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Add the folders; hatchling calls this before it builds."""
+        """Add the folders. hatchling calls this method before it builds."""
         if version == "standard":
-            # (An instructor's copy for students has no solutions.)
+            # The repository for students has no solutions.
             there = [name for name in _FOLDERS if Path(self.root, name).is_dir()]
             build_data["force_include"] |= {name: f"grader/{name}" for name in there}
             build_data["force_include"] |= {name: f"grader/repository/{name}" for name in (*_FILES, "docs")}

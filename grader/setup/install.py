@@ -1,7 +1,7 @@
 """The second half of the set-up: fill .venv from the lock file. It runs in .venv before anything is installed there.
 
-`python -m grader.setup.install STAMP`: STAMP is the stamp of bootstrap.py as JSON. It is written into .venv at the very
-end, with the seconds of each stage, so an interrupted set-up has no stamp.
+`python -m grader.setup.install STAMP`: STAMP is the stamp of bootstrap.py as JSON. It is written to .venv at the very
+end, with the duration of each stage (s), so an interrupted set-up has no stamp.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ _OPTIONS = ("--no-deps", "--require-hashes", "--no-build-isolation")
 _PROGRESS = ("Downloading ", "Using cached ", "Building ", "Prepared ", "Installed ", "Bytecode compiled ")
 _MOST_LINES = 40
 _RETRIES = 2
-"""How many failed look-ups of a name end the installation: pip would go on for ten seconds."""
+"""After this many failed name look-ups, the installer is stopped. pip would continue for ten more seconds."""
 _FIRST = frozenset({"uv", "setuptools"})
-"""The packages that pip installs, which is slower: uv itself, and setuptools, which uv needs to build empy."""
+"""The packages that are installed with pip, which is slower: uv, and setuptools, which uv needs to build empy."""
 _UNKNOWN = (
     "The packages could not be installed; the installer's messages are above. A proxy is read from HTTPS_PROXY, a "
     f"mirror from pip's own configuration; {refused.AGAIN}."
@@ -36,7 +36,7 @@ _UNKNOWN = (
 
 
 class Ran(NamedTuple):
-    """An installer that has ended: its exit code, its progress, and everything else that it printed."""
+    """The result of an installer: its exit code, its progress, and everything else that it printed."""
 
     code: int
     shown: list[str]
@@ -44,7 +44,7 @@ class Ran(NamedTuple):
 
 
 def main(stamp: Stamp) -> int:
-    """Install the stamp's parts and the project itself, then write the stamp; return the exit code."""
+    """Install the stamp's parts and the project itself, then write the stamp. Return the exit code."""
     try:
         seconds = {**stamp.seconds, **install(stamp.parts, sourced=stamp.ros != "wheels")}
     except MachineError as error:
@@ -56,7 +56,7 @@ def main(stamp: Stamp) -> int:
 
 
 def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
-    """Install from the lock file; return the seconds of download and of installation.
+    """Install from the lock file. Return the seconds for the download and for the installation.
 
     Raises: MachineError: no installer succeeded.
     """
@@ -73,7 +73,7 @@ def install(parts: list[str], *, sourced: bool) -> dict[str, float]:
     rest = _write("rest", lock.select(text, parts, without=without))
     downloading = _uv("-r", str(rest), *_OPTIONS, "--compile-bytecode")
     if downloading is None:
-        # pip reads settings that uv does not: mirrors, certificates and proxies in pip.conf.
+        # pip reads settings that uv does not read: mirrors, certificates and proxies in pip.conf.
         say("uv failed; trying again with pip, which is slower")
         _pip(rest)
     project = ("--no-deps", "--no-build-isolation", "--editable", str(ROOT))
@@ -102,18 +102,18 @@ def _pip(requirements: Path) -> None:
 
 
 def _uv(*arguments: str) -> float | None:
-    """Run `uv pip install`; return the seconds of download, or None if it failed and pip may succeed.
+    """Run `uv pip install`. Return the seconds for the download, or None if it failed and pip may succeed.
 
-    Raises: MachineError: the machine has no disk space, or the user has no rights for it.
+    Raises: MachineError: the disk is full, or the user may not write to it.
     """
     command = [str(BIN / "uv"), "pip", "install", "--python", sys.executable, *arguments]
     stores = ssl.get_default_verify_paths()
     if stores.cafile or (stores.capath and any(Path(stores.capath).iterdir())):
         command.append(
             "--system-certs"
-        )  # Use the system's certificates, as other programs do; a minimal system has none, and then uv uses its own.
+        )  # Use the system's certificates, as other programs do. A minimal system has none, so there uv uses its own.
     if not _may_write(refused.cache()):
-        command.append("--no-cache")  # If the home folder is not writable, uv needs only this.
+        command.append("--no-cache")  # Without a writable home folder, uv needs only this option.
     done = _run(command, clean(os.environ))
     if done.code == 0:
         return seconds_of(next((line for line in done.shown if line.startswith("Prepared ")), ""))
@@ -125,16 +125,16 @@ def _uv(*arguments: str) -> float | None:
 
 
 def _may_write(folder: Path) -> bool:
-    """Return whether files can be created below a folder, which may not exist yet."""
+    """Return whether files can be created in a folder, which may not exist yet."""
     there = next((above for above in [folder, *folder.parents] if above.exists()), folder)
     return os.access(there, os.W_OK)
 
 
 def _run(command: list[str], env: dict[str, str]) -> Ran:
-    """Run an installer and show its progress line by line; stop it if it finds no network twice.
+    """Run an installer and show its progress line by line. Stop it after two retries without a network.
 
-    In a pipe, both installers print a line when a download begins, so that the user sees a slow one and logs stay
-    readable.
+    When they write to a pipe, both installers print a line at the beginning of each download. This makes slow
+    downloads visible and keeps logs readable.
     """
     shown: list[str] = []
     rest: list[str] = []
@@ -155,12 +155,12 @@ def _run(command: list[str], env: dict[str, str]) -> Ran:
 
 
 def _repeat(done: Ran) -> None:
-    """Print the end of an installer's messages."""
+    """Print the last messages of an installer."""
     print("".join(done.said.splitlines(keepends=True)[-_MOST_LINES:]), end="", flush=True)
 
 
 def seconds_of(line: str) -> float:
-    """Return the duration (s) at the end of a line of uv: `Prepared 9 packages in 1m 05s`, `... in 302ms`."""
+    """Return the duration (s) at the end of a line from uv: `Prepared 9 packages in 1m 05s`, `... in 302ms`."""
     units = {"ms": 1e-3, "s": 1.0, "m": 60.0, "h": 3600.0}
     found: list[tuple[str, str]] = re.findall(r"(\d+(?:\.\d+)?)(ms|s|m|h)\b", line.rpartition(" in ")[2])
     return sum(float(number) * units[unit] for number, unit in found)

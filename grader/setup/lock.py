@@ -1,8 +1,9 @@
 """The lock file: every version that the set-up installs, for all versions of Python, with hashes, in parts.
 
-It is one file in pip's format, in sections: `# part: NAME` begins what only this part needs, `# part: NAME NAME` what
-several parts need. So each set-up installs exactly what it needs. `python -m grader.setup.lock` (`make lock`) writes
-it. Standard library only: the set-up reads the file before anything is installed.
+The file is in pip's format and has sections. `# part: NAME` starts the packages that only this part needs, and
+`# part: NAME NAME` those that several parts need. This way, each set-up installs exactly what it needs.
+`python -m grader.setup.lock` (`make lock`) writes the file. This module uses only the standard library, because the
+set-up reads the file before anything is installed.
 """
 
 from __future__ import annotations
@@ -36,12 +37,12 @@ PARTS = {
 """The name of each part and its purpose, in the order of the file."""
 
 ALWAYS = ("setup", "grader")
-"""The parts of every set-up: what they need is listed only there. Any other part is optional, `ros` too, so each of
-them lists everything that it needs in addition to these two.
+"""The parts of every set-up. Packages that they need are listed only there. All other parts, including `ros`, are
+optional, so each of them lists everything that it needs in addition to these two.
 """
 
 SOURCED_BRINGS = frozenset({"numpy", "empy"})
-"""Packages that a sourced ROS 2 provides: its extensions are built for its numpy, its generators for its empy."""
+"""Packages that a sourced ROS 2 provides. Its extensions need its own numpy, and its generators its own empy."""
 
 _MARK = "# part: "
 _NAME = re.compile(r"([A-Za-z0-9][A-Za-z0-9._-]*)==(\S+)")
@@ -49,7 +50,7 @@ _NAME = re.compile(r"([A-Za-z0-9][A-Za-z0-9._-]*)==(\S+)")
 
 @dataclass(frozen=True)
 class Entry:
-    """One version of one package. `text` has its lines in the file, with the hashes and the last line break."""
+    """One version of one package. `text` holds its lines in the file, including the hashes and the final newline."""
 
     name: str
     version: str
@@ -57,7 +58,7 @@ class Entry:
 
 
 def parse(text: str) -> dict[str, list[Entry]]:
-    """Return the entries of each part, in the order of the file; what several parts need is in each of them.
+    """Return the entries of each part, in the order of the file. An entry that several parts need is in each of them.
 
     Raises:
         UsageError: a line belongs to no part or to no entry.
@@ -89,18 +90,18 @@ def parse(text: str) -> dict[str, list[Entry]]:
 def select(
     text: str, parts: Collection[str], *, without: Collection[str] = (), only: Collection[str] | None = None
 ) -> str:
-    """Return the requirements of `parts` for pip: all packages except `without`, or `only` these packages."""
+    """Return the requirements of `parts` in pip's format: all packages except `without`, or `only` some packages."""
     entries = dict.fromkeys(entry for part, entries in parse(text).items() if part in parts for entry in entries)
     chosen = (entry for entry in entries if entry.name not in without and (only is None or entry.name in only))
     return "".join(entry.text for entry in chosen)
 
 
 def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str:
-    """Return the content of the lock file: each entry below its parts' names; `needs` has the packages of each part.
+    """Return the content of the lock file. `needs` holds the names of the packages of each part.
 
-    If a package has several versions for different Pythons, a part has all of them.
+    If a package has several versions for different Pythons, a part contains all of them.
 
-    Raises: MachineError: the parts do not need exactly these packages.
+    Raises: MachineError: the packages of the parts together are not exactly those in `entries`.
     """
     sections: dict[tuple[str, ...], list[str]] = {(part,): [] for part in PARTS}
     rest = set().union(*needs.values())
@@ -123,9 +124,9 @@ def split(entries: Iterable[Entry], needs: Mapping[str, Collection[str]]) -> str
 
 
 def make(uv: str, *, upgrade: bool = False) -> str:
-    """Return the content of a new lock file for pyproject.toml, resolved by uv (needs the network).
+    """Return the content of a new lock file for pyproject.toml, resolved by uv. This needs the network.
 
-    The versions in the existing lock file are kept if they still fit, unless `upgrade` is true.
+    The versions in the existing lock file are kept if they are still compatible, unless `upgrade` is True.
     """
     with tempfile.TemporaryDirectory() as folder:
         whole = Path(folder, "whole.txt")
@@ -144,7 +145,7 @@ def make(uv: str, *, upgrade: bool = False) -> str:
             ("tests", None, ["--extra", "dev"]),
         ]:
             path = Path(folder, f"{part}.txt")
-            # Limit each part to the versions of the whole for each Python.
+            # Limit each part to the versions in the whole file, for each Python.
             _compile(uv, path, [*arguments, "--constraint", str(whole)], requirements)
             needs[part] = {name for name, _ in _NAME.findall(path.read_text(encoding="utf-8"))}
     return split(entries, needs)
@@ -161,12 +162,12 @@ def _requirements(extra: str) -> list[str]:
 
 
 def _compile(uv: str, output: Path, arguments: list[str], requirements: str | None = None) -> None:
-    """Resolve the project, or `requirements` (one per line) instead of it, into `output`."""
+    """Resolve the project's dependencies, or `requirements` (one per line) if given, and write them to `output`."""
     command = [
         *(uv, "pip", "compile", str(PROJECT) if requirements is None else "-"),
         *("--output-file", str(output), "--quiet", *arguments),
         *("--universal", "--python-version", "3.10", "--no-python-downloads"),
-        # Each machine decides where packages are downloaded from, so the file has no index and no addresses.
+        # Each machine decides where packages are downloaded from, so the file contains no index and no URLs.
         *("--generate-hashes", "--no-emit-index-url", "--no-annotate", "--no-header"),
     ]
     done = subprocess.run(command, cwd=ROOT, check=False, input=requirements, text=True)
@@ -176,7 +177,7 @@ def _compile(uv: str, output: Path, arguments: list[str], requirements: str | No
 
 
 def main(arguments: list[str]) -> int:
-    """Write the lock file; `--upgrade` takes the newest versions that fit."""
+    """Write the lock file. With `--upgrade`, use the newest compatible versions."""
     uv = str(Path(sys.prefix, "bin", "uv"))
     text = make(uv, upgrade="--upgrade" in arguments)
     parts = parse(text)

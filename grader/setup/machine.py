@@ -1,7 +1,8 @@
-"""What this machine has and lacks: Pythons, a sourced ROS 2, the system's programs, and messages about what is missing.
+"""What this machine has and lacks: Pythons, a sourced ROS 2, system programs, and messages about what is missing.
 
 The set-up runs this before anything is installed, with any `python3`. If that is too old, the user must see a message
-and not a SyntaxError, so this module and bootstrap.py use only the syntax of Python 3.6 and the standard library.
+instead of a SyntaxError. Therefore this module and bootstrap.py use only the syntax of Python 3.6 and the standard
+library.
 """
 
 import json
@@ -31,11 +32,11 @@ CONTAINER = """\
   - a ROS 2 Jazzy of your own, on any Linux: source /opt/ros/jazzy/setup.bash, then run make again."""
 
 LEFT_TO_ROS = {"numpy": "python3-numpy", "em": "python3-empy", "lark": "python3-lark"}
-"""Modules that the set-up leaves to a sourced ROS 2 (lock.SOURCED_BRINGS and its part `ros`), and the Debian packages
-that contain them.
+"""Modules that the set-up does not install if a ROS 2 is sourced (lock.SOURCED_BRINGS and the part `ros`), and the
+Debian packages that contain them.
 """
 _OLDEST_NUMPY = "1.25"
-"""The oldest numpy that matplotlib supports, which draws the pictures."""
+"""The oldest version of numpy that is supported by matplotlib, which draws the pictures."""
 _IMPORTS = f"""
 import importlib, json, sys
 def lacks(name):
@@ -59,7 +60,7 @@ print(json.dumps({
 
 
 class Python(NamedTuple):
-    """An interpreter: `path` has no symlinks; `cpython` means a CPython that the ROS 2 wheels support."""
+    """An interpreter. `path` contains no symlinks; `cpython` means a CPython that the ROS 2 wheels support."""
 
     path: str
     version: Tuple[int, int, int]
@@ -71,12 +72,12 @@ class Python(NamedTuple):
 
     @property
     def is_systems(self) -> bool:
-        """Whether the system's package manager installed it, and so has its missing parts."""
+        """Whether the system's package manager installed it, and can therefore install its missing parts."""
         return Path(self.path).parent == Path("/usr/bin")
 
 
 class SourcedRos(NamedTuple):
-    """A sourced ROS 2 Jazzy: its prefix, the (major, minor) of its Python, and whether it has a turtlesim."""
+    """A sourced ROS 2 Jazzy: its prefix, the (major, minor) version of its Python, and whether it has turtlesim."""
 
     prefix: str
     python: Tuple[int, int]
@@ -84,7 +85,7 @@ class SourcedRos(NamedTuple):
 
 
 def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
-    """Return the ROS 2 Jazzy that is sourced, if any; `ours` is the prefix of the wheels, which is ignored."""
+    """Return the ROS 2 Jazzy that is sourced, or None. `ours` is the prefix of the wheels, which is ignored."""
     if env.get("ROS_DISTRO") != "jazzy":
         return None
     for prefix in map(Path, clean(env).get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
@@ -98,7 +99,7 @@ def sourced_ros(env: Mapping[str, str], ours: Path) -> Optional[SourcedRos]:
 
 
 def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Optional[SourcedRos]) -> str:
-    """Return why the ROS 2 wheels cannot be installed here and what to do instead; an empty string if they can.
+    """Return why the ROS 2 wheels cannot be installed here and what to do instead, or an empty string if they can be.
 
     The arguments are platform.system(), platform.machine() and platform.libc_ver().
     """
@@ -119,9 +120,9 @@ def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Opti
 
 
 def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
-    """Return whether packages certainly cannot be downloaded: there is no network route, and nothing else is set up.
+    """Return whether it is certain that no packages can be downloaded, because there is no network route.
 
-    With a mirror, a proxy or a folder of wheels on this machine, only an installer can find out. `root` contains /proc.
+    If a mirror, a proxy or a folder of wheels is configured, only an installer can find out. `root` contains /proc.
     """
     settings = ("PIP_", "UV_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")
     home = Path(env.get("HOME", "/nowhere"))
@@ -137,13 +138,13 @@ def is_offline(env: Mapping[str, str], root: Path = Path("/")) -> bool:
 
 
 def closed_folder(path: str) -> Optional[Path]:
-    """Return the topmost folder above `path` that other users cannot enter; they cannot run programs below it."""
+    """Return the topmost parent folder of `path` that other users cannot enter. They cannot run programs inside it."""
     folders = Path(path).resolve().parents
     return next((folder for folder in reversed(list(folders)) if not folder.stat().st_mode & stat.S_IXOTH), None)
 
 
 def probe(executable: str) -> Optional[Python]:
-    """Ask an interpreter what it is; None if it does not answer, such as a shim for a Python that is not installed.
+    """Ask an interpreter for its properties. Return None if it does not run, like a shim for a missing Python.
 
     Raises:
         OSError: the machine cannot start another process, so nothing is known about the interpreter.
@@ -160,10 +161,10 @@ def probe(executable: str) -> Optional[Python]:
 
 
 def for_ros(python: Python, ros: SourcedRos) -> Python:
-    """The same interpreter with what it lacks for this ROS 2; one of another version is not asked."""
+    """Return the interpreter with what it lacks for this ROS 2. If its version does not match, return it unchanged."""
     if python.version[:2] != ros.python or not python.cpython:
         return python
-    # As in .venv, which sees the system's packages, but not those in a user's home.
+    # Like .venv, use the system's packages, but not those in a user's home.
     env = {**os.environ, "PYTHONNOUSERSITE": "1"}
     asking = interpreter("-c", _IMPORTS, *LEFT_TO_ROS, python=python.path, env=env, searches=True)
     try:
@@ -174,7 +175,7 @@ def for_ros(python: Python, ros: SourcedRos) -> Python:
 
 
 def find_pythons(path: str) -> Iterator[Python]:
-    """Return the interpreters on PATH and in the system's folders: `python3` first, then the newest first."""
+    """Yield the interpreters on PATH and in the system's folders: first `python3`, then the others from the newest."""
     folders = list(dict.fromkeys([*filter(None, path.split(os.pathsep)), *SYSTEM_PATH]))
     seen = set()
     for name in ["python3", *(f"python3.{minor}" for minor in range(NEWEST[1], OLDEST[1] - 1, -1))]:
@@ -188,10 +189,10 @@ def find_pythons(path: str) -> Iterator[Python]:
 def choose_python(
     pythons: Iterable[Python], *, root: bool, wanted: Optional[Tuple[int, int]] = None
 ) -> Optional[Python]:
-    """Return the interpreter for .venv: the first suitable one; complete ones come before those that lack something.
+    """Return the first suitable interpreter for .venv, preferring complete ones to those that lack something.
 
-    For root it must be one that others can run too (not below root's home), since the sandbox gives up root's rights.
-    `wanted` is the only suitable (major, minor): the one that a sourced ROS 2 was built for.
+    For root, prefer one that other users can run too (not below root's home), since the sandbox drops root's rights.
+    `wanted` is the only suitable (major, minor) version: the one that a sourced ROS 2 was built for.
     """
     best: Optional[Tuple[Tuple[bool, bool, bool], Python]] = None
     for python in pythons:
@@ -209,7 +210,7 @@ def choose_python(
 
 
 def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
-    """Return the programs that the system lacks. If turtlesim is installed, its messages need no compiler."""
+    """Return the programs that the system lacks. No compiler is needed if turtlesim is already installed."""
     tools = {"bwrap": Need("bubblewrap, the sandbox that student code runs in", "bubblewrap", NO_SANDBOX)}
     limits = Need("setpriv, prlimit and choom, which set the sandbox's limits", "util-linux")
     tools.update({"setpriv": limits, "prlimit": limits, "choom": limits})
@@ -222,7 +223,7 @@ def missing_tools(path: str, ros: Optional[SourcedRos]) -> List[Need]:
 
 
 def missing_of_tests(path: str) -> List[Need]:
-    """Return what is missing and only needed for some tests; the others run without it."""
+    """Return the missing programs that only some tests need. The other tests run without them."""
     tools = {
         BROWSERS: Need("a browser", "chromium", "the tests of the pages do not run"),
         ("shellcheck",): Need("shellcheck", "shellcheck", "the test of the shell scripts does not run"),
@@ -238,10 +239,10 @@ def missing_of_python(
     newer: str = "",
     refused: Sequence[Python] = (),
 ) -> List[Need]:
-    """Return what the chosen Python lacks; everything if there is no Python.
+    """Return what the chosen Python lacks, or everything if there is no Python.
 
-    `newer` is the package of a Python that the system has beside one that is too old, `refused` are those of the
-    `wanted` version that cannot import what the sourced ROS 2 needs.
+    `newer` is the package of a newer Python for a system whose default Python is too old. `refused` are the Pythons of
+    the `wanted` version that cannot import what the sourced ROS 2 needs.
     """
     if python is None:
         name = f"python{wanted[0]}.{wanted[1]}" if wanted else newer or "python3"
@@ -266,7 +267,7 @@ def missing_of_python(
 
 
 def lack_message(needs: Sequence[Need], manager: Optional[packages.Manager], *, root: bool, why: str = "") -> str:
-    """Return a message with everything that the system lacks, the command for it, and `why` it was not installed."""
+    """Return a message with what the system lacks, the command that installs it, and `why` it was not installed."""
     whats = [f"  - {what}" for what in dict.fromkeys(need.what for need in needs)]
     lines = ["The course needs the following, which this system does not have:", *whats]
     lines += [f"They were not installed: {why}."] if why else []

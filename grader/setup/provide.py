@@ -1,6 +1,6 @@
-"""Install what the system lacks, as root or with sudo; if that is not possible, say why.
+"""Install what the system lacks, as root or with sudo. If that is not possible, say why.
 
-Runs under any Python 3 before anything is installed, as machine.py does: syntax of Python 3.6.
+Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import os
@@ -12,12 +12,12 @@ from typing import Callable, List, Mapping, Optional, Sequence
 from grader.common import packages
 
 TOLD_LINES = 3
-"""How much of a package manager's output is shown if it fails."""
+"""The number of lines of a package manager's output that are shown if it fails."""
 _ERROR = re.compile(r"(E:|W:|Err:|error|problem|fatal|no package|nothing provides|sudo:)", re.IGNORECASE)
 
 
 def provide(needs: Sequence[packages.Need], env: Mapping[str, str], say: Callable[[str], None]) -> str:
-    """Install what is needed, and print a line with `say` first; return why something could not be installed.
+    """Print a line with `say`, then install what is needed. Return why something could not be installed.
 
     The required packages are installed first, together. Each optional package is installed separately, so that a
     missing one does not stop the others.
@@ -46,13 +46,13 @@ def provide(needs: Sequence[packages.Need], env: Mapping[str, str], say: Callabl
 
 
 def _groups(needs: Sequence[packages.Need]) -> List[List[packages.Need]]:
-    """Return the required needs in one group, and each optional need in a group of its own."""
+    """Return groups of needs: all required needs together, and each optional need in its own group."""
     musts = [need for need in needs if not need.lost]
     return [*([musts] if musts else []), *([need] for need in needs if need.lost)]
 
 
 def _rights(path: str) -> Optional[List[str]]:
-    """Return the prefix that runs a command as root; None if there is none."""
+    """Return the prefix that runs a command as root, or None if that is not possible."""
     if os.getuid() == 0:
         return []
     sudo = packages.find_program("sudo", path)
@@ -69,9 +69,9 @@ def _at_terminal() -> bool:
 
 
 def _run(command: Sequence[str], program: str, env: Mapping[str, str]) -> str:
-    """Run a package manager; return its error message, empty if it succeeded."""
+    """Run a package manager. Return its error message, or an empty string if it succeeded."""
     try:
-        # sudo asks on the terminal itself, so these do not matter for it.
+        # sudo asks for the password on the terminal itself, so redirecting these streams does not affect it.
         done = subprocess.run(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=env
         )

@@ -1,6 +1,6 @@
-"""Why a set-up stopped, in one sentence with what to do: from an error here, or from an installer's output.
+"""One sentence about why a set-up stopped and what to do, derived from an error or from an installer's output.
 
-Like machine.py, this runs under any Python 3 before anything is installed: syntax of Python 3.6.
+Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
 """
 
 import errno
@@ -17,14 +17,14 @@ from grader.common.refusal import refusal, sentence
 
 MACHINE_BROKEN = 3
 NEEDED_MB = 700
-"""The size of a learner's .venv, with a reserve."""
+"""The size of a learner's .venv, including a reserve."""
 AGAIN = "the same command continues from here, and the downloads are kept"
 NO_NETWORK = (
     "This machine cannot reach the Python packages ({}). Is it online? A proxy is read from HTTPS_PROXY, a mirror "
     "from pip's own configuration; " + AGAIN + "."
 )
 _FULL_MB = 50
-"""With less free space than this, the disk is the reason for any failure."""
+"""If there is less free space than this, the disk is taken to be the reason for any failure."""
 _NUMBER = re.compile(r"\[Errno (\d+)\]|\(os error (\d+)\)")
 _OFFLINE = re.compile(
     "(?:Temporary failure in )?name resolution|Name or service not known|No address associated with hostname|"
@@ -35,7 +35,7 @@ _WRITE = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 
 
 def guarded(main: Callable[[], int]) -> int:
-    """Run a program of the set-up, print system errors and Ctrl-C as one sentence, and return the exit code."""
+    """Run a program of the set-up and return its exit code. System errors and Ctrl-C are printed as one sentence."""
     try:
         code = main()
         sys.stdout.flush()
@@ -43,7 +43,7 @@ def guarded(main: Callable[[], int]) -> int:
         print("\nStopped. The same command continues from here; the downloads are kept.", file=sys.stderr)
         return 130
     except BrokenPipeError:
-        _silence()  # The reader of our output has ended.
+        _silence()  # The program that reads the output has exited.
         return 1
     except Exception as error:
         if os.environ.get("GRADER_DEBUG"):
@@ -56,13 +56,13 @@ def guarded(main: Callable[[], int]) -> int:
 
 
 def _silence() -> None:
-    """Keep the interpreter from failing again at its end, when it flushes its buffers."""
-    with suppress(OSError):  # no file can be opened
+    """Keep the interpreter from failing again when it exits and flushes its buffers."""
+    with suppress(OSError):  # it may be impossible to open a file
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 def of_error(error: BaseException) -> Optional[str]:
-    """Return the sentence for a system error in the set-up; None for any other error."""
+    """Return the sentence for a system error in the set-up, or None for any other error."""
     if isinstance(error, OSError) and isinstance(error.filename, (str, bytes)):
         return _of_number(error.errno or 0, Path(os.fsdecode(error.filename)))
     if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
@@ -71,7 +71,7 @@ def of_error(error: BaseException) -> Optional[str]:
 
 
 def of_output(said: str, folder: Path) -> Optional[str]:
-    """Return why an installer failed that printed `said` and fills `folder`, as one sentence; None if unknown."""
+    """Return one sentence about why an installer failed, or None. It printed `said` and writes to `folder`."""
     found = _NUMBER.search(said)
     number = int(found.group(1) or found.group(2)) if found else 0
     if number in (errno.ENOSPC, errno.EDQUOT) or _fullest([folder]):
@@ -82,13 +82,13 @@ def of_output(said: str, folder: Path) -> Optional[str]:
 
 
 def offline(said: str) -> Optional[str]:
-    """Return the part of an installer's output that shows a missing network; None if there is none."""
+    """Return the part of an installer's output that indicates a missing network, or None if there is none."""
     found = _OFFLINE.search(said)
     return found.group() if found else None
 
 
 def cache() -> Path:
-    """Return the folder in which uv keeps its downloads."""
+    """Return the folder where uv keeps its downloads."""
     named = os.environ.get("UV_CACHE_DIR") or "{}/uv".format(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
     return Path(named).expanduser()
 
@@ -104,7 +104,7 @@ def _of_number(number: int, where: Optional[Path]) -> str:
 
 
 def _fullest(folders: List[Path]) -> Optional[Path]:
-    """Return the first of the folders whose disk is nearly full."""
+    """Return the first of the folders whose disk is nearly full, or None."""
     for folder in folders:
         there = next((above for above in [folder, *folder.parents] if above.exists()), None)
         if there and shutil.disk_usage(str(there)).free < _FULL_MB * 2**20:

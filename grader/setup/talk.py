@@ -1,4 +1,4 @@
-"""Let one node publish to another, as in a trial: tests the interpreter, ROS 2, the network and the interfaces."""
+"""Let one node publish to another, as in a trial, to test the interpreter, ROS 2, the network and the interfaces."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ while not heard and time.monotonic() < deadline:
 sys.exit(None if heard else "no message arrived from it within 20 s")
 """
 DOMAIN = 101
-"""The ROS domain of the nodes without a cell: the last one that a trial would use."""
+"""The ROS domain of nodes outside a cell. Trials use this domain only if all others are taken."""
 
 
 def why_not_heard(ros: Ros, *, confined: bool) -> str | None:
-    """Let a node publish for up to 20 s; return None if the other received a message, else the last line of output.
+    """Let a node publish for up to 20 s. Return None if another node received a message, else the last output line.
 
-    With `confined`, the publisher is in a cell, and the other node is outside.
+    If `confined` is True, the publisher is in a cell, and the other node is outside.
     """
     with tempfile.TemporaryDirectory(prefix="grader-") as home, cell_user() as user:
         if confined:
@@ -70,7 +70,7 @@ def _talk_from_a_cell(ros: Ros, user: int | None) -> list[str]:
     view = bubblewrap.ros_view(ros, FASTDDS_PROFILE)
     talker, listener = _talker_and_listener(ros, env)
     confined = bubblewrap.cell(talker, view, env=env, network=True)
-    # The talker ends with the listener: cells die with their parent.
+    # The talker exits together with the listener, because cells are killed when their parent exits.
     script = f"{shlex.join(confined)} & exec {shlex.join(listener)}"
     return bubblewrap.room(["sh", "-c", script], view, env=env, user=user)
 
