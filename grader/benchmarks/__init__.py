@@ -1,1 +1,1 @@
-"""Benchmarks: speeds as ratios, measured in one run: `python -m grader.benchmarks.NAME`."""
+"""Benchmarks that measure speeds as ratios, within one run: `python -m grader.benchmarks.NAME`."""

@@ -2,16 +2,17 @@
 
     python -m grader.benchmarks.causes [--count 200] [--seed 1] [--only OPERATOR ...] [--keep FOLDER]
 
-It makes correct packages wrong with the operators of grader/tests/operators, with two operators in a third of the
-packages, and judges them in simulated time. The correct packages are the solutions and the cases of tests/unusual that
-follow ROS time. A package that still passes is not wrong, and is ignored. For the others, it prints:
+The benchmark puts mistakes into correct packages with the operators of grader/tests/operators (two operators in a third
+of the packages), and judges the packages in simulated time. The correct packages are the solutions and the cases of
+tests/unusual that follow ROS time. A package that still passes is not wrong, so it is ignored. For the others, the
+benchmark prints how often each of these is true:
 
 - first: the first failed check names the cause, at a line that must change;
-- at all: any failed check names it;
+- at all: any failed check names the cause in this way;
 - false: a failed check names a wrong cause. A diagnosis that only repeats what was observed does not count.
 
-It also lists what the reports missed. `--keep` stores the recordings, and `--again` judges them again without running
-anything.
+It also lists what the reports missed. `--keep` stores the recordings, and `--again` judges stored recordings again
+without running anything.
 """
 
 from __future__ import annotations
@@ -51,12 +52,12 @@ OBSERVATIONS = frozenset(
         "build-failed", "wrong-position", "wrong-distance",
     }
 )  # fmt: skip
-"""Diagnoses that only repeat what was observed, and claim no cause."""
+"""Diagnoses that only repeat what was observed, without claiming a cause."""
 
 
 @dataclass(frozen=True)
 class Judged:
-    """A wrong package with the outcomes of its checks, and the seconds that they took."""
+    """A wrong package with the outcomes of its checks, and how long judging it took (s)."""
 
     made: Made
     outcomes: tuple[Outcome, ...]
@@ -64,27 +65,27 @@ class Judged:
 
     @property
     def failed(self) -> list[Outcome]:
-        """Return the failed checks in the order of the report, without advice."""
+        """The failed checks in the order of the report, without advice."""
         return [each for each in self.outcomes if each.status is Status.FAILED and not each.advice]
 
     @property
     def first(self) -> bool:
-        """Return whether the first failed check names the cause."""
+        """Whether the first failed check names the cause."""
         return names(self.failed[0], self.made)
 
     @property
     def at_all(self) -> bool:
-        """Return whether any failed check names the cause."""
+        """Whether any failed check names the cause."""
         return any(names(outcome, self.made) for outcome in self.failed)
 
     @property
     def false(self) -> list[Outcome]:
-        """Return the failed checks that say something false."""
+        """The failed checks that say something false."""
         return [outcome for outcome in self.failed if is_false(outcome, self.made)]
 
 
 def names(outcome: Outcome, made: Made) -> bool:
-    """Return whether an outcome names one of the mistakes, at a line that must change."""
+    """Return whether an outcome names one of the mistakes and a line that must change."""
     finding = outcome.finding
     for operator, change in made.mistakes:
         where = finding.where
@@ -132,7 +133,7 @@ def again(kept: Path) -> Judged:
 
 
 def tell(all_: Iterable[Judged]) -> None:
-    """Print what the reports missed, and the figures."""
+    """Print what the reports missed, and the statistics."""
     every = list(all_)
     wrong = [each for each in every if each.failed]
     for each in wrong:
@@ -161,7 +162,7 @@ def tell(all_: Iterable[Judged]) -> None:
 
 
 def main() -> None:
-    """Make the wrong packages, judge them, and print the result."""
+    """Create the wrong packages, judge them, and print the result."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--count", type=int, default=200, help="how many wrong packages")
     parser.add_argument("--seed", type=int, default=1, help="which ones")

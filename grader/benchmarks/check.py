@@ -2,7 +2,8 @@
 
     python -m grader.benchmarks.check [--times N] [--submission FOLDER]
 
-Everything is measured in one run on the same machine, in turns, so that a busy moment affects all measurements.
+Everything is measured in one run on the same machine. The measurements alternate, so that a busy moment affects all of
+them.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ _GRADER = str(Path(sys.executable).with_name("grader"))
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions/03-circle-publisher")

@@ -3,10 +3,11 @@
     python -m grader.benchmarks.grade [--sizes 25,50,100,200] [--workers 1,2,4] [--dask-size 50] [--jobs N]
                                       [--mix right|all] [--times N]
 
-F (see grader.benchmarks.check) is measured before and after, in the same run. The class is mixed: of eight submissions,
-four are right, three are wrong in different ways, and one is hostile (`--mix right`: all are right). The submissions
-differ by a comment, so that the grader grades each of them. Memory is that of all processes of the run together, with
-those in the cells, sampled several times per second; shared memory is counted once.
+F (see grader.benchmarks.check) is measured before and after, in the same run. The class is mixed: out of every eight
+submissions, four are correct, three are wrong in different ways, and one is hostile. With `--mix right`, all are
+correct. Each submission contains a different comment, so that the grader grades every one of them. The memory is that
+of all processes of the run, including those in cells. It is sampled several times per second, and shared memory is
+counted once.
 """
 
 from __future__ import annotations
@@ -38,12 +39,12 @@ _STEP = "03-circle-publisher"
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _LOOK_S = 0.25
 AIM_F = 1.0
-"""The aim for the wall time per submission, with two processors."""
+"""The aim for the wall time per submission on two processors, in F."""
 
 
 @dataclass(frozen=True)
 class ClassCost:
-    """The seconds per submission, and the peak of the run's memory (MB)."""
+    """The seconds per submission, and the peak memory of the run (MB)."""
 
     size: int
     wall_s: float
@@ -52,7 +53,7 @@ class ClassCost:
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--sizes", default="25,50,100,200", help="submissions in a class (25,50,100,200)")
     parser.add_argument("--workers", default="1,2,4", help="Dask workers of one thread each (1,2,4); empty for none")
@@ -109,7 +110,7 @@ def _dask(folder: Path, size: int, workers: int, mix: str) -> ClassCost:
 
 
 def _class(folder: Path, size: int, mix: str) -> Path:
-    """Write the class; submissions of the same kind differ by a comment."""
+    """Write the submissions of the class. Submissions of the same kind differ in a comment."""
     from grader.tests.attack import make_attack, read_attacks
     from grader.tests.case import copy_solution
 
@@ -137,7 +138,7 @@ def _class(folder: Path, size: int, mix: str) -> Path:
 def _graded(submitted: Path, size: int, out: Path, options: list[str], also: list[int] | None = None) -> ClassCost:
     command = [_GRADER, "grade", str(submitted), "--exercise", _STEP, "--out", str(out), *options]
     with _watched(also or []) as peak:
-        # `cost` waits for all children, but those of a cluster continue.
+        # `cost` waits until all children exit, but the processes of a cluster keep running.
         measured = cost(command) if also is None else _alone(command)
     found = len(list((out / "reports").glob("*.json")))
     if found != size:
@@ -147,12 +148,12 @@ def _graded(submitted: Path, size: int, out: Path, options: list[str], also: lis
 
 
 def _alone(command: list[str]) -> Cost:
-    """Return the cost of a command whose work other processes do; only those that have ended are counted."""
+    """Return the cost of a command that leaves its work to other processes. Only exited processes are counted."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     begun = time.monotonic()
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     wall_s = time.monotonic() - begun
-    # This process reaps what a sandbox leaves (measure.cost has made it the subreaper); only reaped processes count.
+    # Reap the processes that a sandbox leaves (measure.cost made this process the subreaper). Only these are counted.
     while os.waitpid(-1, os.WNOHANG)[0]:
         pass
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -161,7 +162,7 @@ def _alone(command: list[str]) -> Cost:
 
 @contextmanager
 def _cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
-    """Start a scheduler and workers with one thread each; yield the address and the ids of their processes."""
+    """Start a scheduler, and workers with one thread each. Yield the address and the process ids."""
     folder.mkdir()
     file = folder / "scheduler.json"
     started: list[subprocess.Popen[bytes]] = []
@@ -181,7 +182,7 @@ def _cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]]]:
         _wait_for_workers(address, workers)
         yield address.removeprefix("tcp://"), [process.pid for process in started]
     finally:
-        # Stop one after the other: a worker that is stopped together with the scheduler may never end.
+        # Stop them one by one, because a worker that is stopped together with the scheduler may never exit.
         for process in reversed(started):
             process.terminate()
             process.wait()
@@ -196,7 +197,7 @@ def _wait_for_workers(address: str, workers: int) -> None:
 
 @contextmanager
 def _watched(also: list[int]) -> Iterator[list[float]]:
-    """Sample the memory of this process's descendants and of `also` with their descendants (MB)."""
+    """Sample the total memory (MB) of this process's descendants, and of the processes `also` and their descendants."""
     samples: list[float] = []
     stopped = Event()
 
@@ -222,7 +223,7 @@ def _family(pids: list[int]) -> set[int]:
         if pid in found:
             continue
         found.add(pid)
-        # Any of them may end in the meantime.
+        # Any of the processes may exit in the meantime.
         with suppress(OSError):
             for file in Path(f"/proc/{pid}/task").glob("*/children"):
                 with suppress(OSError):
@@ -231,7 +232,7 @@ def _family(pids: list[int]) -> set[int]:
 
 
 def _own_mb(pid: int) -> float:
-    """Return a process's share of memory; memory that several processes share is divided among them (PSS)."""
+    """Return the memory of a process (MB). Shared memory is divided among the processes that share it (PSS)."""
     with suppress(OSError):
         for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines():
             if line.startswith("Pss:"):
@@ -240,7 +241,7 @@ def _own_mb(pid: int) -> float:
 
 
 def _cpu_s(pid: int) -> float:
-    """Return the CPU seconds of a process, of its children that have ended, and of those that are running."""
+    """Return the CPU seconds of a process and all of its descendants, whether they are running or have exited."""
     total = 0.0
     for each in _family([pid]):
         try:

@@ -2,8 +2,8 @@
 
     python -m grader.benchmarks.html [--times N] [--submission FOLDER]
 
-F (see grader.benchmarks.check) and the cost of the page are measured in one run, in turns. The page's cost is what
-`grader check --html` needs in addition to `grader check`, with the imports.
+F (see grader.benchmarks.check) and the cost of the page are measured alternately in one run. The cost of the page is
+what `grader check --html` needs in addition to `grader check`, including imports.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _CLASS = 200
 
-# Runs in a process that has done everything of `grader check` except the page; prints the page's seconds and bytes.
+# This script first does what `grader check` does. Then it creates the page, and prints the seconds taken and the bytes.
 _PAGE = """
 import sys, time
 from pathlib import Path
@@ -51,7 +51,7 @@ print(time.perf_counter() - begun, Path(sys.argv[2]).stat().st_size)
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions/03-circle-publisher")
@@ -106,7 +106,7 @@ def _showing(folder: Path, times: int) -> None:
 
 
 def _opening(tab: Page, address: str) -> tuple[float, float]:
-    """Open a page; return the seconds in its scripts, and the seconds until it is loaded and laid out."""
+    """Open a page. Return the seconds that its scripts took, and the seconds until it was loaded."""
     session = tab.context.new_cdp_session(tab)
     session.send("Performance.enable")
     tab.goto(address)

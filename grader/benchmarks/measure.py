@@ -1,4 +1,4 @@
-"""Measure a command with all its descendants: wall time, CPU time, and the peak memory of its own process."""
+"""Measure a command: wall time and CPU time with all its descendants, and the peak memory of the command itself."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class Cost:
 
 
 def cost(argv: Sequence[str], *, env: Mapping[str, str] | None = None, cwd: Path | None = None) -> Cost:
-    """Run a command to its end.
+    """Run a command until it exits, and return its cost.
 
     Raises: RuntimeError: the command failed.
     """
-    # Become the parent of orphans, so that the processes that a sandbox leaves are counted, too.
+    # Adopt orphaned processes, so that the processes that a sandbox leaves are counted too.
     ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     begun = time.monotonic()
@@ -57,7 +57,7 @@ def cost(argv: Sequence[str], *, env: Mapping[str, str] | None = None, cwd: Path
 
 
 def median(run: Callable[[], Cost], times: int) -> Cost:
-    """Run a command `times` times; return the median of each figure."""
+    """Run a command `times` times. Return the median of each figure."""
     costs = [run() for _ in range(times)]
     return Cost(*(statistics.median(getattr(c, name) for c in costs) for name in ("wall_s", "cpu_s", "peak_mb")))
 
@@ -73,6 +73,6 @@ def _peak_mb(pid: int) -> float:
 
 
 def cpu_s(pid: int) -> float:
-    """Return the CPU seconds of a running process so far, without those of its children."""
+    """Return the CPU seconds that a running process has used so far, without those of its children."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

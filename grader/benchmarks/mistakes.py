@@ -2,10 +2,11 @@
 
     python -m grader.benchmarks.mistakes [--only NNN ...]
 
-F is what the same work costs bare: a colcon build of the package, and a process with one rclpy node for each node that
-the exercise runs (benchmarks/bare.py), each the median of three; 04-package-files runs two nodes, 07-challenges four.
-The speed of a machine changes within the minutes that this takes, so F is measured again every few cases. A case that
-seems to be over the aim is measured three times more, each time next to F, and the median counts.
+F is the cost of the same work without the grader: a colcon build of the package, and a process with one rclpy node for
+each node that the exercise runs (benchmarks/bare.py). Each part is the median of three measurements. For example,
+04-package-files runs two nodes, and 07-challenges runs four. The speed of a machine changes during the minutes that
+this benchmark takes, so F is measured again every few cases. A case that seems to exceed the aim is measured three more
+times, each time right after F, and the median is used.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ CASES_A_PIECE = 10
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--only", nargs="*", default=[], help="numbers of cases (default: all)")
     arguments = parser.parse_args()
@@ -68,7 +69,7 @@ def main() -> None:
 
 
 def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
-    """Return what the checks of some cases cost in F, without the cases that needed wall time."""
+    """Return the cost in F of checking each case, except for the cases that needed wall time."""
     bare = _bare_s(folder / "bare")
     found: dict[str, float] = {}
     for case in cases:
@@ -83,14 +84,14 @@ def _ratios(cases: Sequence[Case], folder: Path) -> dict[str, float]:
 
 
 def _beside_f(case: Case, folder: Path) -> float:
-    """Return the ratio of a check to an F measured right before it; infinite if the check needed wall time."""
+    """Return the ratio of a check to an F measured right before it, or infinity if the check needed wall time."""
     bare = _bare_s(folder / "bare")
     seconds = _whole_s(case, folder / "whole")
     return math.inf if seconds is None else seconds / _f_s(case, bare)
 
 
 def _bare_s(folder: Path) -> dict[str, float]:
-    """Return the seconds of each part of F; a single measurement would vary too much."""
+    """Return the median seconds of each part of F, because a single measurement would vary too much."""
     costs = [bare_costs(SOLUTION, folder / str(turn)) for turn in range(3)]
     return {part: statistics.median(each[part].wall_s for each in costs) for part in costs[0]}
 
@@ -104,7 +105,7 @@ def _exercise(case: Case) -> Exercise:
 
 
 def _static_s(case: Case, folder: Path) -> float:
-    """Return the seconds from a folder to the findings in its files."""
+    """Return the seconds from opening the folder to the findings about its files."""
     given = make_submission(case, folder)
     exercise = _exercise(case)
     begun = time.monotonic()
@@ -114,7 +115,7 @@ def _static_s(case: Case, folder: Path) -> float:
 
 
 def _whole_s(case: Case, folder: Path) -> float | None:
-    """Return the seconds of a whole check; None if it needed wall time."""
+    """Return the seconds of a whole check, or None if it needed wall time."""
     begun = time.monotonic()
     graded = grade(case, "auto", folder)
     seconds = time.monotonic() - begun

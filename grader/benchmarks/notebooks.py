@@ -2,10 +2,14 @@
 
     python -m grader.benchmarks.notebooks [--repeat N] [--class N]
 
-It measures in one run, on the same machine: `nbgrader autograde` of step 03's solved notebook; the same for a notebook
-with an empty check (nbgrader's own cost: its imports, a kernel, the database); one `grader check` of the package. The
-first should cost at most 1.5 times the other two together. Then it measures a class: nbgrader autogrades it one by one,
-and `grader gradebook sync` grades several at once.
+In one run on the same machine, this benchmark measures:
+
+- `nbgrader autograde` of the solved notebook of step 03;
+- the same for a notebook with empty cells, which is nbgrader's own cost (imports, a kernel, the database);
+- one `grader check` of the package.
+
+The first should cost at most 1.5 times as much as the other two together. Then a class is measured: nbgrader autogrades
+the submissions one by one, and `grader gradebook sync` grades several at once.
 """
 
 from __future__ import annotations
@@ -31,7 +35,7 @@ AT_MOST = 1.5
 
 
 def seconds(argv: list[str], cwd: Path) -> float:
-    """Return the seconds of a command; show its output only if it fails."""
+    """Return the seconds that a command takes. Its output is shown only if it fails."""
     env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
     begun = time.monotonic()
     done = subprocess.run(argv, cwd=cwd, env=env, capture_output=True, text=True, check=False)
@@ -43,7 +47,7 @@ def seconds(argv: list[str], cwd: Path) -> float:
 
 
 def nbgrader(root: Path, *words: str) -> float:
-    """Return the seconds of an nbgrader command."""
+    """Return the seconds that an nbgrader command takes."""
     return seconds(interpreter("-m", "nbgrader", *words).argv, root / "course")
 
 
@@ -55,11 +59,11 @@ c.CourseDirectory.release_directory = "exercises"
 c.CourseDirectory.submitted_directory = "class/submitted"
 c.GenerateAssignment.force = True
 """
-"""An nbgrader_config.py without our additions."""
+"""An nbgrader_config.py without the grader's additions."""
 
 
 def make_empty(root: Path) -> None:
-    """Write the same notebook with empty cells, for plain nbgrader."""
+    """Create a class with plain nbgrader, and the same notebook with empty cells."""
     make_class(root, None)
     (root / "course" / "nbgrader_config.py").write_text(PLAIN.format(root=str(root)))
     file = root / "solutions" / STEP / f"{STEP}.ipynb"
@@ -79,7 +83,7 @@ def _empty(cell: dict[str, Any]) -> None:
 
 
 def hand_in(root: Path, students: int) -> None:
-    """Hand in the solution for this many students; each copy differs a little, so that each is graded."""
+    """Hand in the solution for this many students. The copies differ slightly, so that each one is graded."""
     node = f"{STEP}/my_robot_controller/my_robot_controller/draw_circle.py"
     solution = (course_folder().parent / "solutions" / node).read_text()
     for number in range(students):
@@ -89,7 +93,7 @@ def hand_in(root: Path, students: int) -> None:
 
 
 def main() -> None:
-    """Measure, and print a table."""
+    """Measure everything and print a table."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--class", dest="students", type=int, default=20)

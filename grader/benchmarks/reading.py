@@ -2,8 +2,8 @@
 
     python -m grader.benchmarks.reading [--times N] [--submission FOLDER]
 
-The submission is graded once. Then all that was read of it is read again and again, in both ways by turns. CPU time
-counts: it is the same whoever else uses the machine.
+The submission is graded once. Then everything that was read from it is read repeatedly, alternating between both ways.
+The limit applies to CPU time, because CPU time depends less on what else the machine is doing.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ if TYPE_CHECKING:
 
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _MOST_S = 0.04
-"""What it may cost (s)."""
+"""The limit on the cost (s of CPU time)."""
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=20, help="repetitions; medians are printed")
     parser.add_argument("--submission", type=Path, default=course_folder().parent / "solutions/03-circle-publisher")
@@ -53,7 +53,7 @@ def main() -> None:
         inside = reader._Child.inside = bool(turn % 2)
         before = _now()
         _read(asked.submission, evidence)
-        if turn > 1:  # the first of each imports what is imported late
+        if turn > 1:  # the first turn of each kind includes late imports
             after = _now()
             costs[inside].append((after[0] - before[0], after[1] - before[1]))
     wall_s, cpu_s = (
@@ -69,7 +69,7 @@ def main() -> None:
 
 
 def _read(submission: Path, evidence: Evidence) -> None:
-    """All that a check of the submission reads, in the same pieces."""
+    """Read everything that a check of the submission reads, in the same steps."""
     judging = Judging("auto")
     opened = open_submission(submission)
     files = dataclasses.replace(evidence, submission=opened, build=None, runs={})
@@ -80,7 +80,7 @@ def _read(submission: Path, evidence: Evidence) -> None:
 
 
 def _now() -> tuple[float, float]:
-    """Wall time and CPU time, of this process and its children (s)."""
+    """Return the wall time, and the CPU time of this process and its children (s)."""
     times = os.times()
     return time.monotonic(), times.user + times.system + times.children_user + times.children_system
 

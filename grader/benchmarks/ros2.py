@@ -2,8 +2,8 @@
 
     python -m grader.benchmarks.ros2 [--times N]
 
-Everything is measured in one run, in turns, so that a busy moment affects all measurements. It also prints how often
-the list was complete.
+Everything is measured in one run. The measurements alternate, so that a busy moment affects all of them. The benchmark
+also prints how often the list was complete.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ _ROS2 = str(Path(sys.executable).with_name("ros2"))
 _NODE = "import rclpy; rclpy.init(); node = rclpy.create_node('bare'); node.destroy_node(); rclpy.shutdown()"
 _COMPLETE = "/parameter_events\n/rosout\n/turtle1/cmd_vel\n/turtle1/color_sensor\n/turtle1/pose\n"
 AIM_S = {"topic list": 0.8, "interface show": 0.25}
-"""The aims: wall seconds on an idle machine."""
+"""The aims for the wall time on an idle machine (s)."""
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=40, help="repetitions (40)")
     times = parser.parse_args().times
     ros = underlay.with_turtlesim(installation.find_ros())
     with tempfile.TemporaryDirectory() as home:
         user = {"HOME": home, "PATH": os.environ.get("PATH", "/usr/bin:/bin")}
-        # No user has this domain by default.
+        # The grader assigns this domain to no user.
         env = installation.users_environment(ros, user, domain=0)
         commands = {
             "topic list": [_ROS2, "topic", "list"],

@@ -2,7 +2,8 @@
 
     python -m grader.benchmarks.sandbox [--times N] [--submission FOLDER]
 
-Everything is measured in one run on the same machine, in turns, so that a busy moment affects all measurements.
+Everything is measured in one run on the same machine. The measurements alternate, so that a busy moment affects all of
+them.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ from grader.sandbox import bubblewrap
 _ROOT = Path(__file__).resolve().parents[2]
 _EXERCISE = "03-circle-publisher"
 _MOST = 0.5
-"""What the sandbox may cost (F)."""
-# Each grading runs in a process of its own, as a check does.
+"""The limit on the cost of the sandbox (F)."""
+# Each grading runs in its own process, like a check.
 _GRADE = """
 import sys
 from grader.checks.exercises import find_exercise
@@ -36,7 +37,7 @@ sys.exit(report.exit_code)
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _EXERCISE)

@@ -2,9 +2,9 @@
 
     python -m grader.benchmarks.view [--seconds 10] [--keys 30]
 
-The simulator, the server and a browser with one page are real; nine more pages are programs that only listen. The
-browser's own processor time is not counted. Run it on an idle machine, since the browser and the simulator share the
-cores.
+The simulator, the server and a browser with one page are real. Nine more pages are simulated by connections that only
+listen. The browser's own processor time is not counted. Run the benchmark on an idle machine, since the browser and the
+simulator share the cores.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ if TYPE_CHECKING:
 
 AIM_FRAMES_HZ = 30.0
 AIM_CPU = 0.15
-"""The aim: the share of one core for the simulator and the server together."""
+"""The aim for the share of one core that the simulator and the server use together."""
 AIM_LATENCY_S = 0.06
 
-# Returns the milliseconds from the key press until the browser draws the frame in which the turtle has moved.
+# Returns the milliseconds from the key press until the browser draws the frame in which the turtle has first moved.
 _LATENCY = """key => new Promise(resolve => {
     const turtle = document.querySelector(".turtle");
     const before = turtle.getAttribute("transform");
@@ -68,7 +68,7 @@ class Cost:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Measure and print."""
+    """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--seconds", type=float, default=10.0, help="how long each measurement lasts")
     parser.add_argument("--keys", type=int, default=30, help="how often a key is pressed")
@@ -121,7 +121,7 @@ def _opened(browser: Browser, url: str) -> Page:
 
 @contextmanager
 def _listening(url: str) -> Iterator[None]:
-    """Act as one more tab for the server, without the processor time of a browser."""
+    """Connect to the server like one more tab, without using the processor time of a browser."""
     host, _, token = url.removeprefix("http://").partition("/#")
     with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as link:
         reading = threading.Thread(target=lambda: [None for _ in link], daemon=True)
@@ -131,13 +131,13 @@ def _listening(url: str) -> Iterator[None]:
 
 
 def _latency(page: Page, number: int) -> float:
-    """Return the seconds from a key to the turtle's move; forwards and backwards in turns, away from the walls."""
+    """Return the seconds from a key press until the turtle moves. It alternates its direction to avoid the walls."""
     key = "ArrowUp" if number % 2 else "ArrowDown"
     if number == 0:
-        # The first key adds the driving node to the graph.
+        # The first key press adds the driving node to the graph.
         page.evaluate(_LATENCY, key)
         _rest(page, key)
-    # Press at any time within a frame.
+    # Vary the time of the key press within a frame.
     time.sleep(0.2 + (number * 7 % 32) / 1000)
     latency: float = page.evaluate(_LATENCY, key)
     _rest(page, key)

@@ -2,8 +2,8 @@
 
     python -m grader.benchmarks.watch [--times N] [--submission FOLDER --exercise NAME --file PATH]
 
-It watches a real terminal: the time runs from the save until the line after the verdict. F is measured in the same run,
-in turns, so that a busy moment affects both.
+The benchmark reads a real terminal. The time is measured from the save until the line after the verdict appears. F is
+measured alternately in the same run, so that a busy moment affects both.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ _STEP = "03-circle-publisher"
 _FILE = "my_robot_controller/draw_circle.py"
 _PATIENCE_S = 300
 _REST_S = 2.0
-"""The shortest time that a learner thinks between two saves; the next trial is prepared meanwhile."""
+"""The shortest time (s) that a learner thinks between two saves. Meanwhile, the next trial is prepared."""
 
 
 def main() -> None:
-    """Measure and print."""
+    """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=5, help="saves; medians are printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _STEP / "my_robot_controller")
@@ -43,7 +43,7 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as folder:
             package = Path(shutil.copytree(arguments.submission, Path(folder) / "home" / arguments.submission.name))
             saves.append(_save_s(package, arguments.exercise, package / arguments.file))
-            # Only now: that measurement waits for all children of this process.
+            # Measure F only now, because this waits until all children of this process exit.
             scratch = Path(folder) / "bare"
             scratch.mkdir()
             bare.append(sum(each.wall_s for each in bare_costs(package, scratch).values()))
