@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class GraderError(Exception):
-    """Base class of all errors of the grader; a command exits with `exit_code` (docs/design.md, decision 9)."""
+    """The base class of all errors of the grader. A command exits with `exit_code` (docs/design.md, decision 9)."""
 
     exit_code = 3
 

@@ -153,7 +153,7 @@ def _alone(command: list[str]) -> Cost:
     begun = time.monotonic()
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     wall_s = time.monotonic() - begun
-    # Reap the processes that a sandbox leaves (measure.cost made this process the subreaper). Only these are counted.
+    # Reap the processes that a sandbox leaves, so that they are counted. measure.cost made this process the subreaper.
     while os.waitpid(-1, os.WNOHANG)[0]:
         pass
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -29,7 +29,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 _GRADER = str(Path(sys.executable).with_name("grader"))
 _CLASS = 200
 
-# This script first does what `grader check` does. Then it creates the page, and prints the seconds taken and the bytes.
+# This script does what `grader check` does, then creates the page, and prints how long that took (s) and its size.
 _PAGE = """
 import sys, time
 from pathlib import Path

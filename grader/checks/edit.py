@@ -1,4 +1,4 @@
-"""A small change to the files of a submission that would fix a mistake. The grader tries it."""
+"""A small change to the files of a submission that would fix a mistake. The grader tries the change."""
 
 from __future__ import annotations
 

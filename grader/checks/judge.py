@@ -125,7 +125,7 @@ def _blocks(finding: Finding) -> bool:
 
 
 def _in_order(specs: Iterable[CheckSpec]) -> list[CheckSpec]:
-    """Sort the checks so that each one comes after all those that it needs. No exercise has a cycle of needs."""
+    """Sort the checks so that each one comes after all those that it needs. These needs are never circular."""
     waiting = list(specs)
     done: dict[str, CheckSpec] = {}
     while waiting:

@@ -1,6 +1,6 @@
-"""numpy, imported when it is first used: the import takes 0.1 s, and most commands do not need it.
+"""Import numpy when it is first used, because the import takes 0.1 s and most commands do not need it.
 
-`from grader.common.lazy import np` is for modules that many commands import and few use.
+Use `from grader.common.lazy import np` in modules that many commands import but only a few commands use.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 
 class _Lazy:
-    """A stand-in for a module that imports it on first use. It may be used from any thread."""
+    """A stand-in that imports a module on first use. It may be used from any thread."""
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -25,7 +25,7 @@ class Need(NamedTuple):
 
 
 class Manager(NamedTuple):
-    """A package manager. Its commands are shell lines; `quiet` holds the options for use without a user to ask."""
+    """A package manager. Its commands are shell lines; `quiet` holds options for when nobody can answer questions."""
 
     program: str
     systems: Tuple[str, ...]

@@ -103,7 +103,7 @@ def clean_environment(env: Mapping[str, str]) -> Dict[str, str]:
         "PIP_USER",
         "PIP_REQUIRE_VIRTUALENV",
     }
-    # Without the last variable, the ROS 2 wheels would start every interpreter twice.
+    # Without this additional variable, the ROS 2 wheels would start every interpreter twice.
     return {**{name: env[name] for name in env if name not in foreign}, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
 
 
@@ -114,7 +114,7 @@ def look(
     path = os.environ.get("PATH", "")
     tools = machine.missing_tools(path, ros)
     if "tests" in parts:
-        # Half of the tests need the sandbox, so here it is required.
+        # Half of the tests need the sandbox, so it is required here.
         tools = [need._replace(lost="") for need in tools] + machine.missing_of_tests(path)
     if made:
         return None, tools

@@ -76,7 +76,7 @@ class Crash:
 
 
 def crash_of(evidence: Evidence) -> Crash | None:
-    """Return the crash because of which the node exited before the end of the scenario, or None."""
+    """Return the crash that made the node exit before the end of the scenario, or None."""
     end = evidence.recording.end
     if end.out_of is not None:
         return Crash(f"it used all the {end.out_of} that a node may use", "")

@@ -140,7 +140,7 @@ def _too_few(scene: CrashScene, function: str, names: str) -> Cause:
 
 
 def _init_misspelt(scene: CrashScene) -> Cause | None:
-    """Return the cause if a class has a method with a misspelt name like __init__, else None."""
+    """Return the cause if a class has a method whose name is a misspelling of __init__, else None."""
     for own in scene.classes:
         names = {each.name: each for each in methods(own)}
         found = [name for name in names if name.strip("_") in ("init", "int", "inti") or name == "__intit__"]
