@@ -1,1 +1,1 @@
-"""colcon: it builds a submission in a cell, and reads the result."""
+"""colcon: build a submission in a cell, and read the result."""

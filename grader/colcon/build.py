@@ -7,20 +7,20 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Build:
-    """The result of `colcon build`, read from the install tree. None of its code runs for that.
+    """The result of `colcon build`, read from the install tree without running any of its code.
 
-    Paths are POSIX paths relative to install/<package>. `entry_points` are the installed console_scripts,
-    name -> "module:attribute".
+    Paths are POSIX paths relative to install/<package>. `entry_points` maps the names of the installed console_scripts
+    to "module:attribute".
     """
 
     exit_code: int
     log: str
-    """Standard output and standard error of colcon together, with a limit."""
+    """The combined standard output and standard error of colcon, limited in size."""
     package: str | None = None
     """The name of the installed package; None if nothing was installed."""
     timed_out: bool = False
     out_of: str | None = None
-    """The limit of the sandbox that was reached: "disk", "memory", ...; None if none was."""
+    """The sandbox limit that was reached, such as "disk" or "memory"; None if none was."""
     installed: tuple[str, ...] = ()
     executables: tuple[str, ...] = ()
     """The names of the files in lib/<package>, which `ros2 run` can start."""

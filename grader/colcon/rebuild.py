@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Rebuild:
-    """Stands in for `runner.build`; `runs` counts how often a new build was needed, which `build` then makes."""
+    """A replacement for `runner.build` that reuses the last build. `runs` counts the new builds made by `build`."""
 
     def __init__(self, build: Callable[..., runner.Built] = runner.build) -> None:
         self.runs = 0
@@ -38,7 +38,7 @@ class Rebuild:
         in_cell: bool,
         tell: Callable[[str], None],
     ) -> runner.Built:
-        """Build the submission, with or without colcon; `tell` shows which."""
+        """Build the submission, with or without colcon. `tell` reports which of the two."""
         built = read(renewed, submission, *self._last) if self._last else None
         if built is not None:
             tell("Using the last build with the changed modules")
@@ -50,7 +50,7 @@ class Rebuild:
 
 
 def renewed(submission: Submission, before: Submission, built: runner.Built) -> runner.Built | None:
-    """Return the last build with the changed modules, or None if more than modules changed."""
+    """Return the last build with the changed modules, or None if a new build is needed."""
     if submission.files.keys() != before.files.keys() or submission.executable != before.executable:
         return None
     changed = {path: data for path, data in submission.files.items() if data != before.files[path]}
@@ -62,7 +62,7 @@ def renewed(submission: Submission, before: Submission, built: runner.Built) -> 
 
 
 def _installed(path: str, built: runner.Built) -> str | None:
-    """Return where a module of the submission was installed, or None for other files."""
+    """Return the path to which this module of the submission was installed, or None for any other file."""
     if not path.endswith(".py") or "/" not in path:
         return None
     places = [place for place in built.build.installed if place.endswith(f"/site-packages/{path}")]
@@ -70,7 +70,7 @@ def _installed(path: str, built: runner.Built) -> str | None:
 
 
 def _with_texts(tree: bytes, texts: dict[str, bytes]) -> bytes:
-    """Return the tree with these members replaced, and without Python's compiled versions of the old ones."""
+    """Return the tree with these members replaced, and without the compiled versions of the old modules."""
     stale = {str(PurePosixPath(path).parent / "__pycache__" / f"{PurePosixPath(path).stem}.") for path in texts}
     renewed = io.BytesIO()
     with tarfile.open(fileobj=io.BytesIO(tree)) as old, tarfile.open(fileobj=renewed, mode="w") as new:

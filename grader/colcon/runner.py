@@ -1,7 +1,7 @@
-"""Runner: it runs `colcon build` on a submission in a cell, and reads the result without running it.
+"""Runner: run `colcon build` on a submission in a cell, and read the result without executing it.
 
-The source enters the cell as a tar stream, and the install tree leaves it as one. So the build does not touch the disk
-of this machine, and the same stream enters the cell of the trial.
+The source enters the cell as a tar stream, and the install tree leaves it as another tar stream. So the build does not
+touch the disk of this machine, and the same stream is later passed to the cell of the trial.
 """
 
 from __future__ import annotations
@@ -39,10 +39,11 @@ MOST_LOG = 256 * 1024
 MOST_TREE = 64 * MIB
 MOST_FILES = 20_000
 MOST_ENTRY_POINTS = 100 * 1024
-"""The largest entry_points.txt (bytes)."""
+"""The maximum size of entry_points.txt (bytes)."""
 
-# Standard output holds the install tree only: colcon and its processes write to standard error. --base-paths, since
-# colcon would search every folder below; sequential, since there is one package, and workers take time.
+# Standard output contains only the install tree: colcon and its processes write to standard error. The option
+# --base-paths keeps colcon from searching every folder below. The executor is sequential because there is only one
+# package and starting workers takes time.
 _SCRIPT = r"""
 echo cell-is-ready >&2
 cd "$WS" && mkdir -p src || exit 90
@@ -52,8 +53,8 @@ code=$?
 [ -d install ] && tar -c --format=gnu -f - -C install .
 exit $code
 """
-# Whether the machine can build is known before the first byte of the submission arrives. Output from after that never
-# counts as a message of the machine.
+# The script reports whether the machine can build before it reads the first byte of the submission. Output after that
+# never counts as a message about the machine.
 _COLCON = r"""
 import os, subprocess, sys
 from colcon_core.command import main
@@ -83,7 +84,7 @@ class Built:
 
 
 def build(submission: Submission, ros: installation.Ros, *, in_cell: bool, tell: Callable[[str], None]) -> Built:
-    """Build the submission's package with this ROS 2. `tell` gets a line about it.
+    """Build the submission's package with this ROS 2. `tell` is called with a short message about it.
 
     Raises:
         MachineError: the sandbox or colcon itself does not work.
@@ -135,7 +136,7 @@ def _workspace(*, in_cell: bool) -> Iterator[tuple[Path, Path]]:
 
 
 def _pack(submission: Submission) -> bytes:
-    """Return the submission as a tar stream, in a folder of its own name. The same files give the same bytes."""
+    """Return the submission as a tar stream with one top-level folder. The same files always give the same bytes."""
     stream = io.BytesIO()
     with tarfile.open(fileobj=stream, mode="w|", format=tarfile.PAX_FORMAT) as tar:
         for path, content in submission.files.items():
@@ -160,9 +161,9 @@ def _read(done: process.Finished) -> Built:
 
 
 def _described(done: process.Finished) -> tuple[Build, bool]:
-    """Return what the build left, and whether its install tree must not be used."""
+    """Return the result of the build, and whether its install tree must be discarded."""
     lines = done.stderr[len(_READY) :].decode("utf-8", "replace").splitlines(keepends=True)
-    # The prefix of the wheels is not a colcon install tree. This has nothing to do with the submission.
+    # colcon complains that the prefix of the wheels is not a colcon install tree. This is unrelated to the submission.
     log = "".join(line for line in lines if "colcon_ros.prefix_path.ament" not in line)
     out_of = next((name for name, signs in _LIMITS_HIT.items() if any(sign in done.stderr for sign in signs)), None)
     cut = done.timed_out or done.too_much or done.out_of is not None
@@ -198,7 +199,10 @@ def _entry_points(files: dict[PurePosixPath, Member], tree: bytes) -> dict[str, 
 
 
 def read_entry_points(text: str) -> dict[str, str]:
-    """Return the console_scripts of an entry_points.txt, in one pass: the patterns of configparser are quadratic."""
+    """Return the console_scripts in the text of an entry_points.txt.
+
+    This takes a single pass over the text. The regular expressions of configparser take quadratic time.
+    """
     found: dict[str, str] = {}
     section = ""
     for line in map(str.strip, text.splitlines()):

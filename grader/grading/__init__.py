@@ -1,1 +1,1 @@
-"""Grading: it puts all parts together, from a folder to a report."""
+"""Grading: connect all the parts, from the folder of a submission to its report."""

@@ -1,16 +1,18 @@
-"""Which clock judges a trial, and when a trial is repeated.
+"""Choose the clock of a trial, and decide when a trial is repeated.
 
 The rules, in the order in which they are applied:
 
-1. `--clock simulated` or `--clock wall` decides.
-2. Without these options, a trial begins in simulated time: nothing has to wait, and no other program can disturb it.
-   If the source contains a sign that the node may follow wall time, the trial begins in wall time (grader.trial.clues).
-3. A trial in simulated time ends at the first sign that the node follows wall time after all: a thread sleeps, commands
-   arrive while the clock is held, or the node never rests (grader.trial.simulated). Wall time decides then.
-4. If a measured value is near the edge of its tolerance, or the node did not stop, wall time decides too.
-5. A trial in wall time that fails while other programs use the processors is repeated, without other gradings beside
-   it. A busy machine can make a right node look wrong, but not a wrong node right. So the first trial that passes
-   counts. If none of WALL_TRIALS passes, the one that was disturbed least counts.
+1. `--clock simulated` or `--clock wall` sets the clock.
+2. Without these options, a trial starts in simulated time. Nothing has to wait then, and no other program can disturb
+   the trial. If the source contains a sign that the node may follow wall time, the trial starts in wall time instead
+   (grader.trial.clues).
+3. A trial in simulated time stops at the first sign that the node follows wall time after all: a thread sleeps,
+   commands arrive while the clock is held, or the node never becomes idle (grader.trial.simulated). Wall time decides
+   then.
+4. Wall time also decides if a measured value is near the edge of its tolerance, or if the node did not stop.
+5. If a trial in wall time fails while other programs use the processors, it is repeated without any other grading at
+   the same time. A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct. So
+   the first trial that passes counts. If none of WALL_TRIALS passes, the one with the least disturbance counts.
 """
 
 from __future__ import annotations
@@ -34,7 +36,7 @@ if TYPE_CHECKING:
 ClockChoice = Literal["auto", "simulated", "wall"]
 
 WALL_TRIALS = 3
-"""The most trials in wall time that are made because the machine is busy."""
+"""The maximum number of trials in wall time on a busy machine."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class Clock:
 
 @dataclass(frozen=True)
 class Attempt:
-    """One run of a trial: the evidence with its recording, and what the checks found in it."""
+    """One run of a trial: the evidence with its recording, and the judgement of the checks."""
 
     evidence: Evidence
     judgement: Judgement
@@ -64,7 +66,7 @@ class Attempt:
 
     @property
     def disturbance(self) -> tuple[bool, float]:
-        """How other programs disturbed it: whether they took the processors, and how long it stood still (s)."""
+        """How other programs disturbed the trial: whether they crowded the machine, and how long it stalled (s)."""
         return self.evidence.recording.crowded, self.evidence.recording.stalled_s
 
 
@@ -73,7 +75,7 @@ ALONE = Clock("simulated", "the simulator ran without a node, so its pace does n
 
 
 def first_clock(choice: ClockChoice, evidence: Evidence) -> Clock:
-    """Return the clock under which this trial begins (rules 1 and 2)."""
+    """Return the clock with which this trial starts (rules 1 and 2)."""
     if choice != "auto":
         return Clock(choice, f"chosen with --clock {choice}")
     try:
@@ -87,28 +89,28 @@ def first_clock(choice: ClockChoice, evidence: Evidence) -> Clock:
 
 
 def stops_at_doubt(choice: ClockChoice) -> bool:
-    """Return whether a trial in simulated time ends when the node may follow wall time (rule 3)."""
+    """Return whether a trial in simulated time stops as soon as the node may follow wall time (rule 3)."""
     return choice == "auto"
 
 
 def after_doubt(doubt: WallTimeNeeded) -> Clock:
-    """Return the clock of the trial after one that ended at a doubt (rule 3)."""
+    """Return the clock for the trial that follows one that stopped at a doubt (rule 3)."""
     return Clock("wall", str(doubt))
 
 
 def after_simulated(choice: ClockChoice, attempt: Attempt) -> Clock | None:
-    """Return the clock that decides after a trial in simulated time (rule 4); None if that trial counts."""
+    """Return the clock for repeating a trial in simulated time (rule 4), or None if that trial counts."""
     if choice == "simulated" or not any(outcome.finding.near_edge for outcome in attempt.outcomes):
         return None
     return Clock("wall", "a measured value is near the edge of its tolerance, where wall time decides")
 
 
 def wants_another(attempts: Sequence[Attempt]) -> bool:
-    """Return whether a trial in wall time is repeated after these (rule 5)."""
+    """Return whether a trial in wall time must be repeated after these attempts (rule 5)."""
     last = attempts[-1]
     return len(attempts) < WALL_TRIALS and last.disturbance > (False, 0.0) and not last.passed
 
 
 def that_counts(attempts: Sequence[Attempt]) -> Attempt:
-    """Return the trial in wall time that counts (rule 5)."""
+    """Return the attempt in wall time that counts (rule 5)."""
     return attempts[-1] if attempts[-1].passed else min(attempts, key=lambda attempt: attempt.disturbance)

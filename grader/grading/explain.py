@@ -1,7 +1,7 @@
 """Prove causes: change a copy of the submission at the place that a failed check names, and run it again.
 
-A fixed cause stays fixed while the next one is tried, so mistakes behind mistakes show too. The copy is built
-and run like the submission itself: in the cell, in simulated time.
+A fixed cause stays fixed while the next one is tried. This also reveals mistakes that were hidden by other mistakes.
+The copy is built and run in the cell, like the submission itself, and in simulated time.
 """
 
 from __future__ import annotations
@@ -28,21 +28,22 @@ if TYPE_CHECKING:
 
 MOST_TRIES = 6
 MOST_F = 1.5
-"""All tries of a submission take at most this many times the bare build and run of its package."""
+"""The maximum time for all tries of a submission, as a multiple of the time for building its package and running a bare
+node."""
 BARE_NODE_S = 0.35
-"""The time of a bare process with one node (s)."""
+"""The time for running a minimal process with one node (s)."""
 ENOUGH = f"only {MOST_TRIES} changes are tried"
 TOO_LONG = "there was no time to try more"
 NOT_SIMULATED = "a changed node needs wall time"
 
 
 def explain(evidence: Evidence, outcomes: Sequence[Outcome], build_s: float, regrade: Regrade) -> Tries:
-    """Try to fix the causes of the failed outcomes. `build_s` is how long the build took."""
+    """Try to fix the causes of the failed outcomes. `build_s` is the duration of the build (s)."""
     return _Explaining(evidence, outcomes, MOST_F * (build_s + BARE_NODE_S), regrade).run()
 
 
 def part_of(exercise: Exercise, check: str) -> Exercise:
-    """Return the exercise with only the trial of this check, and only the checks of that trial and what they need."""
+    """Return the exercise with only the checks of this check's trial, everything they need, and their trials."""
     specs = {spec.id: spec for spec in exercise.checks}
     trial = specs[check].trial
     wanted: dict[str, CheckSpec] = {}
@@ -104,7 +105,7 @@ class _Explaining:
         return Tries(tuple(self.made), len(self.behind), stopped)
 
     def _share(self, target: Outcome, found: Mapping[str, Outcome], diff: str) -> set[Key]:
-        """Note the result for other checks with the same cause; return those that need no try any more."""
+        """Record the result for other checks with the same cause. Return the keys that need no try of their own."""
         same = [
             each
             for each in self.outcomes
@@ -118,7 +119,7 @@ class _Explaining:
 
 
 def _result(target: Outcome, before: Mapping[str, Outcome], after: Mapping[str, Outcome]) -> Result | None:
-    """Return what came of a try; None if it could not be judged."""
+    """Return the result of a try, or None if the try is inconclusive."""
     now = after.get(target.id)
     if now is not None and now.status is Status.ERROR:
         return None

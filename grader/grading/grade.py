@@ -1,4 +1,4 @@
-"""Grade one submission: build it, run it, judge what was observed. The one place where all parts meet."""
+"""Grade one submission: build it, run it, and judge what was observed. This module connects all the other parts."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Graded:
-    """The report, and what it was judged from. `prefixes` hold the installed message types."""
+    """A report and the evidence behind it. `prefixes` are the folders in which the message types are installed."""
 
     report: Report
     evidence: Evidence
@@ -61,9 +61,10 @@ def grade(
 ) -> Graded:
     """Grade a submission.
 
-    `tell` gets a few words about each step. `early` gets the checks that fail for certain before anything is built. A
-    fault of the machine becomes outcomes of status `error`, never an exception. `build` and `trial` can be replaced:
-    `grader watch` passes builds and trials that it began before.
+    `tell` is called with a short message about each step. `early` is called with the outcomes that are certain to fail,
+    before anything is built. A fault of the machine is reported as outcomes with the status `error`, and never as an
+    exception. `build` and `trial` can be replaced. For example, `grader watch` passes builds and trials that it started
+    in advance.
     """
     turns = Turns(turns_folder())
     rebuild = Rebuild(build) if options.explain else build
@@ -79,7 +80,7 @@ def _explained(
     build: Callable[..., runner.Built],
     trial: Callable[..., Trial],
 ) -> Graded:
-    """Return the grading with its causes proved by trying to fix them, if the first trial was in simulated time."""
+    """Return the grading, with its causes proved by trying to fix them if the first trial ran in simulated time."""
     report, evidence = graded.report, graded.evidence
     if report.clock == "wall" or not report.with_status(Status.FAILED):
         return graded
@@ -90,7 +91,7 @@ def _explained(
         return grade(exercise, submission, again, build=build, trial=in_simulated_time).report.outcomes
 
     def in_simulated_time(plan: Plan, *rest: Any, **more: Any) -> Trial:  # noqa: ANN401 - whatever a Trial gets
-        """A mended node may follow wall time, or never rest: then nothing is known of the try."""
+        """Create a trial in simulated time. If the fixed node may follow wall time, the try is inconclusive."""
         if plan.clock == "wall":
             raise MachineError("A try is made in simulated time only.")  # noqa: EM101
         return trial(dataclasses.replace(plan, stop_at_doubt=True), *rest, **more)
@@ -106,7 +107,7 @@ def _explained(
 
 @dataclass
 class _Grading:
-    """One grading. `settled` holds the findings that no later stage can change, by the ids of the checks."""
+    """The grading of one submission. `settled` maps the ids of checks to findings that no later stage can change."""
 
     exercise: Exercise
     submission: Submission
@@ -143,7 +144,7 @@ class _Grading:
         return Graded(report, evidence, prefixes)
 
     def _run_all(self, certain: Early) -> None:
-        """Build the submission and run its trials. A failure of the machine becomes the fault of the evidence."""
+        """Build the submission and run its trials. A failure of the machine is stored as the fault of the evidence."""
         try:
             self.ros = find_ros()
             with self.stopwatch.stage("interfaces"):
@@ -155,7 +156,7 @@ class _Grading:
         except MachineError as error:
             self.evidence = dataclasses.replace(self.evidence, fault=Fault(self.stage, str(error)))
         except Exception as error:
-            # The machine refused it, or else the submission caused it.
+            # Either the machine refused an operation, or the submission caused the error.
             refused = refusal(error)
             fault = Fault(self.stage, refused) if refused else Fault(self.stage, in_words(error), unreadable=True)
             self.evidence = dataclasses.replace(self.evidence, fault=fault)
@@ -189,6 +190,6 @@ class _Grading:
 
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:
-    """Return the evidence as seen from each trial, the longest first, so that it does not run alone at the end."""
+    """Return a view of the evidence per trial. The longest comes first, so that it does not run alone at the end."""
     views = [evidence.from_trial(spec.id) for spec in evidence.exercise.trials]
     return sorted(views, key=lambda view: -view.trial.scenario.duration_s)

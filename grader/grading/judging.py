@@ -1,7 +1,7 @@
-"""Judging: it judges one submission while it is graded, first the files, then the build, then each trial.
+"""Judging: judge one submission while it is graded, first the files, then the build, then each trial.
 
-All of this reads what a student wrote, so it happens in a child process (submission/reader.py). If that process exceeds
-its limits, this is a failure of the submission: every check becomes `unreadable`, and nothing more is read.
+All of this reads files that a student wrote, so it runs in a child process (submission/reader.py). If that process
+exceeds its limits, the submission is at fault: every check becomes `unreadable`, and nothing more is read.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ UNREAD = Clock("wall", "the source could not be read")
 
 @dataclass
 class Judging:
-    """Judges one submission, and finds the clock under which each of its trials begins. `choice` is `--clock`."""
+    """Judges one submission and chooses the first clock of each trial. `choice` is the value of `--clock`."""
 
     choice: ClockChoice
     fault: Fault | None = None
@@ -39,7 +39,7 @@ class Judging:
     """The first clock of each trial, by its id."""
 
     def early(self, evidence: Evidence) -> Early:
-        """Return what is certain from the files alone."""
+        """Return the results that are already certain from the files alone."""
         try:
             early, self._clocks = read(_early, evidence, self.choice)
         except UnreadableError as error:
@@ -62,11 +62,11 @@ class Judging:
         return judge_so_far(self.known(evidence), {})
 
     def first_clock(self, evidence: Evidence) -> Clock:
-        """Return the clock under which this trial begins. After the build, the installed entry point decides."""
+        """Return the clock with which this trial starts. After the build, it depends on the installed entry point."""
         return self._clocks.get(evidence.trial.id, UNREAD)
 
     def known(self, evidence: Evidence) -> Evidence:
-        """Return the evidence, with the fault that the submission could not be read."""
+        """Return the evidence. If the submission could not be read, its fault says so."""
         return evidence if self.fault is None else dataclasses.replace(evidence, fault=self.fault)
 
     def _give_up(self, error: UnreadableError) -> None:

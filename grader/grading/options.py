@@ -12,14 +12,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Options:
-    """How to grade: `in_cell` confines the student's code (grader.sandbox).
+    """How to grade a submission. `in_cell` confines the student's code (grader.sandbox).
 
-    `trials_at_once` trials of an exercise run at the same time. Use one if other gradings keep the processors busy.
+    `trials_at_once` is the number of trials of an exercise that run at the same time. Set it to 1 if other gradings
+    keep the processors busy.
     """
 
     in_cell: bool
     clock: ClockChoice = "auto"
     seed: int | None = None
     explain: bool = False
-    """Whether causes are proved by trying to fix them."""
+    """Whether to prove causes by trying to fix them."""
     trials_at_once: int = field(default_factory=lambda: len(os.sched_getaffinity(0)))

@@ -1,4 +1,4 @@
-"""The plan of a trial: its clock, its start and inputs, drawn from the seed, and the topics that the checks need."""
+"""The plan of a trial: its clock, its start and inputs (drawn from the seed), and the topics that the checks need."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from grader.trial.recording import ClockName
 
 USUAL_RADIUS_M = 2.0
-"""A random start leaves room for a circle of this radius, unless a check needs another."""
+"""A random start leaves room for a circle of this radius (m), unless a check needs a different one."""
 DEFAULT_SEED = 1
-"""The seed of scenarios that vary, if the user gave none."""
+"""The seed for scenarios with random values, if the user gives none."""
 
 
 def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: int | None) -> Plan:
-    """Return the plan of this trial. `seed` is the user's, `choice` the value of `--clock`."""
+    """Return the plan of this trial. `seed` is the seed from the user, and `choice` is the value of `--clock`."""
     scenario = evidence.trial.scenario
     checks = [check for check in evidence.exercise.checks if check.trial == evidence.trial.id]
     radii = [KINDS[check.kind].radius(check.params) for check in checks]
@@ -44,6 +44,6 @@ def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: 
 
 
 def _topics(checks: Sequence[CheckSpec]) -> tuple[str, ...]:
-    """Return the topics that these checks need: every string that begins with a slash, since some are topics."""
+    """Return the topics that these checks need: every parameter that begins with a slash, since it may be a topic."""
     names = {value for check in checks for value in check.params.values() if isinstance(value, str)}
     return tuple(sorted(name for name in names if name.startswith("/")))

@@ -11,14 +11,14 @@ if TYPE_CHECKING:
 
 
 class Stopwatch:
-    """`seconds` holds the wall time of each stage (s), in the order in which they began to be measured."""
+    """Measures the stages of a grading. `seconds` maps each stage to its wall time (s), in order of measurement."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Add the time until the end of the block to this stage."""
+        """Add the duration of the `with` block to this stage."""
         begun = time.monotonic()
         try:
             yield

@@ -1,4 +1,4 @@
-"""The trials of one grading: started beside the build, run, and repeated where the policy of the clock says so."""
+"""The trials of one grading: start them during the build, run them, and repeat them if the clock policy requires it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class Trials:
-    """Makes and runs the trials of one submission. `tree` is its install tree (a tar stream)."""
+    """Creates and runs the trials of one submission. `tree` is its install tree (a tar stream)."""
 
     def __init__(
         self,
@@ -55,13 +55,13 @@ class Trials:
         self.tree = b""
 
     def start(self, views: Iterable[Evidence]) -> None:
-        """Start simulator and launcher of these trials while the submission is built."""
+        """Start the simulator and the launcher of each of these trials while the submission is built."""
         for view in views:
             name = self._started[view.trial.id] = self._judging.first_clock(view).name
             self._ahead.start(view.trial.id, self._trial(view, name))
 
     def run_ahead(self, views: Iterable[Evidence]) -> None:
-        """Start the nodes of those trials that were started in simulated time. `run` waits for their recordings."""
+        """Start the nodes of the trials that were started in simulated time. `run` waits for their recordings."""
         for view in views:
             if self._judging.first_clock(view).name == "simulated" and self._begun(view) is not None:
                 self._ahead.run(view.trial.id, _package(view), view.trial.executable, self.tree)
@@ -69,8 +69,9 @@ class Trials:
     def run(self, evidence: Evidence, settled: Mapping[str, Finding]) -> Attempt:
         """Run this trial. Return the evidence with the recording that counts, judged after the `settled` findings.
 
-        A node that brings the simulator down once may have met a fault of the machine. If it happens twice, the node is
-        the cause. A node that kept the simulator busy for minutes has no second trial: a class would wait too long.
+        If a node brings the simulator down once, the machine may be at fault. If it happens twice, the node is the
+        cause. A node that kept the simulator busy for minutes does not get a second trial, because a class would have
+        to wait too long.
         """
         clock, begun = self._judging.first_clock(evidence), self._begun(evidence)
         try:
@@ -93,12 +94,12 @@ class Trials:
         return self._attempt(evidence.with_run(Run(dataclasses.replace(recording, why=ALONE.why))), {})
 
     def _begun(self, evidence: Evidence) -> Runs | None:
-        """Return the trial that was started beside the build; None if there is none with the right clock."""
+        """Return the trial that was started during the build, or None if there is none with the right clock."""
         fits = self._started.get(evidence.trial.id) == self._judging.first_clock(evidence).name
         return self._ahead.trial(evidence.trial.id) if fits else None
 
     def _decide(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:
-        """Run the trial under its clock, and in wall time if that one must decide."""
+        """Run the trial with its clock, and repeat it in wall time if wall time must decide."""
         if clock.name == "simulated":
             try:
                 attempt = self._run(evidence, trial, clock, settled)

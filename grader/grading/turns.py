@@ -1,8 +1,8 @@
-"""Turns: gradings share the machine, but a trial in wall time that is repeated has the machine to itself.
+"""Turns: gradings share the machine, but a trial that is repeated in wall time has the machine to itself.
 
-This concerns the gradings of one user only. The locks are flock(2): the kernel releases the locks of a process that is
-killed. A grading that wants the machine alone holds a second lock, the turnstile, while it waits. Later gradings stop
-there, so it does not wait for ever.
+This applies only to the gradings of one user. The locks use flock(2), so the kernel releases them when a process is
+killed. A grading that needs the machine to itself holds a second lock, the turnstile, while it waits. Later gradings
+stop there, so it does not wait forever.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 WAIT_S = 120.0
-"""After this time (s), a grading continues although the machine is not free."""
+"""After this time (s), a grading continues even if the machine is not free."""
 _POLL_S = 0.02
 
 
 class Turns:
-    """The turn of one grading. They all use the lock files in `folder`. Without it, nobody waits."""
+    """The turn of one grading. All gradings use the lock files in `folder`. Without these files, no grading waits."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._locks: tuple[IO[bytes], IO[bytes]] | None = None
-        """The lock files of the turnstile and the machine, while the machine is shared."""
+        """The lock files of the turnstile and the machine, while this grading shares the machine; otherwise None."""
 
     @contextmanager
     def shared(self) -> Iterator[None]:
@@ -54,12 +54,13 @@ class Turns:
 
     @contextmanager
     def alone(self) -> Iterator[None]:
-        """Have the machine alone. Use this inside `shared`."""
+        """Use the machine exclusively. Call this inside `shared`."""
         if self._locks is None:
             yield
             return
         turnstile, machine = self._locks
-        # Release the share first: two gradings that want the machine alone would wait for each other.
+        # Release the shared lock first. Otherwise, two gradings that want the machine to themselves would wait for each
+        # other.
         fcntl.flock(machine, fcntl.LOCK_UN)
         _lock(turnstile, fcntl.LOCK_EX)
         _lock(machine, fcntl.LOCK_EX)
@@ -81,11 +82,11 @@ def _locked(file: IO[bytes], how: int) -> bool:
         fcntl.flock(file, how | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
-    except OSError:  # a file system without locks: nobody waits
+    except OSError:  # the file system does not support locks, so no grading waits
         pass
     return True
 
 
 def folder() -> Path:
-    """Return the folder of the lock files of this user."""
+    """Return the folder that contains the lock files of this user."""
     return xdg.cache() / f"turns-{os.getuid()}"
