@@ -1,1 +1,1 @@
-"""Evidence: the files, the build and the recordings, ready to be judged, and their archive on disk."""
+"""Evidence: the files, the build and the recordings that are judged, and their archive on disk."""

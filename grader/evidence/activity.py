@@ -1,4 +1,4 @@
-"""What a recording shows of the submission: its nodes, its publishers, its commands while the scenario ran."""
+"""What a recording shows of the submission during the scenario: its nodes, its publishers and its commands."""
 
 from __future__ import annotations
 
@@ -10,40 +10,41 @@ if TYPE_CHECKING:
     from grader.trial.recording import Command, Endpoint, Recording
 
 ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
-"""Topics on which every node publishes, or the grader."""
+"""Topics on which every node, or the grader, publishes."""
 SPINS = re.compile(r'executors\.py", line \d+, in (?:await_or_execute|handler|_execute_\w+)\b')
-"""A frame of rclpy's executor that calls callbacks, in a traceback."""
+"""In a traceback, a stack frame of rclpy's executor that calls callbacks."""
 START_S = 0.2
 """The length of the first moment (s): the clock may start before the publisher of the node is known."""
 
 
 def end_s(recording: Recording) -> float:
-    """Return when the scenario was over, on the trial's clock (s): at SIGINT, or when it was due."""
+    """Return when the scenario was over, on the trial's clock (s): at SIGINT, or at its scheduled end."""
     if recording.end.by == "itself":
         return max(recording.sigint_t_s, recording.duration_s)
     return recording.sigint_t_s
 
 
 def ended_at_start(recording: Recording) -> bool:
-    """Return whether the node ended by itself before it ran.
+    """Return whether the node exited by itself before it ran.
 
-    A node whose exception came out of rclpy's spin ran, however soon that was. This depends neither on the clock nor on
-    when the node was first observed. Without such an exception, the first moment decides.
+    A node ran if it raised an exception inside rclpy's spin, no matter how soon. This depends neither on the clock nor
+    on when the node was first observed. Without such an exception, a node that exits within the first moment did not
+    run.
     """
     end = recording.end
     return end.by == "itself" and end.t_s <= START_S and not spun(recording)
 
 
 def spun(recording: Recording) -> bool:
-    """Return whether an exception on standard error came out of a callback that rclpy's executor had called."""
+    """Return whether standard error shows an exception from a callback that was called by rclpy's executor."""
     return bool(SPINS.search(recording.stderr.text))
 
 
 def commands(recording: Recording) -> tuple[Command, ...]:
-    """Return the commands that arrived before SIGINT, by arrival.
+    """Return the commands that arrived before SIGINT, in the order of arrival.
 
-    If all of them arrived in the first moment, none is returned. Commands that are published before discovery is over
-    are usually lost. Whether they arrive depends on the machine, and a report must not depend on it.
+    If all of them arrived in the first moment, return none. Commands that are published before discovery is over are
+    usually lost. Whether they arrive depends on the machine, and a report must not depend on that.
     """
     until = end_s(recording)
     found = tuple(command for command in recording.commands if command.t_s < until)
@@ -51,13 +52,13 @@ def commands(recording: Recording) -> tuple[Command, ...]:
 
 
 def nodes(recording: Recording) -> tuple[str, ...]:
-    """Return the full names of the submission's nodes, sorted, each once."""
+    """Return the full names of the submission's nodes, sorted and without duplicates."""
     own = Counter(recording.own_nodes)
     return tuple(sorted({name for graph in recording.graphs for name in Counter(graph.nodes) - own}))
 
 
 def endpoints(recording: Recording, kind: str) -> tuple[Endpoint, ...]:
-    """Return the publishers or subscriptions of the submission, each once, without those that every node has."""
+    """Return the publishers or subscriptions of the submission without duplicates, and without those of every node."""
     found = {
         endpoint: None
         for graph in recording.graphs

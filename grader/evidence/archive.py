@@ -1,4 +1,4 @@
-"""Archive: a graded submission as a folder, with all that is needed to judge it again. Nothing has to run for that.
+"""Archive: a graded submission as a folder that contains everything needed to judge it again, without running it.
 
     trials/ID/       one folder per trial: bag/ with the messages (rosbag2, MCAP), trial.json with the rest
     build.json       the result of the build
@@ -8,7 +8,7 @@
     exercise/        the exercise as it was: exercise.toml
     COLCON_IGNORE    so that colcon never runs the submission's setup.py
 
-trials/ID/ is missing if that trial was not run, build.json if nothing was built.
+trials/ID/ is missing if that trial was not run, and build.json is missing if nothing was built.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _SCHEMA = 2
 
 @dataclass(frozen=True)
 class Archived:
-    """The evidence of an archive, and the name of the ROS 2 for the report."""
+    """The evidence in an archive, and the name of the ROS 2 installation for the report."""
 
     evidence: Evidence
     ros: str
@@ -59,7 +59,7 @@ def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -
     check_free(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        # Without this file, colcon in a folder above would run the submission's setup.py outside the sandbox.
+        # Without this file, running colcon in a parent folder would run the submission's setup.py outside the sandbox.
         (folder / IGNORE_MARKER).touch()
         submission = evidence.submission
         write_copy(submission, folder / "source" / submission.package_dir.name)
@@ -99,10 +99,10 @@ def _load_recording(folder: Path) -> Recording | None:
 
 
 def check_free(folder: Path) -> None:
-    """Check that a recording can be written there, before a trial runs.
+    """Check that a recording can be written to this folder, before a trial is run.
 
     Raises:
-        UsageError: it is a file, or a folder that is not empty.
+        UsageError: the path is a file, or a folder that is not empty.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         message = f"{folder} is not an empty folder. A recording needs a folder of its own: name a new one."
@@ -110,15 +110,17 @@ def check_free(folder: Path) -> None:
 
 
 def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
-    """Read an archive. `read_exercise` gets the path of its exercise.toml, and returns the exercise to judge by.
+    """Read an archive.
+
+    `read_exercise` is called with the path of its exercise.toml and returns the exercise to judge by.
 
     Raises:
-        UsageError: the folder is no archive of this version of the grader.
+        UsageError: the folder is not an archive that this version of the grader can read.
     """
     try:
         about = _read(folder / "submission.json")
         kept = read_exercise(folder / "exercise" / FILE_NAME)
-        package = folder / "source" / Path(text(about["package"])).name  # nowhere else
+        package = folder / "source" / Path(text(about["package"])).name  # only inside the archive
         opened = open_submission(package) if kept.package else open_answers(package)
         submission = Submission(
             name=text(about["name"]),
@@ -180,7 +182,7 @@ def _tries(data: dict[str, Any]) -> Tries:
 
 
 def _write(file: Path, data: dict[str, Any]) -> None:
-    # A name that is not UTF-8 becomes an escape sequence, so that every program can read the JSON.
+    # A name that is not valid UTF-8 is escaped, so that every program can read the JSON.
     file.write_text(json.dumps(data, indent=1, ensure_ascii=True) + "\n", encoding="ascii")
 
 

@@ -1,4 +1,4 @@
-"""Arrivals of repeated messages: the intervals between them, without those that a stall of the machine changed."""
+"""Arrivals of repeated messages: the intervals between them, except those that a stall of the machine changed."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Measured:
-    """Arrivals (s), the intervals between them, their mean, and the time before the first and after the last.
+    """Arrival times (s), the intervals between them, their mean, and the times before the first and after the last one.
 
-    `intervals` and `mean_s` are without those that a stall of the machine changed, and without those that begin in the
-    first moment (`activity.START_S`). `trusted` is the share of intervals that no stall changed.
+    `intervals` and `mean_s` leave out the intervals that a stall of the machine changed, and those that begin in the
+    first moment (`activity.START_S`). `begins` are the times at which the intervals begin. `trusted` is the share of
+    intervals that no stall changed.
     """
 
     arrivals: tuple[float, ...]
@@ -32,13 +33,13 @@ class Measured:
 
 
 def measure_arrivals(recording: Recording, times_s: Iterable[float]) -> Measured:
-    """Measure arrivals before SIGINT. The mean is 0 if there are fewer than two."""
+    """Measure the arrivals before SIGINT. The mean is 0 if there are fewer than two arrivals."""
     arrivals = tuple(times_s)
     until = activity.end_s(recording)
     if not arrivals:
         return Measured((), (), (), 1.0, 0.0, until, until)
     every = list(pairwise(arrivals))
-    # Messages from before the start of the clock arrive when discovery is over, and not when they are sent.
+    # Messages that are sent before the clock starts arrive when discovery is over, and not when they are sent.
     pairs = [pair for pair in every if pair[0] > activity.START_S] or every
     trusted = [pair for pair in pairs if not any(recording.stalled(t_s) for t_s in pair)]
     intervals = tuple(later - earlier for earlier, later in trusted)

@@ -1,4 +1,4 @@
-"""The messages of a recording as a rosbag2 folder (MCAP), for `ros2 bag` and other readers."""
+"""Store the messages of a recording as a rosbag2 folder (MCAP), for `ros2 bag` and other readers."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from grader.trial.recording import Message
 
 _VERSION: Literal[9] = 9
-"""The version of the metadata of rosbag2 that Jazzy reads and writes."""
+"""The version of the rosbag2 metadata that Jazzy reads and writes."""
 
 
 def write_bag(folder: Path, messages: Sequence[Message], prefixes: Iterable[Path]) -> None:
-    """Write the messages, in order, to a new folder. `prefixes` hold the .msg files of types that rosbags lacks.
+    """Write the messages in order to a new folder. `prefixes` hold the .msg files of types that rosbags does not have.
 
-    The stamp is the arrival on the trial's clock (ns), 0 for messages from before the scenario. Messages of one instant
-    are a nanosecond apart, since readers sort by stamps.
+    The timestamp is the arrival time on the trial's clock (ns), or 0 for messages from before the scenario. Messages
+    that arrived at the same instant are a nanosecond apart, because readers sort by timestamp.
     """
     store = jazzy_types()
     known = list(prefixes)
@@ -41,7 +41,7 @@ def write_bag(folder: Path, messages: Sequence[Message], prefixes: Iterable[Path
 
 
 def read_payloads(folder: Path) -> Iterator[bytes]:
-    """Yield the CDR data of the messages in the order in which `write_bag` got them.
+    """Yield the CDR data of the messages in the order in which they were passed to `write_bag`.
 
     Raises:
         ValueError: the bag is damaged.
@@ -52,6 +52,6 @@ def read_payloads(folder: Path) -> Iterator[bytes]:
                 yield bytes(data)
     except GeneratorExit:
         raise
-    except Exception as error:  # a damaged file can raise anything: because of an offset, a string or a checksum
+    except Exception as error:  # a damaged file can cause any exception, through an offset, a string or a checksum
         message = f"the bag is damaged: {error}"
         raise ValueError(message) from error

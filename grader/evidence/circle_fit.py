@@ -11,12 +11,15 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats
 
 FLAT = 1e-9
-"""If the quadratic part of a fit is smaller than this, the points are on a straight line."""
+"""If the quadratic part of a fit is smaller than this, the points are considered to be on a straight line."""
 
 
 @dataclass(frozen=True)
 class Circle:
-    """Centre and radius (m); `rms` is the root of the mean squared distance of the points from the circle (m)."""
+    """A circle with its centre and radius (m).
+
+    `rms` is the root mean square distance of the points from the circle (m).
+    """
 
     x: float
     y: float
@@ -25,12 +28,12 @@ class Circle:
 
 
 def fit_circle(x: Floats, y: Floats) -> Circle | None:
-    """Return the circle that fits the points best; None for fewer than three points or points on a line.
+    """Return the circle that fits the points best, or None for fewer than three points or points on a straight line.
 
-    `x` and `y` have the shape (N,). An algebraic fit with Taubin's constraint, which does not shrink short arcs:
-    G. Taubin, "Estimation of planar curves, surfaces and nonplanar space curves defined by implicit equations",
-    IEEE Trans. PAMI 13 (1991) 1115-1138; by singular values as in N. Chernov, "Circular and Linear Regression"
-    (2010), section 5.9-5.10. The result is None if a coordinate is NaN.
+    `x` and `y` have the shape (N,). The result is None if a coordinate is NaN. The fit is algebraic, with Taubin's
+    constraint, which does not shrink short arcs: G. Taubin, "Estimation of planar curves, surfaces and nonplanar space
+    curves defined by implicit equations", IEEE Trans. PAMI 13 (1991) 1115-1138. It is computed from singular values as
+    in N. Chernov, "Circular and Linear Regression" (2010), sections 5.9 and 5.10.
     """
     if len(x) < 3 or not (np.isfinite(x).all() and np.isfinite(y).all()):
         return None
@@ -54,7 +57,10 @@ def fit_circle(x: Floats, y: Floats) -> Circle | None:
 
 
 def turns_about(x: Floats, y: Floats, centre_x: float, centre_y: float) -> float:
-    """Return the number of turns about a centre, positive if counter-clockwise. Each step must be below half a turn."""
+    """Return the number of turns about a centre, positive if counter-clockwise.
+
+    Each step must be less than half a turn.
+    """
     if len(x) < 2:
         return 0.0
     angle = np.unwrap(np.arctan2(y - centre_y, x - centre_x))

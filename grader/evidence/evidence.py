@@ -1,4 +1,4 @@
-"""Evidence: all that a check may look at."""
+"""Evidence: everything that a check may use."""
 
 from __future__ import annotations
 
@@ -28,9 +28,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Fault:
-    """Why `stage` and all later stages could not be done: a fault of the machine, and what to do.
+    """Why `stage` and all later stages could not be completed: a fault of the machine, and what to do about it.
 
-    `unreadable`: the machine is not at fault, but something that the submission produced could not be read.
+    If `unreadable` is set, the machine is not at fault. Instead, something that the submission produced could not be
+    read.
     """
 
     stage: Stage
@@ -40,19 +41,19 @@ class Fault:
 
 @dataclass(frozen=True)
 class Run:
-    """The result of one trial; empty if it was not run."""
+    """The result of one trial. It is empty if the trial was not run."""
 
     recording: Recording | None = None
     overwhelmed: str | None = None
-    """How the node brought the simulator down, twice. Then there is no recording."""
+    """How the node brought the simulator down, twice. There is no recording in that case."""
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """A submission and what was observed of it. `build` is None if it was not built.
+    """A submission and what was observed of it. `build` is None if the submission was not built.
 
-    A check looks at the evidence from one of the exercise's trials: `trial` is that trial, `recording` its recording.
-    The source files are read on first use, from `submission.files`.
+    A check uses the evidence as a view from one of the exercise's trials. `trial` is that trial, and `recording` is its
+    recording. The source files are parsed on first use, from `submission.files`.
     """
 
     exercise: Exercise
@@ -64,15 +65,15 @@ class Evidence:
     tries: Tries = field(default_factory=Tries)
     """The results of trying to fix the causes."""
     trial_id: str = ""
-    """The id of the trial from which the evidence is seen; empty for the first trial of the exercise."""
+    """The id of the trial of this view; empty for the first trial of the exercise."""
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the fields alone, without what was read on first use: that is not sent to another process."""
+        """Return only the fields. What was parsed on first use is not sent to another process."""
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
     @property
     def trial(self) -> TrialSpec:
-        """The trial from which the evidence is seen."""
+        """The trial of this view of the evidence."""
         return self.exercise.trial(self.trial_id) if self.trial_id else self.exercise.trials[0]
 
     @property
@@ -81,11 +82,11 @@ class Evidence:
         return self.runs.get(self.trial.id, Run())
 
     def from_trial(self, id_: str) -> Evidence:
-        """Return the same evidence, seen from this trial."""
+        """Return the view of the same evidence from this trial."""
         return self if id_ == self.trial.id else self._views[id_]
 
     def views(self) -> tuple[Evidence, ...]:
-        """Return the evidence as seen from each trial that was run, and from the first trial in any case."""
+        """Return a view of the evidence from each trial that was run, and always from the first trial."""
         ids = [trial.id for trial in self.exercise.trials]
         return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
 
@@ -117,7 +118,7 @@ class Evidence:
 
     @cached_property
     def node_file(self) -> str | None:
-        """The source file of the node: the module of the entry point, else the file named after the executable."""
+        """The source file of the node: the module of the entry point, or else the file named after the executable."""
         target = self.entry_point()
         files = self.submission.files
         if target is not None:
@@ -129,7 +130,7 @@ class Evidence:
 
     @cached_property
     def code(self) -> Code:
-        """The code of the node's file and of the files that it imports."""
+        """The code of the node's file and of the submission's files that it imports."""
         return read_code(self.submission.files, first=self.node_file)
 
     @cached_property
@@ -144,11 +145,11 @@ class Evidence:
 
     @cached_property
     def trajectory(self) -> Trajectory:
-        """The trajectory of the turtle until SIGINT."""
+        """The trajectory of the turtle up to SIGINT."""
         return trajectory_of(self.recording)
 
     def entry_point(self) -> str | None:
-        """Return the entry point "module:attribute" of the executable: the installed one, else that in setup.py."""
+        """Return the executable's entry point "module:attribute": the installed one, or else the one in setup.py."""
         executable = self.trial.executable
         if self.build is not None and executable in self.build.entry_points:
             return self.build.entry_points[executable]
@@ -157,7 +158,10 @@ class Evidence:
 
     @property
     def recording(self) -> Recording:
-        """The recording of this trial. Only checks of the stage "trial" may use it: they are not judged without it."""
+        """The recording of this trial.
+
+        Only checks of the stage "trial" may use it, since they are not judged without it.
+        """
         if self.run.recording is None:
             message = "a check of a trial was judged without a recording"
             raise ValueError(message)
@@ -172,7 +176,7 @@ class Evidence:
         return self.build
 
     def place(self, *calls: str) -> Where | None:
-        """Return where the first of these functions that the code calls is called; else the node's file."""
+        """Return where the first of these functions that occurs in the code is called; otherwise the node's file."""
         for name in calls:
             found = self.code.calls(name)
             if found:

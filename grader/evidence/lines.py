@@ -1,4 +1,4 @@
-"""Lines of the log that the student's node wrote, and the format that the lesson asks for."""
+"""Log lines that the student's node wrote, and the format that the lesson asks for."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ OUR_LOGGERS = ("turtlesim",)
 
 @dataclass(frozen=True)
 class Format:
-    """The format of a line with numbers, such as "Hello {counter}" or "x={x:.2f}" with two decimal places."""
+    """The format of a line that contains numbers, such as "Hello {counter}" or "x={x:.2f}" with two decimal places."""
 
     text: str
 
     def pattern(self) -> re.Pattern[str]:
-        """Return the pattern that a whole line must match. Its groups are the numbers."""
+        """Return the pattern that a whole line must match. Its groups capture the numbers."""
         parts, at = [], 0
         for match in FIELD.finditer(self.text):
             digits = match["digits"]
@@ -32,26 +32,26 @@ class Format:
         return re.compile("".join([*parts, re.escape(self.text[at:])]), re.ASCII)
 
     def example(self, number: float = 0.0) -> str:
-        """Return a line in this format, with the same number everywhere."""
+        """Return an example line in this format, with the same number in every field."""
         return FIELD.sub(lambda match: f"{number:.{match['digits'] or 0}f}", self.text)
 
 
 @dataclass(frozen=True)
 class Line:
-    """A line in the format, with its arrival (s) and its numbers."""
+    """A line that matches the format, with its arrival time (s) and its numbers."""
 
     t_s: float
     numbers: dict[str, float]
 
 
 def students(recording: Recording) -> tuple[LogLine, ...]:
-    """Return the lines that the submission logged before SIGINT, by arrival."""
+    """Return the lines that the submission logged before SIGINT, in the order of arrival."""
     until = activity.end_s(recording)
     return tuple(line for line in recording.log if line.logger not in OUR_LOGGERS and line.t_s < until)
 
 
 def in_format(recording: Recording, text: str) -> tuple[Line, ...]:
-    """Return the lines that have the format."""
+    """Return the lines that match the format."""
     pattern = Format(text).pattern()
     found = ((line.t_s, pattern.fullmatch(line.text)) for line in students(recording))
     return tuple(

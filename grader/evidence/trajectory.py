@@ -1,4 +1,4 @@
-"""Trajectory: where the turtle drove until SIGINT, from the frames of the simulator."""
+"""Trajectory: where the turtle went up to SIGINT, from the frames of the simulator."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
 
 RESTS_M = 1e-9
-"""The turtle rests in a frame in which it moves at most this far (m)."""
+"""The turtle is at rest in a frame in which it moves at most this far (m)."""
 STRAIGHT_RAD = 1e-9
-"""A step that turns by at most this is straight (rad)."""
+"""A step that turns by at most this angle counts as straight (rad)."""
 
 
 @dataclass(frozen=True)
 class Trajectory:
-    """The trajectory until SIGINT, one step per frame.
+    """The trajectory up to SIGINT, with one step per frame.
 
-    `x` and `y` (m) have the shape (N + 1,) and begin with the start position. The others have the shape (N,): the time
-    `t_s` (s), `turn`, the change of the heading (rad), and `wall`, whether the simulator clamped the position.
+    `x` and `y` (m) have the shape (N + 1,) and begin with the start position. The others have the shape (N,): `t_s` is
+    the time (s), `turn` is the change of the heading (rad), and `wall` says whether the simulator clamped the position.
     """
 
     x: Floats
@@ -40,22 +40,22 @@ class Trajectory:
 
     @cached_property
     def steps(self) -> Floats:
-        """Length of each step (m)."""
+        """The length of each step (m)."""
         return np.hypot(np.diff(self.x), np.diff(self.y))
 
     @property
     def length_m(self) -> float:
-        """Length of the trajectory (m)."""
+        """The length of the trajectory (m)."""
         return float(self.steps.sum())
 
     @property
     def turned_rad(self) -> float:
-        """Sum of all turns to the left and to the right (rad)."""
+        """The sum of all turns to the left and to the right (rad)."""
         return float(np.abs(self.turn).sum())
 
     @cached_property
     def points(self) -> tuple[Floats, Floats]:
-        """The points of the trajectory, x and y (m), without those at rest."""
+        """The points of the trajectory, x and y (m), without the frames in which the turtle is at rest."""
         moving = np.flatnonzero(self.steps > RESTS_M)
         if not len(moving):
             return self.x[:0], self.y[:0]
@@ -64,12 +64,12 @@ class Trajectory:
 
     @cached_property
     def circle(self) -> Circle | None:
-        """The circle that fits the points best; None for a straight trajectory."""
+        """The circle that fits the points best, or None for a straight trajectory."""
         return fit_circle(*self.points)
 
     @property
     def turns(self) -> float:
-        """Number of turns about the centre of that circle, positive if counter-clockwise; 0 without a circle."""
+        """The number of turns about the centre of that circle, positive if counter-clockwise; 0 without a circle."""
         return 0.0 if self.circle is None else turns_about(*self.points, self.circle.x, self.circle.y)
 
     @property
@@ -81,7 +81,7 @@ class Trajectory:
 
     @property
     def sides(self) -> int:
-        """Number of straight pieces. A turn ends a piece, a stop does not."""
+        """The number of straight pieces. A turn ends a piece, but a stop does not."""
         moves = self.steps > RESTS_M
         straight = moves & (np.abs(self.turn) <= STRAIGHT_RAD)
         turned = np.cumsum(np.abs(self.turn) > STRAIGHT_RAD)
@@ -89,19 +89,19 @@ class Trajectory:
 
     @property
     def rests(self) -> int:
-        """Number of times that the turtle stopped and continued."""
+        """The number of times that the turtle stopped and moved on."""
         moves = (self.steps > RESTS_M) | (np.abs(self.turn) > STRAIGHT_RAD)
         busy = np.flatnonzero(moves)
         return int((np.diff(busy) > 1).sum()) if len(busy) else 0
 
 
 def trajectory_of(recording: Recording) -> Trajectory:
-    """Return the trajectory of the turtle from its start until SIGINT."""
+    """Return the trajectory of the turtle from its start up to SIGINT."""
     frames = recording.frames
     until = frames.t_s <= activity.end_s(recording)
     x = np.append(recording.start.x, frames.x[until])
     y = np.append(recording.start.y, frames.y[until])
-    with np.errstate(invalid="ignore"):  # `finite` looks for NaN and infinity
+    with np.errstate(invalid="ignore"):  # `finite` checks for NaN and infinity
         heading = np.append(recording.start.theta, frames.theta[until])
         turn = np.mod(np.diff(heading) + np.pi, 2.0 * np.pi) - np.pi
         return Trajectory(x, y, frames.t_s[until], turn, frames.wall[until])

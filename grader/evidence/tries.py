@@ -1,4 +1,4 @@
-"""Try: the result of a change to a copy of a submission, at the place that a check named as the cause."""
+"""Try: the result of changing a copy of a submission at the place that a check named as the cause."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 Result = Literal["passes", "further", "refuted"]
-"""The check passes then, or it fails for another reason (the run gets further), or nothing changes."""
+"""With the change, the check passes, or it fails for another reason (the run gets further), or the cause is refuted."""
 
 
 @dataclass(frozen=True)
 class Try:
-    """One try: the check and its diagnosis, the result, and the difference that was tried.
+    """One try: the check and its diagnosis, the result, and the change that was tried.
 
-    `difference` is a unified diff. It is for instructors: it gives the solution away.
+    `difference` is a unified diff. It is for instructors, because it gives the solution away.
     """
 
     check: str
@@ -24,9 +24,9 @@ class Try:
 
 @dataclass(frozen=True)
 class Tries:
-    """All tries of one submission. `behind` counts the causes that showed only when others had been fixed.
+    """All tries of one submission. `behind` counts the causes that appeared only after others had been fixed.
 
-    `stopped` says why some changes were not tried; it is empty if all were.
+    `stopped` says why some changes were not tried. It is empty if all of them were.
     """
 
     made: tuple[Try, ...] = ()
@@ -34,5 +34,5 @@ class Tries:
     stopped: str = ""
 
     def of(self, check: str, diagnosis: str | None) -> Try | None:
-        """Return the try about this check with this diagnosis, or None."""
+        """Return the try for this check with this diagnosis, or None."""
         return next((each for each in self.made if (each.check, each.diagnosis) == (check, diagnosis)), None)

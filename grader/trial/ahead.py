@@ -1,8 +1,8 @@
-"""The trials of one submission. They start while the submission is built. Those in simulated time run side by side.
+"""The trials of one submission. They start while the submission is built, and those in simulated time run in parallel.
 
-They start one after the other, so that the build keeps most of a processor: all of them wait for it.
-Simulated time has no pace of its own, so other trials change nothing in it. A trial in wall time needs the processors
-for itself, so the caller waits for the others first (`settle`).
+They start one after the other, so that the build keeps most of a processor, because all of them wait for the build.
+Simulated time does not depend on the speed of the machine, so other trials do not affect it. A trial in wall time needs
+the processors for itself, so the caller first waits for the other trials (`settle`).
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 
 class Runs(Protocol):
-    """A trial that waits for its node, or already runs it."""
+    """A trial that waits for its node or already runs it."""
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
-        """As `Trial.run`."""
+        """Do the same as `Trial.run`."""
         ...
 
 
 class _UnderWay:
-    """A trial whose node already runs."""
+    """A trial whose node is already running."""
 
     def __init__(self, recording: Future[Recording]) -> None:
         self._recording = recording
@@ -49,9 +49,9 @@ class _Started:
 
 
 class Ahead:
-    """A context manager. Leaving it ends every trial that was started in it.
+    """A context manager. Leaving it stops every trial that was started in it.
 
-    A trial is named by its id. `at_once` trials run side by side.
+    The name of a trial is its id. Up to `at_once` trials run in parallel.
     """
 
     def __init__(self, at_once: int) -> None:
@@ -64,7 +64,7 @@ class Ahead:
         self._under_way: dict[str, Future[Recording]] = {}
 
     def __enter__(self) -> Ahead:  # noqa: PYI034 - typing.Self is Python 3.11's
-        self._pool.submit(importlib.import_module, "numpy")  # needed to read a recording; there is time now
+        self._pool.submit(importlib.import_module, "numpy")  # needed to read a recording, and there is time for it now
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -72,13 +72,13 @@ class Ahead:
             pool.shutdown(wait=False, cancel_futures=True)
         with self._entering:
             self._left = True
-        # The trials first: the threads wait for their ends.
+        # Close the trials first, because the threads wait for them to finish.
         self._stack.close()
         for pool in (self._starter, self._pool):
             pool.shutdown()
 
     def start(self, name: str, trial: Trial) -> None:
-        """Start simulator and launcher as soon as those of the trials before are ready.
+        """Start the simulator and the launcher as soon as those of the previous trials are ready.
 
         If that fails, the trial's `run` raises the error.
         """
@@ -92,15 +92,15 @@ class Ahead:
         trial.await_ready()
 
     def run(self, name: str, package: str, executable: str, tree: bytes) -> None:
-        """Start the node of a trial that was started. `trial` returns it, with its recording."""
+        """Start the node of a trial that was started. `trial` returns the trial, whose `run` returns the recording."""
         self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)
 
     def trial(self, name: str) -> Runs | None:
-        """Return the trial, for its recording; None if it was not started."""
+        """Return the trial, whose `run` returns the recording; None if it was not started."""
         if name in self._under_way:
             return _UnderWay(self._under_way[name])
         return self._started.get(name)
 
     def settle(self) -> None:
-        """Wait until no node runs."""
+        """Wait until no node is running."""
         wait(self._under_way.values())

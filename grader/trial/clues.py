@@ -1,7 +1,7 @@
 """Clues in the source that a node may follow wall time, so that simulated time would misjudge it.
 
-Only the module of the executable and the modules that it imports from the package count. A sleep in another node of
-the package does not matter.
+Only the module of the executable and the modules of the package that it imports count. A sleep in another node of the
+package does not matter.
 """
 
 from __future__ import annotations
@@ -38,20 +38,23 @@ _NAMES = {
     "SYSTEM_TIME",
     "timeout_sec",
     "throttle_duration_sec",
-    # A node without the global arguments does not get use_sim_time either.
+    # A node that ignores the global arguments does not get use_sim_time either.
     "use_global_arguments",
 }
 _CLOCKS = {"Clock", "ROSClock"}
-"""A clock that is not the node's own clock does not follow /clock."""
+"""A clock other than the node's own clock does not follow /clock."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
-"""Nodes with several threads need these, and none of them waits for a time."""
+"""Nodes with several threads need these, and none of them waits for time to pass."""
 MOST_NODES = 30
-"""The largest expression that is shown as a whole (AST nodes)."""
+"""The size of the largest expression that is shown in full (AST nodes)."""
 
 
 @dataclass(frozen=True)
 class Clue:
-    """A name as in the source, such as "time.sleep", with its place. `file` is relative to the package folder."""
+    """A name as written in the source, such as "time.sleep", and its place.
+
+    `file` is relative to the package folder.
+    """
 
     name: str
     file: str
@@ -59,7 +62,7 @@ class Clue:
 
 
 def wall_clues(files: Mapping[str, bytes], module: str | None) -> list[Clue]:
-    """Return the clues in `module` ("package.module") and its imports; without a module, in the whole package."""
+    """Return the clues in `module` ("package.module") and its imports. Without a module, search the whole package."""
     first = None if module is None else module_file(module, files)
     read = read_code(files, first).modules
     return [clue for each in read if each.tree is not None for clue in _clues(each.file, each.tree)]
@@ -86,7 +89,7 @@ def _clues(path: str, tree: ast.Module) -> Iterator[Clue]:
 
 
 def _short(node: ast.Attribute) -> str:
-    """Return the source of the expression. If it is long, only its last name: each part of a chain may be a clue."""
+    """Return the source of the expression, or only its last name if it is long. Each part of a chain may be a clue."""
     return ast.unparse(node) if len(list(islice(ast.walk(node), MOST_NODES + 1))) <= MOST_NODES else node.attr
 
 
@@ -95,7 +98,7 @@ def _is_timeless(node: ast.Attribute, modules: Mapping[str, str]) -> bool:
 
 
 def _wall_time_names(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """Yield the names that a file imports from modules that follow wall time, each with its full name."""
+    """Yield each name that a file imports from a module that follows wall time, together with its full name."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             for alias in node.names:

@@ -1,10 +1,10 @@
-"""Conduct one trial: the process that holds the simulator, the recorder and the clock.
+"""Conduct one trial, in the process that contains the simulator, the recorder and the clock.
 
-It runs in a room (grader.sandbox), with the student's node in a cell. It exchanges JSON lines with the grader's own
-process over its standard streams. The first line of input describes the trial. The answer is {"ready": true} when
-simulator and launcher are ready. The second line of input says what to start; the install tree follows. The last line
-of output is {"recording": {...}}, {"doubt": "..."} if the other clock must decide, {"overwhelmed": "..."} if the node
-brought the simulator down, or {"fault": "..."} for a fault of the machine.
+The process runs in a room (grader.sandbox), and the student's node runs in a cell. The process exchanges JSON lines
+with the grader's own process over its standard streams. The first line of input describes the trial. The answer is
+{"ready": true} when the simulator and the launcher are ready. The second line of input says what to start, and the
+install tree follows it. The last line of output is {"recording": {...}}, {"doubt": "..."} if the other clock must
+decide, {"overwhelmed": "..."} if the node brought the simulator down, or {"fault": "..."} if the machine is at fault.
 """
 
 from __future__ import annotations
@@ -36,24 +36,24 @@ if TYPE_CHECKING:
 LAUNCHER = Path(__file__).absolute().with_name("launcher.py")
 BUSY = 0.5
 BUSY_S = 0.04
-"""A stall is the node's own doing if its processes worked for this share of it, and at least for BUSY_S. If they worked
-for this share of the trial, all its stalls are."""
+"""The node itself caused a stall if its processes worked for the share BUSY of it, and for at least BUSY_S (s). If they
+worked for the share BUSY of the trial, the node caused all of its stalls."""
 REQUESTS_HZ = 500
-"""If a node has the simulator answer more requests than this (Hz), all stalls are its own doing, on any machine.
+"""If the simulator answers more requests from the node than this (Hz), the node caused all stalls, on any machine.
 
-On a crowded machine, CPU time alone does not show this, because neither gets much. A node that makes three requests for
-each pose makes 190 per second.
+On a crowded machine, CPU time alone does not show this, because neither process gets much of it. For comparison, a node
+that makes three requests per pose makes 190 per second.
 """
 
 
-class Overwhelmed(Exception):  # noqa: N818 - the simulator's, by the node's doing
+class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grader
     """The simulator failed because of what the node sent."""
 
 
 def main() -> None:
-    """Conduct the trial that standard input describes."""
+    """Conduct the trial that is described on standard input."""
     order = json.loads(sys.stdin.buffer.readline())
-    # Output of ROS 2 must not mix with our lines.
+    # The output of ROS 2 must not be mixed with our JSON lines.
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     try:
@@ -79,7 +79,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
         _say(answers, {"recording": to_json(recording)})
         return
     with NodeProcess(lambda *fds: _command(ros, order, *fds), NODE_LIMITS, in_cell=order["in_cell"]) as node:
-        # These imports are slow. They run here, while the launcher imports too.
+        # These imports are slow. They run here, while the launcher is importing too.
         from grader.trial.simulated import SimulatedTrial
         from grader.trial.wall import WallTrial
 
@@ -128,7 +128,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
 
 
 def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
-    """Run the scenario; return when SIGINT was sent. From here on, the node is the cause of every failure."""
+    """Run the scenario, and return when SIGINT was sent. From here on, the node is the cause of every failure."""
     try:
         return trial.run(duration_s)
     except (DoubtError, KeyboardInterrupt):
@@ -139,7 +139,7 @@ def _run(trial: SimulatedTrial | WallTrial, duration_s: float) -> float:
 
 
 def _own_doing(stall: tuple[float, float], node: NodeProcess, trial: SimulatedTrial | WallTrial) -> bool:
-    """Whether the node caused the stall: by its own work, or by the work that it gave the simulator."""
+    """Return whether the node caused the stall, by its own work or by the work that it gave the simulator."""
     now_s = trial.now()
     offset = time.monotonic() - now_s
     begin, end = stall

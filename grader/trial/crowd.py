@@ -1,4 +1,4 @@
-"""Whether the machine gives simulator and node the time that a trial in wall time needs. The source is /proc."""
+"""Measure whether the simulator and the node get the CPU time that a trial in wall time needs. The source is /proc."""
 
 from __future__ import annotations
 
@@ -9,27 +9,34 @@ from pathlib import Path
 from grader.trial.rest import GoneError, Threads
 
 STALL_S = 0.03
-"""If simulator or node had to wait longer than this between two frames (s), arrivals cannot be trusted."""
+"""If the simulator or the node had to wait longer than this between two frames (s), arrival times cannot be trusted."""
 OWN_DOING = 0.5
-"""A node that used at least this share of the time kept itself waiting: that is not a stall. Work that the node gives
-the simulator counts as the node's: a simulator that answers thousands of calls is late, but not because of the machine.
+"""A node that used at least this share of the time delayed itself, so this is not a stall. Work that the node gives the
+simulator counts as work of the node: a simulator that answers thousands of calls is late, but not because of the
+machine.
 """
 SIMULATOR = 0.3
-"""The share of a processor that the simulator may use for itself; a tenth was measured. The rest is the node's."""
+"""The share of a processor that the simulator may use for itself. A tenth was measured. The rest counts as the
+node's."""
 OTHERS = 0.2
-"""Other programs use the machine if they take at least this share of one processor ..."""
+"""Other programs are using the machine if they take at least this share of one processor ..."""
 WAITED = 0.05
-"""... and crowd it if simulator and node together wait for a processor for at least this share of the time."""
+"""... and they crowd it if the simulator and the node together wait for a processor for at least this share of the
+time."""
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
 def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
-    """Whether others crowd the machine: in `of_s`, they worked `others_s`; simulator and node waited `waited_s` (s)."""
+    """Return whether others crowd the machine.
+
+    In `of_s` seconds, the other programs worked for `others_s`, and the simulator and the node waited for `waited_s`
+    (s).
+    """
     return waited_s >= WAITED * of_s and others_s >= OTHERS * of_s
 
 
 class Stalls:
-    """Finds the stalls: the kernel counts how long threads were ready to run and did not run."""
+    """Finds stalls. The kernel counts how long threads were ready to run but did not run."""
 
     def __init__(self, pid: int) -> None:
         self._parts = [_threads(pid), _threads(os.getpid())]
@@ -41,13 +48,14 @@ class Stalls:
         self.look(0.0)
         self._for_node = [(0.0, 0.0)]
         self.waited_s = 0.0
-        """How long simulator and node have waited for a processor so far (s), all threads together."""
+        """How long the simulator and the node have waited for a processor so far (s), summed over all threads."""
 
     def look(self, now_s: float) -> tuple[float, float] | None:
         """Return the stall since the last call, or None.
 
-        A stall is time in which threads waited for a processor, or that was stolen from the virtual machine. A late
-        frame alone is not a stall: a node that keeps the simulator busy could cause it.
+        A stall is a period in which threads waited for a processor, or in which the hypervisor gave the processor to
+        another virtual machine. A late frame alone is not a stall, because a node that keeps the simulator busy could
+        cause it.
         """
         passed_s = max(now_s - self._since_s, 1e-3)
         now = [_times(threads) for threads in self._parts]
@@ -68,18 +76,18 @@ class Stalls:
         return (begun_s, now_s) if max(owed) > STALL_S else None
 
     def worked_for_node_s(self, begin_s: float, end_s: float) -> float:
-        """CPU time that the simulator spent for the node between two looks, beyond its own needs (s)."""
+        """Return the CPU time that the simulator spent on the node between two looks, beyond its own needs (s)."""
         return sum(spent_s for at_s, spent_s in self._for_node if begin_s < at_s <= end_s)
 
 
 class Others:
-    """Counts the CPU time of all other programs on this machine, from its creation on."""
+    """Measures the CPU time of all other programs on this machine since its creation."""
 
     def __init__(self) -> None:
         self._before = _machine_worked_s() - time.process_time()
 
     def worked_s(self, *, but_s: float) -> float:
-        """CPU time of all but this process and the given CPU time `but_s` (s)."""
+        """Return the CPU time of all processes except this one, less the given CPU time `but_s` (s)."""
         return _machine_worked_s() - time.process_time() - self._before - but_s
 
 
@@ -91,7 +99,7 @@ def _threads(pid: int) -> Threads | None:
 
 
 def _times(threads: Threads | None) -> tuple[float, float]:
-    """Return how long all threads have run, and how long they waited for a processor (s)."""
+    """Return how long all threads have run, and how long they have waited for a processor (s)."""
     if threads is None:
         return 0.0, 0.0
     try:
@@ -102,7 +110,7 @@ def _times(threads: Threads | None) -> tuple[float, float]:
 
 
 def _stolen_s() -> float:
-    """Return how long other virtual machines on the same hardware took the processors, all together (s)."""
+    """Return how long other virtual machines on the same hardware used the processors, all together (s)."""
     return _machine_s()[7]
 
 
@@ -112,5 +120,5 @@ def _machine_worked_s() -> float:
 
 
 def _machine_s() -> list[float]:
-    """Return the times of all processors together (s): the columns of /proc/stat, see proc(5)."""
+    """Return the times of all processors together (s). These are the columns of /proc/stat; see proc(5)."""
     return [int(column) * _TICK_S for column in Path("/proc/stat").read_text().split(maxsplit=9)[1:9]]

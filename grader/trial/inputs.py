@@ -1,4 +1,4 @@
-"""Inputs: what the simulator itself does in a trial, drawn from the scenario of the exercise and a seed."""
+"""Inputs: what the simulator itself does in a trial, drawn from the exercise's scenario and a seed."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import Pen, Rgb
 
 MOST_DRAWS = 200
-"""After this many draws, a trajectory that touches a wall is accepted."""
+"""After this many draws, a trajectory that comes too close to a wall is accepted."""
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """`drives` holds start times (s) with speeds (m/s, rad/s); `rename` and `pose_every` are those of Scenario."""
+    """`drives` holds start times (s) with speeds (m/s, rad/s). `rename` and `pose_every` are those of the Scenario."""
 
     drives: tuple[tuple[float, float, float], ...] = ()
     rename: tuple[str, ...] = ()
@@ -28,7 +28,7 @@ class Inputs:
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Inputs:
-        """Make Inputs from JSON that dataclasses.asdict produced."""
+        """Return the Inputs in JSON data that dataclasses.asdict produced."""
         drives = tuple((from_s, linear, angular) for from_s, linear, angular in data["drives"])
         return cls(drives, tuple(data["rename"]), data["pose_every"])
 
@@ -39,7 +39,7 @@ class Inputs:
 
 
 def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
-    """Draw the speeds; repeat until the trajectory keeps 0.5 m from every wall."""
+    """Draw random speeds until the trajectory stays at least 0.5 m away from every wall."""
     draw = random.Random(seed)
     inputs = Inputs(rename=scenario.rename, pose_every=scenario.pose_every)
     if not scenario.drives:
@@ -56,7 +56,7 @@ def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
 
 
 class _NoPaper:
-    """A canvas that draws nothing: only the position of the turtle matters here."""
+    """A canvas that draws nothing, because only the position of the turtle matters here."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         """Draw nothing."""

@@ -1,11 +1,11 @@
-"""Start a node inside its cell, quickly: rclpy is imported while colcon still builds.
+"""Start a node quickly inside its cell: rclpy is imported while colcon is still building.
 
-It runs as a script of its own, before the install tree exists. It reads one line of JSON (`script`, `ros_arguments`,
-`python_path`, `env`, `install`) and the install tree, a tar stream, from standard input. Then it runs the installed
-script as __main__, as the interpreter in the first line of the script would.
+This file runs as a script of its own, before the install tree exists. It reads one line of JSON (`script`,
+`ros_arguments`, `python_path`, `env`, `install`) and then the install tree, a tar stream, from standard input. It then
+runs the installed script as __main__, as the interpreter in the script's first line would.
 
-`ros_arguments` choose simulated time. rclpy gets them when it is initialized. They never appear in sys.argv: a program
-that reads its own arguments must see those of `ros2 run PACKAGE EXECUTABLE`, which are none.
+`ros_arguments` select simulated time. rclpy gets them when it is initialized. They never appear in sys.argv, because a
+program that reads its own arguments must see the same ones as with `ros2 run PACKAGE EXECUTABLE`, which are none.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def _import_ahead() -> None:
 
 
 def _initialize_with(ours: list[str]) -> None:
-    """Add arguments to those with which each ROS context is initialized."""
+    """Add our arguments to those that each ROS context is initialized with."""
     from rclpy.context import Context
 
     original = Context.init
@@ -58,14 +58,14 @@ def _initialize_with(ours: list[str]) -> None:
 
 
 def _without_us(kind: type[BaseException], error: BaseException, trace: types.TracebackType | None) -> None:
-    """Print the traceback of the program without the frames of the launcher."""
+    """Print the traceback of the program without the launcher's own frames."""
     for each in _chain(error):
         each.__traceback__ = _frames_of_others(each.__traceback__)
     sys.__excepthook__(kind, error, _frames_of_others(trace))
 
 
 def _chain(error: BaseException | None) -> Iterator[BaseException]:
-    """Yield the error and its causes."""
+    """Yield the error and all of its causes."""
     seen: set[int] = set()
     waiting = [error]
     while waiting:
@@ -85,16 +85,16 @@ def _frames_of_others(trace: types.TracebackType | None) -> types.TracebackType 
 
 
 def main() -> None:
-    """Import, wait for the order, and become the node."""
+    """Import rclpy, wait for the order, and become the node."""
     sys.path.pop(0)
     _import_ahead()
     os.write(1, b"\x00ready\n")
     order = json.loads(sys.stdin.buffer.readline())
     with tarfile.open(fileobj=sys.stdin.buffer, mode="r|") as tree:
-        # A bad member can harm nothing in a cell, and the Python of Debian 12 has no filters yet.
+        # A malicious member can do no harm in a cell, and the Python of Debian 12 does not have extraction filters yet.
         tree.extraction_filter = lambda member, _path: member
         tree.extractall(order["install"])
-    # A node that reads from the keyboard gets the end of the file.
+    # A node that reads from the keyboard gets end-of-file.
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.environ.update(order["env"])
     script = Path(order["script"])
@@ -107,11 +107,11 @@ def main() -> None:
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    # A group of its own: Ctrl-C in a terminal reaches the node and its children alike.
+    # The node gets its own process group, so that Ctrl-C reaches it and its children as in a terminal.
     os.setpgid(0, 0)
     source = script.read_bytes()
     if not (source.startswith(b"#!") and b"python" in source.split(b"\n", 1)[0]):
-        # Another language: the arguments can only be put on the command line.
+        # The node is not a Python script, so the arguments can only be passed on the command line.
         os.execv(script, [*sys.argv, *order["ros_arguments"]])
     if order["ros_arguments"]:
         _initialize_with(order["ros_arguments"])

@@ -1,4 +1,4 @@
-"""The process of the student's node: started in a cell, its output kept, ended with Ctrl-C."""
+"""The process of the student's node: start it in a cell, keep its output, and stop it as with Ctrl-C."""
 
 from __future__ import annotations
 
@@ -23,25 +23,26 @@ if TYPE_CHECKING:
     from grader.sandbox.limits import Limits
 
 READY = b"\x00ready\n"
-"""What the launcher writes on standard output before any of the student's code runs."""
+"""What the launcher writes to standard output before any of the student's code runs."""
 KEPT = 256 * 1024
-"""Bytes kept of each stream."""
+"""The number of bytes that are kept of each stream."""
 PIPE = 1024 * 1024
-"""Size of the node's pipes (bytes), so that the node does not wait for a reader after each line."""
+"""The size of the node's pipes (bytes). It is large, so that the node does not wait for a reader after each line."""
 FULL = 0.25
-"""A node that had to wait for a full pipe wrote more than this share of it: the kernel fills pages by half."""
+"""A node that had to wait for a full pipe wrote more than this share of the pipe size. The kernel may fill pages only
+by half."""
 STOP_S = 3.0
-"""How long the node may take to end after SIGINT (s). SIGTERM follows, and SIGKILL 1 s later."""
+"""How long the node may take to exit after SIGINT (s). SIGTERM follows, and SIGKILL 1 s later."""
 
 
 class LaunchError(Exception):
-    """The launcher itself failed. This is a fault of the machine, since no code of the student had run."""
+    """The launcher itself failed. The machine is at fault, since none of the student's code had run."""
 
 
 def enlarge(pipe: int) -> int:
-    """Make a pipe as large as the kernel allows, up to PIPE; return its size (bytes).
+    """Make a pipe as large as the kernel allows, up to PIPE, and return its size (bytes).
 
-    The kernel refuses if all pipes of the user are too large together (fs.pipe-user-pages-soft, see pipe(7)).
+    The kernel refuses if all pipes of the user together are too large (fs.pipe-user-pages-soft, see pipe(7)).
     """
     size = PIPE
     while size > (given := fcntl.fcntl(pipe, fcntl.F_GETPIPE_SZ)):
@@ -53,7 +54,7 @@ def enlarge(pipe: int) -> int:
 
 @dataclass
 class Stream:
-    """The output that came through one pipe so far, and when each line began (s)."""
+    """The output that has come through one pipe so far, and the time at which each line began (s)."""
 
     fd: int
     kept: bytearray = field(default_factory=bytearray)
@@ -61,7 +62,7 @@ class Stream:
     dropped: int = 0
 
     def read(self, now_s: float) -> int:
-        """Read what is there; return the number of bytes."""
+        """Read all that is available, and return the number of bytes."""
         size = 0
         for _ in range(64):
             try:
@@ -80,17 +81,20 @@ class Stream:
         return size
 
     def output(self) -> Output:
-        """Return the output as a recording keeps it."""
+        """Return the output in the form that is stored in a recording."""
         return Output(self.kept.decode("utf-8", "replace"), self.dropped, tuple(self.times))
 
 
 class NodeProcess:
-    """The process of a node with its pipes; a context manager. Leaving it ends all processes of the node."""
+    """The process of a node with its pipes, as a context manager. Leaving it kills all processes of the node."""
 
     def __init__(self, command: Callable[[int, int | None], Sequence[str]], limits: Limits, *, in_cell: bool) -> None:
-        """`command(info_fd, filter_fd)` returns the command line of the launcher. `in_cell`: it starts bubblewrap.
+        """Start the launcher.
 
-        `limits` are those for all processes of the node together.
+        `command(info_fd, filter_fd)` returns the command line of the launcher. `in_cell` says whether this command line
+        starts bubblewrap.
+
+        `limits` apply to all processes of the node together.
         """
         info, info_write = os.pipe()
         with call_filter() as filter_fd:
@@ -130,7 +134,7 @@ class NodeProcess:
         """Wait until the launcher is ready for its order.
 
         Raises:
-            LaunchError: the launcher ended.
+            LaunchError: the launcher exited.
         """
         assert self._process.stdout is not None
         assert self._process.stderr is not None
@@ -146,20 +150,20 @@ class NodeProcess:
             os.set_blocking(stream.fd, False)
 
     def start(self, order: dict[str, object], tree: bytes) -> None:
-        """Send the launcher its order and the install tree."""
+        """Send the order and the install tree to the launcher."""
         assert self._process.stdin is not None
         try:
             self._process.stdin.write(json.dumps(order).encode() + b"\n" + tree)
             self._process.stdin.close()
         except BrokenPipeError:
-            pass  # the launcher ended: see `ended`
+            pass  # the launcher has exited: see `ended`
 
     def worked_s(self, begin: float, end: float) -> float:
-        """Return the CPU time of all processes of the cell between two times of CLOCK_MONOTONIC (s)."""
+        """Return the CPU time that all processes of the cell used between two times of CLOCK_MONOTONIC (s)."""
         return self._guard.worked_s(begin, end) if self._guard is not None else 0.0
 
     def read_output(self, now_s: float) -> int:
-        """Keep the output of the node with the arrival `now_s`; return the number of bytes."""
+        """Store the output of the node with the arrival time `now_s`, and return the number of bytes."""
         return sum(stream.read(now_s) for stream in self._streams)
 
     def waited_to_write(self, size: int) -> bool:
@@ -167,17 +171,17 @@ class NodeProcess:
         return size >= self._full
 
     def output(self) -> tuple[Output, Output]:
-        """Return standard output and standard error so far."""
+        """Return the standard output and the standard error so far."""
         return self._streams[0].output(), self._streams[1].output()
 
     def ended(self) -> bool:
-        """Return whether the process has ended."""
+        """Return whether the process has exited."""
         return self._process.poll() is not None
 
     def interrupt(self) -> None:
-        """Do what Ctrl-C does in a terminal."""
+        """Send SIGINT, as Ctrl-C does in a terminal."""
         if self._is_gone():
-            # The node ended by itself a moment ago, and bubblewrap is about to report it.
+            # The node has just exited by itself, and bubblewrap is about to report it.
             with suppress(subprocess.TimeoutExpired):
                 self._process.wait(STOP_S)
         if not self.ended():
@@ -186,7 +190,7 @@ class NodeProcess:
             self._signal(signal.SIGINT)
 
     def escalate(self) -> None:
-        """Send SIGTERM and SIGKILL when it is time. Call this repeatedly after `interrupt`."""
+        """Send SIGTERM and then SIGKILL when the time has come. Call this repeatedly after `interrupt`."""
         assert self._interrupted is not None
         passed = time.monotonic() - self._interrupted
         if passed > STOP_S + 1.0 and self._by != "SIGKILL":
@@ -198,10 +202,10 @@ class NodeProcess:
             self._signal(signal.SIGTERM)
 
     def end(self, now_s: float) -> ProcessEnd:
-        """Return how the process ended; call this only after `ended` returned True."""
+        """Return how the process ended. Call this only after `ended` has returned True."""
         code = self._process.returncode
         stopped = None if self._interrupted is None else time.monotonic() - self._interrupted
-        # bwrap reports a signal as a shell does: 128 + its number.
+        # bwrap reports a signal in the same way as a shell: 128 + the signal number.
         exit_code = 128 - code if code > 128 else code
         return ProcessEnd(self._by, exit_code, now_s, stopped, self._out_of)  # type: ignore[arg-type]
 

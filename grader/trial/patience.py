@@ -1,4 +1,4 @@
-"""How long simulated time waits for a node. CPU time counts, so that a loaded machine changes nothing."""
+"""How long simulated time waits for a node. Only CPU time counts, so a loaded machine makes no difference."""
 
 from __future__ import annotations
 
@@ -8,32 +8,35 @@ if TYPE_CHECKING:
     from grader.trial.rest import Threads
 
 ASLEEP_S = 20.0
-"""How long a node may sleep before it waits for its clock (s)."""
+"""How long a node may sleep before it starts to wait for its clock (s)."""
 WORKED_S = 20.0
-"""How long it may work before that (s of CPU time)."""
+"""How long it may work before it starts to wait for its clock (s of CPU time)."""
 HANDSHAKE_S = 100.0
-"""The most time for both on a crowded machine (s). The limit of the whole trial is a little higher (trial.py)."""
+"""The time limit for both on a crowded machine (s). The limit for the whole trial is slightly higher (trial.py)."""
 TICK_CPU_S = 1.0
-"""A node that works longer than this on one frame never rests (s of CPU time)."""
+"""A node that works longer than this on one frame never becomes idle (s of CPU time)."""
 TICK_S = 30.0
 ASK_EVERY_S = 0.02
-"""The time between two looks at its CPU time (s)."""
+"""The interval at which its CPU time is checked (s)."""
 
 
 class HandshakePatience:
-    """How long a node may take before it waits for its clock. Time in which it works or waits for us does not count."""
+    """How long a node may take until it waits for its clock.
+
+    Time during which the node works or waits for the grader does not count.
+    """
 
     def __init__(self, now_s: float) -> None:
         self._begun_s = self._seen_s = now_s
         self._asleep_s = 0.0
 
     def ended(self, now_s: float, *, asleep: bool, wrote: bool, worked_s: float) -> bool:
-        """Return whether the node took too long.
+        """Return whether the node has taken too long.
 
         Args:
             now_s: the monotonic clock (s).
-            asleep: all threads sleep. A thread that waits for a processor does not sleep.
-            wrote: there was output to read. A node that writes much sleeps until we read.
+            asleep: whether all threads sleep. A thread that waits for a processor does not sleep.
+            wrote: whether there was output to read. A node that writes a lot sleeps until its output is read.
             worked_s: the CPU time of the node so far (s).
         """
         if asleep and not wrote:
@@ -43,9 +46,10 @@ class HandshakePatience:
 
 
 class TickPatience:
-    """How long node and simulator may answer each other at one instant.
+    """How long the node and the simulator may answer each other at one instant of simulated time.
 
-    Reading the CPU time of the node costs as much as a look at its threads. Most instants are over before that.
+    Reading the CPU time of the node costs as much as checking its threads. Most instants are over before that is
+    necessary.
     """
 
     def __init__(self, node: Threads, now_s: float) -> None:
@@ -55,7 +59,7 @@ class TickPatience:
         self._ask_s = now_s + ASK_EVERY_S
 
     def ended(self, now_s: float) -> bool:
-        """Return whether the node worked too long. The CPU time counts from the first call that reads it."""
+        """Return whether the node has worked too long. The CPU time counts from the first call that reads it."""
         if now_s < self._ask_s:
             return False
         self._ask_s = now_s + ASK_EVERY_S

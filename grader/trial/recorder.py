@@ -1,4 +1,4 @@
-"""Recorder: it records every topic of the ROS graph and the graph itself, in the process of the conductor."""
+"""Recorder: record every topic of the ROS graph and the graph itself, in the process of the conductor."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
 OWN_NAMESPACE = "/_grader"
 OWN_NODES = ("/turtlesim", f"{OWN_NAMESPACE}/recorder")
 NAMESAKE = " (not the simulator)"
-"""The suffix for a node of the student that has the name of one of ours."""
+"""The suffix for a node of the student that has the same name as one of ours."""
 _TYPE = re.compile(r"([a-z][a-z0-9_]*)/msg/([A-Z][A-Za-z0-9]*)")
 _LEVELS = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
 
-# A node that creates topics or messages without end must not fill the memory of the grader.
+# A node that keeps creating topics or messages must not fill the memory of the grader.
 MOST_TOPICS = 100
 MOST_TYPES = 200
-"""The most types on one topic."""
+"""The maximum number of types on one topic."""
 MOST_NODES = 100
 MOST_SEEN = 50_000
-"""The most nodes and endpoints in all snapshots together."""
+"""The maximum number of nodes and endpoints in all snapshots together."""
 MOST_MESSAGES = 20_000
 MOST_BYTES = 32 * 1024 * 1024
 
@@ -45,10 +45,12 @@ class Recorder(Node):
     def __init__(
         self, now: Callable[[], float], prefixes: list[Path], simulated: dict[str, str], judged: Collection[str] = ()
     ) -> None:
-        """`now` returns the time of the trial (s); `prefixes` hold the installed message types.
+        """Create the node.
 
-        The simulator itself reports what it sends on the `simulated` topics (name -> type). `judged` topics are always
-        recorded, however many others there are.
+        `now` returns the time of the trial (s). `prefixes` are the folders in which the message types are installed.
+
+        The simulator itself reports what it sends on the `simulated` topics (name -> type). The `judged` topics are
+        always recorded, however many other topics there are.
         """
         super().__init__("recorder", namespace=OWN_NAMESPACE, start_parameter_services=False, enable_rosout=False)
         self.now = now
@@ -61,7 +63,7 @@ class Recorder(Node):
         self.graph_dropped = 0
         self._judged = frozenset(judged)
         self._subscribed: Counter[str] = Counter()
-        """The types of each judged topic. The empty string stands for all other topics together."""
+        """The number of types for each judged topic. The empty string stands for all other topics together."""
         self._told: set[tuple[str, str, str]] = set()
         self._prefixes = prefixes
         self._simulated = simulated
@@ -71,7 +73,7 @@ class Recorder(Node):
         self._participant = self._own_participant()
 
     def keep(self, topic: str, type_name: str, data: bytes) -> bool:
-        """Keep a message that arrived now; return False if the recording is full."""
+        """Store a message that has just arrived. Return False if the recording is full."""
         if len(self.messages) >= MOST_MESSAGES or self._bytes + len(data) > MOST_BYTES:
             self.dropped += 1
             return False
@@ -80,7 +82,7 @@ class Recorder(Node):
         return True
 
     def keep_command(self, topic: str, data: bytes, twist: Any) -> None:  # noqa: ANN401 - a ROS message
-        """Keep a Twist that the turtle received."""
+        """Store a Twist that the turtle received."""
         if self.keep(topic, "geometry_msgs/msg/Twist", data) and topic == "/turtle1/cmd_vel":
             last = self.messages[-1]
             linear = (twist.linear.x, twist.linear.y, twist.linear.z)
@@ -88,13 +90,16 @@ class Recorder(Node):
             self.commands.append(Command(last.t_s, last.mono_s, linear, angular))
 
     def nodes(self) -> list[str]:
-        """Return the full names of all nodes in the graph but this one. A name that is taken twice is there twice."""
+        """Return the full names of all nodes in the graph except this one.
+
+        A name that two nodes share appears twice.
+        """
         found = [f"{space.rstrip('/')}/{name}" for name, space in self.get_node_names_and_namespaces()]
         found.remove(self.get_fully_qualified_name())
         return found
 
     def follow_graph(self) -> bool:
-        """Subscribe to new topics; return whether there were any."""
+        """Subscribe to new topics, and return whether there were any."""
         fresh = False
         for topic, types in self.get_topic_names_and_types():
             if topic not in self.topics and len(self.topics) >= 10 * MOST_TOPICS and topic not in self._judged:
@@ -108,8 +113,8 @@ class Recorder(Node):
         return fresh
 
     def snapshot(self) -> None:
-        """Add the graph as it is now."""
-        # Judged topics first: a hundred others must not push them out.
+        """Store a snapshot of the current graph."""
+        # The judged topics come first, because a hundred other topics must not crowd them out.
         topics = sorted((topic not in self._judged, topic) for topic, _ in self.get_topic_names_and_types())
         shown = [topic for beside, topic in topics if not beside]
         shown += [topic for beside, topic in topics if beside][:MOST_TOPICS]
@@ -136,7 +141,7 @@ class Recorder(Node):
         judged = [end for end in graph.endpoints if end.topic in self._judged]
         self._seen += len(graph.nodes) + len(graph.endpoints)
         if self._seen > MOST_SEEN:
-            # Full. Types that are new on a judged topic are still kept; these are few.
+            # The recording is full. New types on a judged topic are still stored, because there are only a few.
             self.graph_dropped += 1
             fresh = tuple(end for end in judged if (end.kind, end.topic, end.type) not in self._told)
             graph = Graph(graph.t_s, (), fresh)
@@ -147,7 +152,7 @@ class Recorder(Node):
     def _endpoints(
         self, kind: Literal["publisher", "subscription"], topic: str, found: list[TopicEndpointInfo]
     ) -> set[Endpoint]:
-        """Return the endpoints of other nodes. The participant tells whose they are, since names can be faked."""
+        """Return the endpoints of other nodes. Their participant shows whose they are, since a name can be faked."""
         own_name = self.get_fully_qualified_name()
         result = set()
         for info in found:
@@ -161,7 +166,7 @@ class Recorder(Node):
         return result
 
     def _own_participant(self) -> bytes:
-        """Return our own participant. No other node can answer, since the student's node does not exist yet."""
+        """Return our own participant. No other node can interfere, since the student's node does not exist yet."""
         topic = f"{OWN_NAMESPACE}/whoami"
         publisher = self.create_publisher(Log, topic, 1)
         found = self.get_publishers_info_by_topic(topic)
@@ -173,8 +178,8 @@ class Recorder(Node):
         if self._subscribed[group] >= most:
             return False
         if topic == "/turtle1/cmd_vel" and type_name == "geometry_msgs/msg/Twist":
-            return False  # the simulator itself reports it: checks judge what moved the turtle
-        # The simulator reports what it sends; the subscription is for messages of others on its topics.
+            return False  # the simulator itself reports it, because checks judge what moved the turtle
+        # The simulator reports what it sends. The subscription is for messages that other nodes send on its topics.
         return self._simulated.get(topic) != type_name or bool(self.count_publishers(topic) > 1)
 
     def _subscribe(self, topic: str, type_name: str) -> bool:
@@ -206,19 +211,19 @@ class Recorder(Node):
 
 
 def _each_type_first(endpoints: set[Endpoint]) -> list[Endpoint]:
-    """Return one endpoint of each type first: a hundred endpoints of one type must not push out another type."""
+    """Return one endpoint of each type first, so that a hundred endpoints of one type cannot crowd out another type."""
     ordered = sorted(endpoints, key=str)
     first = list({end.type: end for end in reversed(ordered)}.values())
     return first + [end for end in ordered if end not in first]
 
 
 def _participant(info: TopicEndpointInfo) -> bytes:
-    # A GUID of DDS: 12 bytes for the participant (the process), 4 for the endpoint within it.
+    # A GUID in DDS has 12 bytes for the participant (the process) and 4 bytes for the endpoint within it.
     return bytes(info.endpoint_gid[:12])
 
 
 def _matching(offers: list[TopicEndpointInfo]) -> QoSProfile:
-    # As `ros2 bag record`: request all that every publisher offers, and no more.
+    # Like `ros2 bag record`, request everything that all publishers offer, and nothing more.
     reliable = bool(offers) and all(o.qos_profile.reliability == ReliabilityPolicy.RELIABLE for o in offers)
     local = bool(offers) and all(o.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL for o in offers)
     return QoSProfile(

@@ -1,4 +1,4 @@
-"""Recording: all that was observed in a trial, in memory."""
+"""Recording: everything that was observed in a trial, in memory."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     Floats = npt.NDArray[np.float64]
 
 AFTER_STALL_S = 0.05
-"""How long arrivals are late after a stall (s)."""
+"""How long messages keep arriving late after a stall (s)."""
 
 ClockName = Literal["simulated", "wall"]
 
 
 @dataclass(frozen=True)
 class Pose:
-    """Where a turtle is: x, y in m from the lower left corner, theta in rad, counter-clockwise from east."""
+    """The pose of a turtle: x and y in m from the lower left corner, theta in rad, counter-clockwise from east."""
 
     x: float
     y: float
@@ -32,10 +32,10 @@ class Pose:
 
 @dataclass(frozen=True)
 class Message:
-    """A message as it arrived.
+    """A message that was received.
 
-    `data` is its CDR serialization, `t_s` the arrival on the trial's clock (s, 0 when the scenario
-    starts, negative before), `mono_s` the arrival on CLOCK_MONOTONIC (s).
+    `data` is its CDR serialization. `t_s` is its arrival time on the trial's clock (s, 0 when the scenario starts,
+    negative before). `mono_s` is its arrival time on CLOCK_MONOTONIC (s).
     """
 
     topic: str
@@ -51,7 +51,7 @@ FIELDS = ("linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular
 
 @dataclass(frozen=True)
 class Command:
-    """A geometry_msgs/msg/Twist that reached the turtle on /turtle1/cmd_vel; m/s and rad/s, x, y, z each."""
+    """A geometry_msgs/msg/Twist that the turtle received on /turtle1/cmd_vel: x, y, z in m/s, and x, y, z in rad/s."""
 
     t_s: float
     mono_s: float
@@ -66,7 +66,7 @@ class Command:
 
 @dataclass(frozen=True)
 class LogLine:
-    """A line of /rosout by arrival; `level` is DEBUG, INFO, WARN, ERROR or FATAL."""
+    """A message on /rosout, with its arrival time. `level` is DEBUG, INFO, WARN, ERROR or FATAL."""
 
     t_s: float
     level: str
@@ -76,7 +76,7 @@ class LogLine:
 
 @dataclass(frozen=True)
 class Endpoint:
-    """A publisher or subscription in the ROS graph; `node` is the full name, as in "/draw_circle"."""
+    """A publisher or subscription in the ROS graph. `node` is the full name of the node, such as "/draw_circle"."""
 
     kind: Literal["publisher", "subscription"]
     node: str
@@ -86,7 +86,7 @@ class Endpoint:
 
 @dataclass(frozen=True)
 class Graph:
-    """The ROS graph at time `t_s` of the trial's clock, without the grader's own hidden nodes; /turtlesim is in it."""
+    """The ROS graph at the time `t_s` of the trial's clock, with /turtlesim but without the grader's hidden nodes."""
 
     t_s: float
     nodes: tuple[str, ...]
@@ -95,9 +95,10 @@ class Graph:
 
 @dataclass(frozen=True)
 class Frames:
-    """The state of turtle1 in the simulator, one row per frame (16 ms); arrays of shape (N,).
+    """The state of turtle1 in the simulator, one row per frame (16 ms), as arrays of shape (N,).
 
-    `t_s` s; `x`, `y` m; `theta` rad; `linear` m/s; `angular` rad/s; `wall` is whether the position was clamped.
+    `t_s` is in s, `x` and `y` in m, `theta` in rad, `linear` in m/s and `angular` in rad/s. `wall` says whether the
+    position was clamped.
     """
 
     t_s: Floats
@@ -111,9 +112,9 @@ class Frames:
 
 @dataclass(frozen=True)
 class Output:
-    """What a process wrote on one stream, decoded with replacement; `dropped` bytes beyond the cap were not kept.
+    """What a process wrote to one stream, decoded with replacement. `dropped` bytes were over the limit and not kept.
 
-    `times` are the arrivals of the lines of `text` on the trial's clock (s), one per line.
+    `times` are the arrival times of the lines of `text` on the trial's clock (s), one per line.
     """
 
     text: str
@@ -125,10 +126,10 @@ class Output:
 class ProcessEnd:
     """How the node's process ended.
 
-    `by` is what ended it: "itself" (before the scenario was over), or a signal.
-    `out_of`: the grader ended it, since it used more "memory", "processes" or "files" than a node may.
-    `stop_s` is the time from SIGINT to the end (s of wall time), None if it ended by itself; `t_s` is the end on
-    the trial's clock. `exit_code` is negative for a signal, as in subprocess.
+    `by` is what stopped it: "itself" (before the scenario was over), or a signal. `out_of` is set if the grader stopped
+    it because it used more "memory", "processes" or "files" than a node may. `stop_s` is the time from SIGINT to its
+    exit (s of wall time), None if it exited by itself. `t_s` is the time of its exit on the trial's clock. `exit_code`
+    is negative for a signal, as in subprocess.
     """
 
     by: Literal["itself", "SIGINT", "SIGTERM", "SIGKILL"]
@@ -140,7 +141,7 @@ class ProcessEnd:
 
 @dataclass(frozen=True)
 class Recording:
-    """All that was observed in one trial. `why` tells a beginner why this clock was used."""
+    """Everything that was observed in one trial. `why` tells a beginner why this clock was used."""
 
     clock: ClockName
     why: str
@@ -150,55 +151,63 @@ class Recording:
     sigint_t_s: float
     messages: tuple[Message, ...]
     dropped: int
-    """The number of messages that were too many to keep."""
+    """The number of messages that were not kept because there were too many."""
     commands: tuple[Command, ...]
     frames: Frames
     log: tuple[LogLine, ...]
     graphs: tuple[Graph, ...]
     topics: dict[str, tuple[str, ...]]
-    """Every topic of the graph with its types, even if its messages could not be recorded."""
+    """Every topic of the graph with its types, including topics whose messages could not be recorded."""
     stdout: Output
     stderr: Output
     end: ProcessEnd
     own_nodes: tuple[str, ...] = ("/turtlesim",)
-    """The grader's nodes; every other node of the graph belongs to the submission."""
+    """The grader's nodes. Every other node of the graph belongs to the submission."""
     interventions: tuple[str, ...] = ()
     """The services and actions of the simulator that were called, in order: "reset", "spawn", "teleport_absolute".
+
+    If there are very many calls, only the first ones are kept, and then each further name once.
 
     If they are very many, the first are kept, and each name of the others once.
     """
     interventions_dropped: int = 0
-    """The number of calls that were too many to keep."""
+    """The number of calls that were not kept because there were too many."""
     graph_dropped: int = 0
-    """The number of topics, nodes, endpoints and snapshots of the graph that were too many to keep."""
+    """The number of topics, nodes, endpoints and snapshots of the graph that were not kept because there were too
+    many."""
     doubts: tuple[str, ...] = ()
-    """Why simulated time may misjudge this node; empty if it can be trusted."""
+    """The reasons why simulated time may misjudge this node; empty if it can be trusted."""
     seconds: dict[str, float] = field(default_factory=dict)
-    """Wall time of each part of the trial: discovery, run, stop (s)."""
+    """The wall time of each part of the trial: discovery, run, stop (s)."""
     stalls: tuple[tuple[float, float], ...] = ()
-    """When the machine gave simulator or node no processor in a trial in wall time: (from, to) on its clock (s)."""
+    """The periods of a trial in wall time in which the machine gave the simulator or the node no processor: (from, to)
+    on the trial's clock (s)."""
     crowded: bool = False
-    """Whether other programs used the processors so much that simulator and node often had to wait (wall time)."""
+    """Whether other programs used the processors so much that the simulator and the node often had to wait (wall
+    time)."""
 
     @property
     def stalled_s(self) -> float:
-        """The length of all stalls together (s)."""
+        """The total length of all stalls (s)."""
         return sum(end - begin for begin, end in self.stalls)
 
     def stalled(self, t_s: float) -> bool:
-        """Whether an arrival at this time says nothing about the node, since it was in a stall or right after one."""
+        """Return whether this time was in a stall or right after one.
+
+        An arrival at this time says nothing about the node.
+        """
         return any(begin <= t_s <= end + AFTER_STALL_S for begin, end in self.stalls)
 
 
 def frames_of(rows: Iterable[tuple[float, float, float, float, float, float, bool]]) -> Frames:
-    """Make Frames from rows (t_s, x, y, theta, linear, angular, wall)."""
+    """Return Frames with these rows (t_s, x, y, theta, linear, angular, wall)."""
     table = np.array([tuple(map(float, row)) for row in rows], dtype=np.float64).reshape(-1, 7)
     t_s, x, y, theta, linear, angular, wall = table.T
     return Frames(t_s, x, y, theta, linear, angular, wall.astype(np.bool_))
 
 
 def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
-    """Convert a recording to plain data; without the data of the messages if a bag holds them."""
+    """Convert a recording to plain data. Leave out the contents of the messages if a bag holds them."""
     plain = {**recording.__dict__, "frames": None, "messages": None}
     data: dict[str, Any] = asdict(Recording(**plain))
     frames = recording.frames
@@ -211,7 +220,7 @@ def to_json(recording: Recording, *, messages: bool = True) -> dict[str, Any]:
 
 
 def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> Recording:
-    """Make a recording from the result of `to_json`. `payloads` is the data of the messages if it was left out."""
+    """Return the recording in the result of `to_json`. `payloads` are the message contents if they were left out."""
     contents = iter(payloads) if payloads is not None else (base64.b64decode(row[2]) for row in data["messages"])
     frames = data["frames"]
     wall = np.array(frames["wall"], dtype=np.bool_)

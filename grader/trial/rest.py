@@ -1,8 +1,9 @@
-"""Rest: whether a process has nothing left to do for now. /proc tells, without disturbing the process.
+"""Rest: detect whether a process is idle, by reading /proc, which does not disturb the process.
 
-Simulated time advances only when the node rests: every thread sleeps, and none ran between two looks. A thread that
-ran between two looks has another count in its schedstat. A thread that was woken and did not run yet is in state R. So
-two equal looks are enough if the kernel counts, and the first look needs no states. Otherwise, more looks are needed.
+Simulated time advances only while the node is idle: every thread sleeps, and none ran between two looks. If a thread
+ran between two looks, the count in its schedstat has changed. A thread that was woken but has not run yet is in state
+R. So two equal looks are enough if the kernel keeps these counts, and the first of them does not need the states.
+Otherwise, more looks are needed.
 """
 
 from __future__ import annotations
@@ -16,13 +17,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 DDS = "dds."
-"""The prefix of the names of the threads of Fast DDS."""
+"""The prefix of the thread names of Fast DDS."""
 _DDS_TIMERS = "dds.ev"
-"""The thread for its timers: it sends, and receives nothing."""
+"""The thread for the timers of Fast DDS. It sends, but it receives nothing."""
 _SLEEPING = ord("S")
-# The system calls that wait for a time to pass, by their numbers on x86-64.
+# The system calls that only wait for a time to pass, by their numbers on x86-64.
 _SLEEPS = {35: "nanosleep", 230: "clock_nanosleep"}
-# The word that holds the time-out (word 0 is the number of the system call), and its value without a time-out.
+# For each system call that may have a timeout: its name, the word with the timeout (word 0 is the number of the call),
+# and the values of that word that mean "no timeout".
 _FOREVER = {0xFFFFFFFF, 0xFFFFFFFFFFFFFFFF}
 _MAY_END = {
     202: ("futex", 4, {0}),
@@ -36,29 +38,32 @@ _MAY_END = {
 
 
 class GoneError(Exception):
-    """The process has ended."""
+    """The process has exited."""
 
 
 class DoubtError(Exception):
-    """The process may follow wall time, so its rest means nothing. The message says why."""
+    """The process may follow wall time, so the fact that it is idle means nothing. The message says why."""
 
 
 @dataclass(frozen=True)
 class Look:
-    """One look at some threads: whether all of them sleep, and how often each ran."""
+    """One look at some threads: whether all of them sleep, and how often each of them has run."""
 
     asleep: bool
     runs: tuple[bytes, ...]
 
     @property
     def counted(self) -> bool:
-        """Whether this kernel counts how often a thread ran."""
+        """Whether this kernel counts how often a thread runs."""
         return any(run != b"0 0 0\n" for run in self.runs)
 
 
 @dataclass(frozen=True)
 class Wait:
-    """What a thread waits for: the name of a system call (or "futex", "running", ...), and whether it is timed."""
+    """What a thread waits for: the name of a system call, "futex", "running" and so on.
+
+    `timed` says whether the wait has a timeout.
+    """
 
     tid: int
     thread: str
@@ -87,7 +92,7 @@ def only_sends(thread: str) -> bool:
 
 
 class Threads:
-    """The threads of a process, or only those with `wanted` names. Their files in /proc stay open."""
+    """The threads of a process, or only those whose names are `wanted`. Their files in /proc are kept open."""
 
     def __init__(self, pid: int, wanted: Callable[[str], bool] = lambda _: True) -> None:
         self.pid = pid
@@ -117,24 +122,25 @@ class Threads:
             try:
                 asleep, runs = True, []
                 for stat, schedstat in self._files.values():
-                    # The state first: a thread in state S that is just falling asleep has another count a moment later.
+                    # Read the state first. If a thread is in state S but just falling asleep, its count changes a
+                    # moment later.
                     asleep &= _state(os.pread(stat, 64, 0)) == _SLEEPING
                     runs.append(os.pread(schedstat, 64, 0))
-            except ProcessLookupError:  # a thread has ended meanwhile
+            except ProcessLookupError:  # a thread has exited in the meantime
                 self._count = b""
                 continue
             return Look(asleep, tuple(runs))
         raise GoneError
 
     def runs(self) -> tuple[bytes, ...]:
-        """Return how often each thread of the last look ran. This costs a third of a look."""
+        """Return how often each thread of the last look has run. This takes a third of the time of a look."""
         try:
             return tuple([os.pread(schedstat, 64, 0) for _, schedstat in self._files.values()])
-        except ProcessLookupError:  # a thread has ended, or all have: this equals no look
+        except ProcessLookupError:  # some or all threads have exited: this differs from every look
             return ()
 
     def main_asleep(self) -> bool:
-        """Look at the main thread alone.
+        """Return whether the main thread sleeps, without checking the other threads.
 
         Raises:
             GoneError: the process has ended.
@@ -145,11 +151,14 @@ class Threads:
             raise GoneError from None
 
     def run_time_s(self) -> float:
-        """Return the CPU time of all threads so far (s)."""
+        """Return the CPU time that all threads have used so far (s)."""
         return sum(int(run.split()[0]) for run in self.look().runs) / 1e9
 
     def waits(self) -> list[Wait]:
-        """Return what each thread waits for now, without those of Fast DDS. A running thread waits for nothing."""
+        """Return what each thread is waiting for now, except the threads of Fast DDS.
+
+        A running thread waits for nothing.
+        """
         self._refresh()
         found = []
         for tid in self._files:
@@ -201,7 +210,7 @@ class Threads:
 
 
 def _read(path: str) -> str:
-    # Not with pathlib: it takes ten times as long, and this is called many times in a trial.
+    # This does not use pathlib, which takes ten times as long, because it is called many times in a trial.
     fd = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
     try:
         return os.read(fd, 512).decode("utf-8", "replace")
@@ -210,12 +219,12 @@ def _read(path: str) -> str:
 
 
 def _state(stat: bytes) -> int:
-    # A thread can have any name of 15 bytes, even ") R". The fields of the kernel follow the last parenthesis.
+    # A thread can have any name of up to 15 bytes, even ") R". The kernel's fields follow the last parenthesis.
     return stat[stat.rindex(b")") + 2]
 
 
 def _fields(stat: bytes) -> list[bytes]:
-    # From the state, [0], on; [17] is the number of threads.
+    # The fields from the state, [0], onwards. [17] is the number of threads.
     return stat[stat.rindex(b")") + 2 :].split()
 
 

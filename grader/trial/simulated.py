@@ -1,8 +1,8 @@
-"""A trial in simulated time: /clock advances only when the node rests.
+"""A trial in simulated time: /clock advances only while the node is idle.
 
-The clock is held at 0 until both sides have found each other (the handshake). Then it advances in frames of 16 ms. The
-threads of a node show whether it follows wall time. Each such sign is a doubt, and a doubt leads to a trial in wall
-time (grading/clock.py; docs/design.md, decision 3).
+The clock is held at 0 until both sides have discovered each other (the handshake). Then it advances in frames of 16 ms.
+The threads of a node show whether it follows wall time. Each sign of this is a doubt, and a doubt leads to a trial in
+wall time (grading/clock.py; docs/design.md, decision 3).
 """
 
 from __future__ import annotations
@@ -30,20 +30,22 @@ if TYPE_CHECKING:
     from grader.trial.recording import Pose
 
 QUIET_S = 0.02
-"""How long discovery must be silent before it counts as over (s): less than half the time between two announcements
-(fastdds.xml). If it were longer, the announcements of simulator and node could leave no silence for many seconds."""
+"""How long there must be no discovery traffic before discovery counts as finished (s). This is less than half the time
+between two announcements (fastdds.xml). If it were longer, the announcements of the simulator and the node might leave
+no such gap for many seconds."""
 WAKE_S = 1.0
-"""How long to wait until the node notices /clock (s): a node with create_rate never wakes at 0."""
+"""How long to wait until the node notices /clock (s). A node that uses create_rate never wakes up at time 0."""
 MOST_CPU = 2.0
-"""A node that needs this many times the duration in CPU time cannot keep up in wall time either. Wall time decides."""
+"""A node whose CPU time exceeds this multiple of the duration cannot keep up in wall time either. Wall time decides."""
 GRAPH_EVERY = 31
-"""Frames between two looks at the graph and at the events of DDS: half a second."""
+"""The number of frames between two checks of the graph and of the DDS events: half a second."""
 OWN_EVERY = 5
-"""Frames between two rounds for work that no message announces: our own log lines, the steps of an action."""
+"""The number of frames between two checks for work that no message announces, such as our own log lines and the steps
+of an action."""
 WAITS_EVERY = 7
-"""Frames between two looks at what the threads of the node wait for."""
+"""The number of frames between two checks of what the node's threads wait for."""
 ENDING_S = 0.5
-"""How long a sleeping node may take to end, before the sleep counts (s of wall time)."""
+"""How long a sleeping node may take to exit before the sleep counts as a doubt (s of wall time)."""
 _POLL_S = 0.00005
 
 
@@ -67,11 +69,11 @@ class SimulatedTrial(Simulation):
         self._clock = self.recorder.create_publisher(Clock, "/clock", qos)
 
     def now(self) -> float:
-        """Return the time on /clock (s)."""
+        """Return the current time on /clock (s)."""
         return self._now_s
 
     def run(self, duration_s: float) -> float:
-        """Run the scenario; return when SIGINT was sent, on the trial's clock (s).
+        """Run the scenario, and return when SIGINT was sent, on the trial's clock (s).
 
         Raises:
             DoubtError: the node may follow wall time, and the plan says `stop_at_doubt`.
@@ -110,7 +112,7 @@ class SimulatedTrial(Simulation):
             raise DoubtError(why)
 
     def tick(self, now_s: float) -> None:
-        """Make one frame and publish its time."""
+        """Run one frame and publish its time."""
         self._now_s = now_s
         self.frame(now_s)
         self._publish_clock(now_s)
@@ -130,11 +132,11 @@ class SimulatedTrial(Simulation):
         self._handled: tuple[bytes, ...] = ()
 
     def _rest(self, patience: TickPatience) -> bool:
-        """Wait until nothing more can happen at this instant; return False if the node never rests."""
+        """Wait until nothing more can happen at this instant. Return False if the node never becomes idle."""
         before: tuple[bytes, ...] | None = None
         equal = 0
         while True:
-            # The main thread usually works longest. While it works, the other threads need no look.
+            # The main thread usually works longest. While it works, the other threads need not be checked.
             if not self._node.main_asleep():
                 before = None
                 time.sleep(_POLL_S)
@@ -155,19 +157,19 @@ class SimulatedTrial(Simulation):
                 before, equal = runs, 0
                 if not asleep:
                     time.sleep(_POLL_S)
-            # Threads that wake and sleep without end look asleep each time.
+            # Threads that keep waking up and falling asleep appear asleep each time.
             if patience.ended(time.monotonic()):
                 return False
 
     def _settle(self) -> None:
-        """Let the node and the simulator answer each other until both rest."""
+        """Let the node and the simulator answer each other until both are idle."""
         patience = TickPatience(self._node, time.monotonic())
-        time.sleep(_POLL_S)  # the clock has just advanced: before the node wakes, a look would tell nothing
+        time.sleep(_POLL_S)  # the clock has just advanced, and a look is useless before the node wakes up
         while True:
             if not self._rest(patience):
                 self._doubt("the node never comes to rest: it works without waiting")
                 return
-            # They did not run since the last time, so no new message has arrived.
+            # Our receiving threads have not run since the last time, so no new message has arrived.
             if self._received == self._handled:
                 return
             self._handled = self._received
@@ -175,11 +177,11 @@ class SimulatedTrial(Simulation):
                 return
 
     def _take_in(self) -> bool:
-        """Handle what has arrived; return whether the node may continue because of it."""
+        """Handle everything that has arrived. Return whether the node may continue because of it."""
         if not self.may_ask():
             self.hear()
             return False
-        # A message has no answer, and neither has an acknowledgement: the node continues to rest.
+        # Messages and acknowledgements are not answered, so the node stays idle.
         return not all(isinstance(source, Subscription) for source in self.spin())
 
     # --- handshake --------------------------------------------------------------------------------------------
@@ -205,7 +207,7 @@ class SimulatedTrial(Simulation):
         self.tick(0.0)
 
     def _found_each_other(self) -> bool:
-        """Wait QUIET_S; return whether discovery was silent and the node waits for its clock."""
+        """Wait for QUIET_S. Return whether there was no discovery traffic and the node waits for its clock."""
         quiet = Threads(self.node.pid, of_dds)
         try:
             before = quiet.look().runs
@@ -225,7 +227,7 @@ class SimulatedTrial(Simulation):
         return waits and bool(self.students_nodes()) and self._clock.get_subscription_count() > 0
 
     def _wake(self) -> None:
-        """Publish time 0 until the node has woken twice. Then both sides have found each other."""
+        """Publish time 0 until the node has woken up twice. This shows that both sides have discovered each other."""
         rest = Threads(self.node.pid, not_of_dds)
         try:
             before = rest.look().runs
@@ -251,7 +253,10 @@ class SimulatedTrial(Simulation):
             self._doubt("the node waits for wall time")
 
     def _is_ending(self) -> bool:
-        """Return whether the node ends in a moment. Threads also sleep while rclpy shuts down after an exception."""
+        """Return whether the node exits within a short time.
+
+        Threads also sleep while rclpy shuts down after an exception.
+        """
         deadline = time.monotonic() + ENDING_S
         while time.monotonic() < deadline:
             self.node.read_output(self._now_s)

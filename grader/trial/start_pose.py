@@ -1,4 +1,4 @@
-"""Where the turtle starts: the start of turtlesim, or a pose drawn from a seed."""
+"""Where the turtle starts: the start pose of turtlesim, or a pose drawn from a seed."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from grader.trial.recording import Pose
 from grader.turtlesim.turtle import SIDE_M, Start
 
 MARGIN_M = 0.5
-"""The least distance of the ideal path from a wall (m)."""
+"""The minimum distance between the ideal path and a wall (m)."""
 
 
 def start_pose(seed: int | None, radius_m: float) -> Pose:
-    """Return a start pose with room for a circle on either side; without a seed, the start of turtlesim.
+    """Return a start pose with room for a circle on either side; without a seed, return the start pose of turtlesim.
 
     `radius_m` is the radius of the ideal circle. There is room on both sides, so that a turtle that turns in the wrong
-    direction does not hit a wall too.
+    direction does not also hit a wall.
     """
     if seed is None:
         return Pose(*Start())

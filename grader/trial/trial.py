@@ -1,4 +1,4 @@
-"""Trial: one run of simulator and node under one clock, seen from the grader's own process."""
+"""Trial: one run of the simulator and the node under one clock, from the viewpoint of the grader's own process."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ if TYPE_CHECKING:
 
 _FOLDER = Path(grader.__file__).parent
 CONDUCTORS_ROOMS = ("common", "ros", "sandbox", "trial", "turtlesim")
-"""What grader.trial.conductor imports from, beside the package's own modules."""
+"""The subpackages that grader.trial.conductor imports, besides the modules of the package itself."""
 MOST_MEMORY = 3 * 1024 * MIB
-"""Address space of the conductor (bytes)."""
+"""The maximum address space of the conductor (bytes)."""
 MOST_ANSWER = 256 * MIB
-"""What the conductor may say at once (bytes): the messages of a recording are most of it."""
+"""The maximum size of one answer from the conductor (bytes). Most of it is the messages of a recording."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What happens in a trial: the clock, the start pose (m, m, rad), the duration (s)."""
+    """What happens in a trial: the clock, the start pose (m, m, rad), the duration (s), and so on."""
 
     clock: ClockName
     start: Pose
@@ -54,11 +54,11 @@ class Plan:
     alone: bool = False
     """Whether the simulator runs without a node."""
     judged: tuple[str, ...] = ()
-    """The topics that a check needs: they are recorded, however many others there are."""
+    """The topics that a check needs. They are recorded, however many other topics there are."""
 
 
 def last_words(stderr: bytes) -> str:
-    """Return the last output of one of our programs, without the frames of a traceback."""
+    """Return the last output of one of our programs, without the stack frames of a traceback."""
     output = stderr.decode("utf-8", "replace").strip()
     return output.splitlines()[-1] if "Traceback (most recent call last)" in output else output
 
@@ -68,7 +68,7 @@ class WallTimeNeeded(Exception):  # noqa: N818 - not an error
 
 
 class OverwhelmedError(Exception):
-    """The node brought the simulator down, or kept the trial from ending (`hung`). The message says how."""
+    """The node brought the simulator down, or kept the trial from finishing (`hung`). The message says how."""
 
     def __init__(self, how: str, *, hung: bool = False) -> None:
         super().__init__(how)
@@ -77,14 +77,17 @@ class OverwhelmedError(Exception):
 
 @cache
 def compile_conductor() -> None:
-    """Compile the imports of the conductor if they changed: in its room, it cannot keep compiled files."""
+    """Compile the modules that the conductor imports if they changed. In its room, it cannot store compiled files."""
     if not sys.dont_write_bytecode:
         for folder in (_FOLDER, *(_FOLDER / room for room in CONDUCTORS_ROOMS)):
             compileall.compile_dir(folder, maxlevels=0, quiet=2)
 
 
 class Trial:
-    """A context manager. Entering it starts simulator and launcher, so that both are ready when the build is done."""
+    """A context manager.
+
+    Entering it starts the simulator and the launcher, so that both are ready when the build is done.
+    """
 
     def __init__(self, plan: Plan, ros: installation.Ros, *, in_cell: bool) -> None:
         self._plan = plan
@@ -106,7 +109,7 @@ class Trial:
         self._stack.close()
 
     def start(self) -> None:
-        """Start simulator and launcher before entering. The caller must enter later, or call `close`."""
+        """Start the simulator and the launcher before entering. The caller must enter later, or call `close`."""
         if self._started:
             return
         self._started = True
@@ -117,14 +120,14 @@ class Trial:
             raise
 
     def close(self) -> None:
-        """End all processes of the trial."""
+        """Kill all processes of the trial."""
         self._stack.close()
 
     def await_ready(self) -> None:
-        """Wait until simulator and launcher are ready for the node.
+        """Wait until the simulator and the launcher are ready for the node.
 
         Raises:
-            MachineError: simulator or launcher failed.
+            MachineError: the simulator or the launcher failed.
         """
         if not self._ready:
             self._limit()
@@ -133,11 +136,11 @@ class Trial:
             self._ready = True
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
-        """Run the executable of the install tree (a tar stream), and return the recording.
+        """Run the executable from the install tree (a tar stream), and return the recording.
 
         Raises:
             WallTimeNeeded: simulated time may misjudge this node.
-            OverwhelmedError: the trial could not be finished because of what the node did.
+            OverwhelmedError: the trial could not be completed because of something that the node did.
             MachineError: the simulator or the sandbox failed.
         """
         install = self._workspace / "install"
@@ -162,7 +165,7 @@ class Trial:
         return recording
 
     def run_alone(self) -> Recording:
-        """Return the recording of the simulator without a node, for a plan that is `alone`.
+        """Return the recording of the simulator without a node, for a plan with `alone` set.
 
         Raises:
             MachineError: the simulator failed.
@@ -184,12 +187,12 @@ class Trial:
         self._errors: IO[bytes] = self._stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
         env = installation.environment(self._ros, home=self._home, domain=self._domain)
         env["ROS_PYTHON_CHECK_FIELDS"] = (
-            "0"  # this check is for beginners; it would slow the simulator down in each frame
+            "0"  # this check helps beginners, but it would slow the simulator down in every frame
         )
         argv, env = interpreter("-m", "grader.trial.conductor", python=str(self._ros.python), env=env, searches=True)
         if self._in_cell:
             view = bubblewrap.ros_view(self._ros, _FOLDER)
-            # Messages of the node fill the memory of the conductor, which itself needs 1 GiB of addresses.
+            # Messages from the node fill the memory of the conductor, which itself needs 1 GiB of address space.
             argv = ["prlimit", f"--as={MOST_MEMORY}:", "--", *argv]
             self._group = self._stack.enter_context(control_group(NODE_LIMITS))
             user = self._stack.enter_context(cell_user())
@@ -204,7 +207,7 @@ class Trial:
         self._send(json.dumps({**plan, **where, **underlay}).encode() + b"\n")
 
     def _limit(self) -> None:
-        # The grader never waits for ever. The limits of the trial itself are much lower.
+        # The grader never waits forever. The limits of the trial itself are much lower.
         self._timer.cancel()
         self._timer = Timer(120.0 + 6.0 * self._plan.duration_s, self._kill)
         self._timer.daemon = True
@@ -212,7 +215,7 @@ class Trial:
         self._stack.callback(self._timer.cancel)
 
     def _kill(self) -> None:
-        # The whole process group: while bubblewrap starts, it has a child that does not die with it yet.
+        # Kill the whole process group. While bubblewrap starts, it has a child that does not yet die with it.
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
 
@@ -230,7 +233,7 @@ class Trial:
             self._process.stdin.write(data)
             self._process.stdin.flush()
         except BrokenPipeError:
-            pass  # it has ended; `_answer` reports why
+            pass  # it has exited, and `_answer` reports why
 
     def _answer(self, key: str) -> Any:  # noqa: ANN401 - JSON
         assert self._process.stdout is not None
@@ -250,7 +253,7 @@ class Trial:
         self._kill()
         self._errors.seek(0)
         output = answer.get("fault") or last_words(self._errors.read()[-2000:])
-        # A whole sentence is one of ours, and says what to do.
+        # A complete sentence is one of our own messages, and says what to do.
         refused = output if output.endswith(".") else refusal_in(output)
         unknown = f"The simulator failed: {output or 'it output nothing'}. `grader doctor` tells what is missing."
         message = f"The simulator failed. {refused}" if refused else unknown
@@ -266,8 +269,8 @@ class Trial:
         return OverwhelmedError(f"it ended with exit code {code}")
 
     def _own_domain(self) -> int:
-        """Return a ROS domain that no other trial on this machine uses now, for a trial without its own network."""
-        # The ports of higher domains are among those that Linux gives to any program.
+        """Return a ROS domain that no other trial on this machine is using, for a trial without its own network."""
+        # The ports of higher domains are in the range from which Linux assigns ports to any program.
         for domain in range(1, 102):
             path = Path(tempfile.gettempdir()) / f"grader-domain-{os.getuid()}-{domain}.lock"
             file = self._stack.enter_context(path.open("w"))

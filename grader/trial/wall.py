@@ -1,4 +1,4 @@
-"""A trial in wall time: the reference, and the only clock for a node that does not follow ROS time."""
+"""A trial in wall time. It is the reference, and the only choice for a node that does not follow ROS time."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ GRAPH_EVERY = 31
 
 
 class WallTrial(Simulation):
-    """A simulation on CLOCK_MONOTONIC. Frames keep their schedule: a late frame is caught up, never left out."""
+    """A simulation on CLOCK_MONOTONIC. Frames keep their schedule: a late frame runs at once and is never skipped."""
 
     _begun: float | None = None
     _crowded = False
 
     def now(self) -> float:
-        """Return the time since the scenario began (s)."""
+        """Return the time since the start of the scenario (s)."""
         return 0.0 if self._begun is None else time.monotonic() - self._begun
 
     def run(self, duration_s: float) -> float:
-        """Run the scenario; return when SIGINT was sent, on the trial's clock (s)."""
+        """Run the scenario, and return when SIGINT was sent, on the trial's clock (s)."""
         self.lap("start")
         self._discover()
         self.lap("discovery")
@@ -55,11 +55,11 @@ class WallTrial(Simulation):
         return stopped_s
 
     def crowded(self) -> bool:
-        """Return whether other programs used the processors so much that simulator and node often had to wait."""
+        """Return whether other programs often kept the simulator and the node waiting for a processor."""
         return self._crowded
 
     def _discover(self) -> None:
-        """Wait until the node is in the graph and its topics are recorded, or until it has ended.
+        """Wait until the node is in the graph and its topics are recorded, or until it has exited.
 
         The first command ends the wait at once, since the turtle moves from then on.
         """
@@ -71,6 +71,6 @@ class WallTrial(Simulation):
             if self.recorder.commands:
                 return
             found = bool(self.students_nodes()) and not self.recorder.follow_graph()
-        # Take what arrived before the clock starts, so that no interval contains it: a look at the graph takes a while.
+        # Handle what arrived before the clock starts, so that no interval contains it. Reading the graph takes a while.
         self.spin()
         self.node.read_output(self.now())

@@ -1,4 +1,4 @@
-"""A trial without a node: the simulator runs frame after frame, as fast as it can."""
+"""A trial without a node: the simulator runs its frames as fast as it can."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from grader.trial.recording import Pose
 
 GRAPH_S = 5.0
-"""How long to wait until the simulator finds its own topics in the graph (s)."""
+"""The maximum time to wait until the simulator finds its own topics in the graph (s)."""
 
 
 class AloneTrial(Simulation):
-    """A simulation without a node. Its clock is the number of frames."""
+    """A simulation without a node. Its clock counts the frames."""
 
     def __init__(self, start: Pose, prefixes: list[Path], inputs: Inputs) -> None:
         self._now_s = 0.0
-        # There is no process, and no method here uses it.
+        # There is no process, and none of the methods here uses it.
         super().__init__(cast("NodeProcess", None), start, prefixes, inputs)
         self._start = start
 
@@ -34,7 +34,7 @@ class AloneTrial(Simulation):
         return self._now_s
 
     def record(self, duration_s: float, seed: int | None) -> Recording:
-        """Run the scenario, and return its recording."""
+        """Run the scenario, and return the recording."""
         deadline = time.monotonic() + GRAPH_S
         while not self.recorder.follow_graph() and time.monotonic() < deadline:
             self.spin(0.01)
