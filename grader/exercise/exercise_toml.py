@@ -1,11 +1,15 @@
 """Read exercise.toml, and report all mistakes to its author at once.
 
-schema = 2. `[exercise]` id, title, package (without a package, students submit answers.toml alone),
-starting_point_fails: the checks (ids) that exercises/ must fail, for `grader validate`.
-`[[trial]]` id, executable, node, duration_s, start, rename, pose_every; `[[trial.drive]]` from_s, linear_x_m_s,
-angular_z_rad_s (one number, or two to draw from). `[[check]]` id, kind, points, needs (ids), title, trial (default:
-the first one), hidden, and the parameters of its kind; or preset (presets.py). `[[hint]]` text, from a nudge
-to nearly the answer, checks (the ids of those that it helps with), part (a letter).
+The keys of the format with `schema = 2`:
+
+- `[exercise]` has id, title, package (without a package, students submit only answers.toml) and starting_point_fails
+  (the ids of the checks that exercises/ must fail, for `grader validate`).
+- `[[trial]]` has id, executable, node, duration_s, start, rename and pose_every. `[[trial.drive]]` has from_s,
+  linear_x_m_s and angular_z_rad_s (one number, or two between which a number is drawn).
+- `[[check]]` has id, kind, points, needs (ids), title, trial (the default is the first one), hidden, and the parameters
+  of its kind. It may have a preset instead (presets.py).
+- `[[hint]]` has text, checks (the ids of the checks that it helps with) and part (a letter). The hints begin with a
+  nudge and end with almost the whole answer.
 """
 
 from __future__ import annotations
@@ -31,7 +35,7 @@ OLDER = {
     1: "move `executable` and `node` out of [exercise], and all keys of [scenario], into a [[trial]] with an `id` of "
     "its own; likewise the keys of [trial.scenario]; write [[trial.drive]] for [[scenario.drive]]; then schema = 2."
 }
-"""How to change a file with an older version of the format."""
+"""How to update a file that has an older version of the format."""
 ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 ROS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 NAME = "letters, digits and _, beginning with a letter"
@@ -39,19 +43,19 @@ PART = re.compile(r"[a-z]")
 REMAP = re.compile(r"(/\w+)+:=(/\w+)+")
 MAX_DURATION_S = 600.0
 MAX_SPEED = 10.0
-"""The largest speed (m/s, rad/s)."""
+"""The maximum speed (m/s, rad/s)."""
 
 
 def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
     """Return the exercise in the bytes of an exercise.toml. `name` is the name of the file in messages.
 
-    Raises UsageError with all mistakes.
+    Raises UsageError, which lists all mistakes.
     """
     return parse_tables(read_toml(data, name), name, folder, hashlib.sha256(data).hexdigest(), kinds)
 
 
 def parse_tables(top: dict[str, Any], name: str, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
-    """Return the exercise in the tables of an exercise.toml. Raises UsageError with all mistakes."""
+    """Return the exercise in the tables of an exercise.toml. Raises UsageError, which lists all mistakes."""
     problems: list[str] = []
     top = {**top, "check": expand(top["check"], top.get("trial"))} if "check" in top else top
     exercise = _exercise(Table(top, "", problems), folder, digest, kinds)
@@ -62,7 +66,7 @@ def parse_tables(top: dict[str, Any], name: str, folder: Path, digest: str, kind
 
 
 def of_older_schema(values: Mapping[str, Any]) -> str:
-    """Return how to change a file with an older version of the format; an empty string for any other file."""
+    """Return how to update a file that has an older version of the format, or an empty string for any other file."""
     schema = values.get("schema")
     known = OLDER.get(schema) if isinstance(schema, int) else None
     return f"schema {schema} is no longer read: {known}" if known else ""
@@ -79,7 +83,7 @@ def _exercise(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpe
 
 def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
     head = top.table("exercise")
-    # An exercise with answers.toml alone has no package, and its trials have no node.
+    # An exercise that only needs answers.toml has no package, and its trials have no node.
     package = head.string("package", ROS_NAME, NAME, default=None if "package" in head.values else "")
     trials = _trials(top, package)
     checks = _checks(top, tuple(trial.id for trial in trials), kinds)
@@ -186,7 +190,7 @@ def _checks(top: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) 
 
 
 def _without_presets(tables: list[Table], trials: tuple[str, ...]) -> list[Table]:
-    """Return the tables of single checks. A preset that is left among them is wrong; that is noted as a problem."""
+    """Return the tables of single checks. A preset that is still among them is wrong, and is recorded as a problem."""
     for table in tables:
         wrong = problem_of(table.values, [{"id": trial} for trial in trials])
         if wrong:
@@ -230,7 +234,7 @@ def _check(table: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec])
 
 
 def _circle(specs: tuple[CheckSpec, ...]) -> list[str]:
-    """Return the ids of one cycle of `needs`, with the first id again at the end; empty if there is no cycle."""
+    """Return the ids of one cycle in `needs`, with the first id repeated at the end; empty if there is no cycle."""
     needs = {spec.id: [need for need in spec.needs if any(need == other.id for other in specs)] for spec in specs}
     done: set[str] = set()
 

@@ -1,4 +1,4 @@
-"""KindSpec: the part of a kind of check that is needed to read exercise.toml."""
+"""KindSpec: the part of a kind of check that is needed for reading exercise.toml."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 Param = str | float | int | bool | tuple[str, ...]
-"""The types of a parameter of a check."""
+"""The possible types of a check's parameter."""
 
 
 @dataclass(frozen=True)
 class Allowed:
-    """The allowed values of a parameter, in words, and a function that converts the TOML value (None: not allowed).
+    """The allowed values of a parameter, in words, and a function that converts a TOML value.
 
-    `about` tells the author of an exercise what the parameter means (docs/kinds.md).
+    `accept` returns None if the value is not allowed. `about` tells the author of an exercise what the parameter means
+    (docs/kinds.md).
     """
 
     words: str
@@ -25,18 +26,18 @@ class Allowed:
 
 
 class KindSpec(Protocol):
-    """A kind of check, for the reader of exercise.toml; `grader.checks.kind.Kind` is one."""
+    """A kind of check, as needed for reading exercise.toml. `grader.checks.kind.Kind` implements it."""
 
     @property
     def title(self) -> str:
-        """The title of the check if exercise.toml gives none."""
+        """The title of the check if exercise.toml does not set one."""
 
     @property
     def advice(self) -> bool:
-        """Whether its checks are worth no points and never fail a submission."""
+        """Whether checks of this kind are worth no points and never fail a submission."""
 
     def parameters(self) -> Mapping[str, Allowed]:
-        """Return the names of all parameters with their allowed values."""
+        """Return the names of all parameters, with their allowed values."""
 
     def defaults(self) -> Mapping[str, Param]:
-        """Return the optional parameters with their default values."""
+        """Return the names of the optional parameters, with their default values."""

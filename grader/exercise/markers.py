@@ -7,8 +7,9 @@
     # # TODO: create a timer.
     # END STARTER
 
-The released file has the text of the STARTER block, without the comment signs, instead of both blocks. In XML and
-Markdown, the blocks are comments. A comment cannot contain a comment, so `<! text !>` in a STARTER block becomes one:
+The released file contains the text of the STARTER block, without the comment signs, instead of the two blocks. In XML
+and Markdown, the blocks are comments. Since comments cannot be nested, `<! text !>` in a STARTER block becomes a
+comment:
 
     <!-- BEGIN SOLUTION -->
     <depend>geometry_msgs</depend>
@@ -29,11 +30,11 @@ from grader.errors import UsageError
 
 @dataclass(frozen=True)
 class Syntax:
-    """The comments of a kind of file: the lines that are markers, and how to uncomment a STARTER block."""
+    """The comment syntax of a file type: the patterns of the marker lines, and how to uncomment a STARTER block."""
 
     markers: dict[str, re.Pattern[str]]
     line_sign: str
-    """The prefix of every line of a STARTER block; empty if the block is one comment."""
+    """The prefix of every line in a STARTER block. It is empty if the whole block is one comment."""
 
 
 HASH = Syntax(
@@ -57,12 +58,12 @@ SYNTAX = {
     **dict.fromkeys((".xml", ".md", ".html"), ANGLE),
 }
 MEANT = re.compile(r"(?:begin|end)[ _-]*(?:solution|starter)", re.IGNORECASE)
-"""Lines that look like a marker: with a typing error in a marker, students would get the solution."""
+"""Matches lines that look like a marker. Without this pattern, a typo in a marker would give students the solution."""
 
 
 @dataclass(frozen=True)
 class Region:
-    """One region: the lines of the solution, and the lines that replace them. `line` is the line of BEGIN SOLUTION."""
+    """One region: the lines of the solution and the lines that replace them. `line` is the line of BEGIN SOLUTION."""
 
     line: int
     solution: tuple[str, ...]
@@ -70,12 +71,12 @@ class Region:
 
 
 def syntax_of(path: str) -> Syntax | None:
-    """Return the comments of a file by its suffix; None if regions are not supported in it."""
+    """Return the comment syntax of a file, based on its suffix, or None if such files cannot contain regions."""
     return SYNTAX.get(PurePosixPath(path).suffix)
 
 
 def regions(text: str, syntax: Syntax, name: str) -> list[str | Region]:
-    """Split the text into lines (with their ends) and regions. Raises UsageError for wrong markers."""
+    """Split the text into lines (with their line endings) and regions. Raises UsageError if a marker is wrong."""
     return _Reader(syntax, name).read(text)
 
 
@@ -85,12 +86,15 @@ def stripped(text: str, syntax: Syntax, name: str) -> str:
 
 
 def solved(text: str, syntax: Syntax, name: str) -> str:
-    """Return the whole solution, without the markers."""
+    """Return the complete solution, without the markers."""
     return "".join("".join(part.solution) if isinstance(part, Region) else part for part in regions(text, syntax, name))
 
 
 class _Reader:
-    """Reads one text, line by line. `self.inside` is the open block, with the line where it began."""
+    """Reads a text line by line.
+
+    `self.inside` is the kind of the open block, and `self.since` is the line where it began.
+    """
 
     def __init__(self, syntax: Syntax, name: str) -> None:
         self.syntax = syntax

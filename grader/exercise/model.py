@@ -18,9 +18,9 @@ FILE_NAME = "exercise.toml"
 
 @dataclass(frozen=True)
 class CheckSpec:
-    """One `[[check]]`. `params` are its parameters, with units in their names (`rate_hz`, `radius_m`).
+    """One `[[check]]`. `params` are its parameters. Their names contain their units (`rate_hz`, `radius_m`).
 
-    `trial` is the id of the trial that it judges.
+    `trial` is the id of the trial that the check judges.
     """
 
     id: str
@@ -35,7 +35,7 @@ class CheckSpec:
 
 @dataclass(frozen=True)
 class Drive:
-    """From `from_s` (s) on, the simulator drives the turtle. Each speed is drawn between its two limits."""
+    """From `from_s` (s) onwards, the simulator drives the turtle. Each speed is drawn from between its two limits."""
 
     from_s: float
     linear_x_m_s: tuple[float, float]
@@ -44,10 +44,10 @@ class Drive:
 
 @dataclass(frozen=True)
 class Scenario:
-    """What happens in a trial: `duration_s` on the trial's clock, then SIGINT.
+    """What happens in a trial: it lasts for `duration_s` (s) on the trial's clock, and then SIGINT is sent.
 
-    `anywhere`: the start is random even without a seed. `rename` are remapping rules of the simulator, such as
-    "/turtle1/pose:=/where". `pose_every` is the number of frames from one pose to the next.
+    If `anywhere` is set, the start pose is random even without a seed. `rename` holds remapping rules for the
+    simulator, such as "/turtle1/pose:=/where". `pose_every` is the number of frames between two poses.
     """
 
     duration_s: float
@@ -61,7 +61,7 @@ class Scenario:
 class TrialSpec:
     """One `[[trial]]`: the executable, the name of its node (without a slash), and the scenario.
 
-    Without an executable, the simulator runs without a node.
+    If there is no executable, the simulator runs without a node.
     """
 
     id: str
@@ -81,23 +81,23 @@ class Hint:
 
 @dataclass(frozen=True)
 class Exercise:
-    """The exercise of a step: a package is built and run in every trial, and the checks judge what was observed.
+    """The exercise of a step. A package is built and run in every trial, and the checks judge what was observed.
 
-    Without a `package`, students submit answers.toml alone, and the simulator runs without a node.
+    If there is no `package`, students submit only answers.toml, and the simulator runs without a node.
     """
 
     id: str
     title: str
     package: str
     trials: tuple[TrialSpec, ...]
-    """The trials, in the order of the file; at least one."""
+    """The trials, at least one, in the order of the file."""
     checks: tuple[CheckSpec, ...]
     hints: tuple[Hint, ...]
     folder: Path
     digest: str = ""
-    """sha256 of exercise.toml, which has all that the exercise requires."""
+    """The SHA-256 hash of exercise.toml, which contains everything that the exercise requires."""
     unsolved: tuple[str, ...] = ()
-    """The checks that the starting point must fail (for `grader validate`). The checks that need them are skipped."""
+    """The checks that the starting point must fail (for `grader validate`). Checks that depend on them are skipped."""
 
     def trial(self, id_: str) -> TrialSpec:
         """Return the trial with this id. Raises KeyError if there is none."""
@@ -105,7 +105,7 @@ class Exercise:
 
 
 def course_folder() -> Path:
-    """Return the folder course/: next to the package in a checkout, inside it in an installed wheel.
+    """Return the folder course/: next to the package in a checkout, or inside the package in an installed wheel.
 
     Raises MachineError if there is none.
     """
@@ -118,6 +118,6 @@ def course_folder() -> Path:
 
 
 def catalogue(course: Path | None = None) -> dict[str, Path]:
-    """Return all exercises of the course, id -> exercise.toml, in the order of the lessons. Nothing is parsed."""
+    """Return all exercises of the course, id -> exercise.toml, in the order of the lessons. No file is parsed."""
     folder = course_folder() if course is None else course
     return {file.parent.name: file for file in sorted(folder.glob(f"*/{FILE_NAME}"))}

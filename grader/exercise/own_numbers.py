@@ -1,6 +1,6 @@
-"""Own numbers: the circle that a student drives in step 07, drawn from the student's id.
+"""Own numbers: the circle that a student drives in step 07, derived from the student's id.
 
-`grader start` writes them to my_numbers.toml in the package. They follow from the id alone, so a check notices numbers
+`grader start` writes them to my_numbers.toml in the package. They depend only on the id, so a check can detect numbers
 that were changed.
 """
 
@@ -24,7 +24,7 @@ DIRECTIONS = ("counter-clockwise", "clockwise")
 
 @dataclass(frozen=True)
 class OwnNumbers:
-    """A circle of `radius_m` in this `direction`, with `rate_hz` commands per second."""
+    """A circle with the radius `radius_m` (m), driven in this direction with `rate_hz` commands per second."""
 
     student: str
     radius_m: float
@@ -33,17 +33,17 @@ class OwnNumbers:
 
 
 def normal_id(student: str) -> str:
-    """Return the normal form of an id: case, width and spaces make no difference.
+    """Return the normal form of an id, which ignores case, character width and extra spaces.
 
-    Comparing and drawing use this form. Otherwise, students could try spellings of their ids until they get the numbers
-    of a friend.
+    Ids are compared, and numbers are drawn, in this form. Otherwise, students could try different spellings of their
+    ids until they get the same numbers as a friend.
     """
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", student).casefold())
     return " ".join(folded.split())
 
 
 def draw_numbers(student: str) -> OwnNumbers:
-    """Return the numbers of a student, the same on every machine and for every spelling (see `normal_id`)."""
+    """Return the numbers of a student. They are the same on every machine and for every spelling (see `normal_id`)."""
     drawn = hashlib.sha256(f"07-challenges {normal_id(student)}".encode("utf-8", "surrogatepass")).digest()
     return OwnNumbers(
         student,
@@ -54,7 +54,7 @@ def draw_numbers(student: str) -> OwnNumbers:
 
 
 def to_toml(numbers: OwnNumbers) -> str:
-    """Return the text of my_numbers.toml. The id may be any string."""
+    """Return the text of my_numbers.toml. The id can be any string."""
     escaped = "".join(
         char if char.isprintable() and char not in '"\\' else f"\\U{ord(char):08X}" for char in numbers.student
     )
@@ -69,7 +69,7 @@ def to_toml(numbers: OwnNumbers) -> str:
 
 
 def from_toml(data: bytes) -> OwnNumbers:
-    """Return the numbers in a my_numbers.toml. Raises ValueError with the reason if it is wrong."""
+    """Return the numbers in a my_numbers.toml. Raises ValueError with the reason if the file is wrong."""
     try:
         table = tomllib.loads(data.decode("utf-8-sig"))
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:

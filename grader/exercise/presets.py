@@ -1,4 +1,4 @@
-"""Presets: the checks that every package or every node needs, as one `[[check]]` of exercise.toml.
+"""Presets: the checks that every package or every node needs, written as one `[[check]]` in exercise.toml.
 
     [[check]]
     preset = "node"
@@ -6,7 +6,7 @@
     title = "b) Eight"
     start = { points = 2 }
 
-creates the checks `eight-entry-point`, `eight-start` and `eight-node-name`. A check of the first trial has no prefix.
+creates the checks `eight-entry-point`, `eight-start` and `eight-node-name`. Checks of the first trial have no prefix.
 `title` is the beginning of their titles. A key with the name of a check changes keys of that check.
 """
 
@@ -50,13 +50,13 @@ PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
         "stop": {"kind": "stops", "title": "The node stops on Ctrl-C", "needs": ["{trial}start"], "within_s": 3.0},
     },
 }
-"""Name -> the name of each check -> its keys. Points are 0 unless exercise.toml sets them."""
+"""Name -> the name of each check -> the keys of the check. Points are 0 unless exercise.toml sets them."""
 
 _KEYS = ("preset", "trial", "title")
 
 
 def expand(checks: object, trials: object) -> Any:  # noqa: ANN401 - TOML, not yet read
-    """Replace each preset among the `[[check]]` tables by its checks. A wrong preset stays: see `problem_of`.
+    """Replace each preset in the `[[check]]` tables with its checks. A wrong preset stays unchanged (see `problem_of`).
 
     `trials` are the `[[trial]]` tables.
     """
@@ -68,7 +68,7 @@ def expand(checks: object, trials: object) -> Any:  # noqa: ANN401 - TOML, not y
 
 
 def problem_of(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) -> str | None:
-    """Return the mistake in a preset in words; empty if it is right, None if the check is not a preset."""
+    """Describe the mistake in a preset; empty if there is no mistake, None if the check is not a preset."""
     if "preset" not in table:
         return None
     name = table["preset"]
@@ -102,7 +102,7 @@ def _made(table: Mapping[str, Any], trials: Sequence[Mapping[str, Any]]) -> list
             "points": 0,
             "needs": [need.format(**words) for need in template.get("needs", [])],
         }
-        # The checks of the package belong to no particular trial.
+        # The checks of the package do not belong to a particular trial.
         more = {"trial": spec["id"]} if prefix else {}
         made.append({**check, **more, **table.get(name, {})})
     return made

@@ -1,11 +1,11 @@
-"""Private checks of an instructor: a folder like course/, with exercise.toml files outside the repository.
+"""An instructor's private checks: a folder like course/, with exercise.toml files outside the repository.
 
-Such a file changes the exercise.toml of the course:
+Such a file modifies the exercise.toml of the course:
 
     schema = 2
-    [[check]]       with an id of the course: its keys replace those of that check (all of them if the kind differs);
-                    with a new id: a further check. It is hidden, unless it has `hidden = false`
-    [[trial]]       the same, by id
+    [[check]]       If the id is in the course, the keys replace those of that check (all of them if the kind differs).
+                    A new id adds a check. The check is hidden unless it has `hidden = false`.
+    [[trial]]       A trial is replaced or added in the same way, by its id.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Sources:
     """The name of the private file in messages."""
 
     def exercise(self, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
-        """Return the exercise. `folder` is the folder of the lesson. Raises UsageError with all mistakes."""
+        """Return the exercise. `folder` is the folder of the lesson. Raises UsageError, which lists all mistakes."""
         name = f"{self.id}/{FILE_NAME}"
         public = read_toml(self.public, name)
         digest = hashlib.sha256(self.public).hexdigest()
@@ -59,7 +59,7 @@ def sources_of(ids: set[str], checks: Path | None) -> dict[str, Sources]:
     """Return the files of the exercises with these ids. `checks` is the folder of private checks.
 
     Raises:
-        UsageError: the folder has none, or none for these exercises, or some for an unknown exercise.
+        UsageError: the folder has no checks, none for these exercises, or some for an unknown exercise.
     """
     files = catalogue()
     private = _private_files(checks, files) if checks else {}
@@ -92,7 +92,7 @@ def _private_files(checks: Path, known: Mapping[str, Path]) -> dict[str, Path]:
 
 
 def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """Return the tables of both files together. Raises UsageError if the private file has other keys than allowed."""
+    """Return the merged tables of both files. Raises UsageError if the private file has keys that are not allowed."""
     older = of_older_schema(private)
     if older:
         message = f"{name}: {older}"

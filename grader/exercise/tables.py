@@ -1,4 +1,4 @@
-"""Tables of a TOML file, read key by key. Every mistake is noted in words for the author of the file."""
+"""Tables of a TOML file, read key by key. Every mistake is described in words for the author of the file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def read_toml(data: bytes, name: str) -> dict[str, Any]:
 
 
 class Table:
-    """A table while it is read. Mistakes go into `problems`. A key that was never read is unknown."""
+    """A table that is being read. Mistakes are added to `problems`. A key that is never read counts as unknown."""
 
     def __init__(self, values: dict[str, Any], place: str, problems: list[str]) -> None:
         self.values = values
@@ -38,11 +38,11 @@ class Table:
         self.known: list[str] = []
 
     def problem(self, text: str) -> None:
-        """Note a mistake in this table."""
+        """Record a mistake in this table."""
         self.problems.append(f"{self.place}: {text}" if self.place else text)
 
     def _get(self, key: str, allowed: str, good: Callable[[object], bool], *, default: Any) -> Any:  # noqa: ANN401 (whatever `good` lets pass)
-        """Return the value of the key if `good(value)`; otherwise note the mistake and return the default."""
+        """Return the value of the key if `good(value)`. Otherwise, record the mistake and return the default."""
         self.known.append(key)
         if key not in self.values:
             if default is None:
@@ -57,7 +57,7 @@ class Table:
     def string(
         self, key: str, pattern: re.Pattern[str] | None = None, allowed: str = "a string", default: str | None = None
     ) -> str:
-        """Return a string that is not only spaces, and matches all of `pattern`."""
+        """Return a string that does not consist only of spaces, and that matches `pattern` completely."""
 
         def good(value: object) -> bool:
             return (
@@ -67,7 +67,7 @@ class Table:
         return str(self._get(key, allowed, good, default=default) or "")
 
     def number(self, key: str, low: float, high: float, allowed: str, default: float | None = None) -> float:
-        """Return a finite number, low <= number <= high."""
+        """Return a finite number with low <= number <= high."""
 
         def good(value: object) -> bool:
             is_number = isinstance(value, int | float) and not isinstance(value, bool)
@@ -76,7 +76,10 @@ class Table:
         return float(self._get(key, allowed, good, default=default) or 0.0)
 
     def limits(self, key: str, most: float) -> tuple[float, float]:
-        """Return two finite numbers from -most to most, in order. One number in the file stands for both."""
+        """Return two finite numbers from -most to most, in ascending order.
+
+        A single number in the file counts as both.
+        """
 
         def good(value: object) -> bool:
             pair = value if isinstance(value, list) else [value, value]
@@ -88,11 +91,11 @@ class Table:
         return float(low), float(high)
 
     def flag(self, key: str) -> bool:
-        """Return True or False; the default is False."""
+        """Return True or False. The default is False."""
         return bool(self._get(key, "true or false", lambda value: isinstance(value, bool), default=False))
 
     def strings(self, key: str) -> tuple[str, ...]:
-        """Return a list of strings; the default is empty."""
+        """Return a list of strings. The default is an empty list."""
 
         def good(value: object) -> bool:
             return isinstance(value, list) and all(isinstance(item, str) for item in value)
@@ -105,7 +108,7 @@ class Table:
         return Table(value or {}, f"[{key}]", self.problems if value is not None else [])
 
     def tables(self, key: str) -> list[Table]:
-        """Return the tables `[[key]]`; the default is none."""
+        """Return the tables `[[key]]`. The default is an empty list."""
 
         def good(value: object) -> bool:
             return isinstance(value, list) and all(isinstance(item, dict) for item in value)
@@ -114,7 +117,7 @@ class Table:
         return [Table(value, f"[[{key}]] {place}", self.problems) for place, value in enumerate(values, start=1)]
 
     def finish(self, also: Iterable[str] = ()) -> None:
-        """Note every unknown key."""
+        """Record every unknown key as a mistake."""
         allowed = [*self.known, *also]
         for key in self.values:
             if key not in allowed:

@@ -24,9 +24,9 @@ Answer = str | float | tuple[str, ...]
 
 @dataclass(frozen=True)
 class Answers:
-    """The table [answers], by id. Only strings, numbers and lists of strings are kept, and only if not empty and not 0.
+    """The table [answers], by id. Only strings, numbers and lists of strings that are not empty and not 0 are kept.
 
-    `lines` are the lines of the answers, from 1. `problem` says why the file cannot be read.
+    `lines` are the line numbers of the answers, counted from 1. `problem` says why the file cannot be read.
     """
 
     given: Mapping[str, Answer] = field(default_factory=dict)
@@ -35,7 +35,7 @@ class Answers:
 
 
 def read_answers(data: bytes) -> Answers:
-    """Read an answers.toml. An error is reported as `problem`, never raised."""
+    """Read an answers.toml. An error is stored in `problem` and never raised."""
     if len(data) > MAX_BYTES:
         return Answers(problem=f"it is larger than {MAX_BYTES // 1000} kB")
     try:

@@ -18,19 +18,19 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
 MAX_BYTES = 400_000
-"""A longer file is not parsed (bytes): it was not written by hand."""
+"""The maximum size of a file that is parsed (bytes). A larger one was not written by hand."""
 MOST_BYTES = 1_000_000
-"""The most bytes in all files of one node."""
+"""The maximum total size of the files of one node (bytes)."""
 MAX_NAME = 500
-"""The longest name of a module (characters)."""
+"""The maximum length of a module name (characters)."""
 
 SRC = "src/"
-"""The folder of packages in many Python projects, with package_dir={"": "src"} in setup.py."""
+"""The folder that holds the packages in many Python projects, with package_dir={"": "src"} in setup.py."""
 
 
 @dataclass(frozen=True)
 class Unreadable:
-    """Why Python cannot read a file. `line` counts from 1, if Python names one."""
+    """Why Python cannot read a file. `line` counts from 1; it is None if Python does not name a line."""
 
     message: str
     line: int | None = None
@@ -38,7 +38,7 @@ class Unreadable:
 
 @dataclass(frozen=True)
 class Module:
-    """One Python file with its syntax tree, or the reason why there is none."""
+    """A Python file with its syntax tree, or with the reason why it has none."""
 
     file: str
     tree: ast.Module | None = None
@@ -51,18 +51,18 @@ class Module:
 
     @property
     def body(self) -> list[ast.stmt]:
-        """The statements of the top level."""
+        """The statements at the top level."""
         return [] if self.tree is None else self.tree.body
 
     @cached_property
     def nodes(self) -> tuple[ast.AST, ...]:
-        """Every node of the tree."""
+        """All nodes of the tree."""
         return () if self.tree is None else tuple(ast.walk(self.tree))
 
 
 @dataclass(frozen=True)
 class Call:
-    """A call of a function, and the module that contains it."""
+    """A function call, and the module that contains it."""
 
     node: ast.Call
     module: Module
@@ -84,14 +84,14 @@ class Call:
 
 @dataclass(frozen=True)
 class Code:
-    """The node's file, then the files of the submission that it imports; without tests and setup.py."""
+    """The node's file, then the files of the submission that it imports, except tests and setup.py."""
 
     modules: tuple[Module, ...]
     node_file: str | None = None
 
     @property
     def start(self) -> Where | None:
-        """The node's file as a place for messages."""
+        """The node's file as a place that messages can refer to."""
         return None if self.node_file is None else Where(self.node_file)
 
     @cached_property
@@ -108,11 +108,11 @@ class Code:
         return found
 
     def calls(self, name: str) -> list[Call]:
-        """Return the calls of functions and methods with this last name, in the order of the source."""
+        """Return the calls to functions and methods with this last name, in the order of the source."""
         return self._calls.get(name, [])
 
     def assigned(self, *path: str) -> Where | None:
-        """Return where an attribute such as ("linear", "x") is first set, by an assignment or a keyword argument."""
+        """Return where an attribute such as ("linear", "x") is first set, by an assignment or by a keyword argument."""
         for module in self.modules:
             lines = [line for node in module.nodes for line in _sets(node, path)]
             if lines:
@@ -137,9 +137,9 @@ def _sets(node: ast.AST, path: tuple[str, ...]) -> list[int]:
 
 
 def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
-    """Parse the node's file `first` and the files of the submission that it imports; without `first`, all files.
+    """Parse the node's file `first` and the submission's files that it imports. Without `first`, parse all files.
 
-    The other nodes of a package do not matter for this one.
+    The other nodes of the package are irrelevant for this one.
     """
     paths = {path: None for path in sorted(files) if path.endswith(".py") and not _left_out(path)}
     modules: dict[str, Module] = {}
@@ -161,14 +161,14 @@ def read_code(files: Mapping[str, bytes], first: str | None) -> Code:
 
 
 def _packages_around(path: str, paths: Collection[str]) -> list[str]:
-    """Return the files __init__.py that Python runs before the file at this path."""
+    """Return the __init__.py files that Python runs before the file at this path."""
     folders = path.split("/")[:-1]
     around = ["/".join([*folders[:depth], "__init__.py"]) for depth in range(len(folders), 0, -1)]
     return [file for file in around if file in paths]
 
 
 def imported_files(module: Module, paths: Collection[str]) -> list[str]:
-    """Return the files among `paths` that a module imports, by absolute or relative imports."""
+    """Return those files in `paths` that a module imports, by absolute or relative imports."""
     found: list[str] = []
     for node in module.nodes:
         if isinstance(node, ast.Import):
@@ -176,7 +176,7 @@ def imported_files(module: Module, paths: Collection[str]) -> list[str]:
         elif isinstance(node, ast.ImportFrom):
             folder = module.file.split("/")[: -node.level] if node.level else []
             base = ".".join([*folder, *([node.module] if node.module else [])])
-            # No file has such a long name, and many of them would take too much memory.
+            # No file has a name this long, and many such names would take too much memory.
             names = [base, *(f"{base}.{alias.name}" for alias in node.names)] if len(base) <= MAX_NAME else []
         else:
             continue
@@ -185,14 +185,14 @@ def imported_files(module: Module, paths: Collection[str]) -> list[str]:
 
 
 def module_file(module: str, paths: Collection[str]) -> str | None:
-    """Return the file of a dotted module name among the files of the submission; None if there is none."""
+    """Return the file of the submission that has this dotted module name, or None if there is none."""
     path = module.replace(".", "/")
     candidates = (f"{root}{path}{end}" for root in ("", SRC) for end in (".py", "/__init__.py"))
     return next((each for each in candidates if each in paths), None)
 
 
 def import_path(file: str) -> str:
-    """Return the path of a Python file as it is imported: without src/."""
+    """Return the path from which a Python file is imported, without src/."""
     return file.removeprefix(SRC)
 
 
@@ -202,7 +202,7 @@ def _left_out(path: str) -> bool:
 
 
 def read_module(file: str, data: bytes) -> Module:
-    """Parse one file. `unreadable` says why Python cannot read it.
+    """Parse one file. If Python cannot read it, `unreadable` says why.
 
     Raises:
         TooLargeError: the file is too large, or nested too deeply.
@@ -218,7 +218,7 @@ def read_module(file: str, data: bytes) -> Module:
             return Module(file, ast.parse(data, filename=file))
     except SyntaxError as error:
         return Module(file, unreadable=Unreadable(error.msg, error.lineno))
-    except ValueError as error:  # null bytes raise ValueError before Python 3.12
+    except ValueError as error:  # before Python 3.12, null bytes raise ValueError
         return Module(file, unreadable=Unreadable(str(error)))
     except (RecursionError, MemoryError) as error:
         message = f"{shorten(file)} is nested too deeply to be read"

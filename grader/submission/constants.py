@@ -1,4 +1,4 @@
-"""Evaluate the constants in a source file without running it: numbers, strings, and names with such a value."""
+"""Evaluate constants in a source file without running it: numbers, strings, and names that have such a value."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ Constant = str | float | int
 
 
 class Names(dict[str, "ast.expr | None"]):
-    """The assigned names with their expressions, and a budget for evaluating them.
+    """The assigned names with their expressions, and a limit on the work for evaluating them.
 
-    `x = y + y; y = z + z; ...` doubles the work with each line, so a module has a budget.
+    In `x = y + y; y = z + z; ...`, each line doubles the work. So the number of nodes evaluated per module is limited.
     """
 
     def __init__(self) -> None:
@@ -23,20 +23,20 @@ class Names(dict[str, "ast.expr | None"]):
         self._left = MAX_NODES
 
     def spend(self) -> bool:
-        """Count one more node; return False if the budget is spent."""
+        """Count one more node. Return False if the limit is exceeded."""
         self._left -= 1
         return self._left >= 0
 
 
 MAX_DEPTH = 20
 MAX_NODES = 100_000
-"""The most nodes that are evaluated in one module (0.1 s). The values of the others are unknown."""
+"""The maximum number of nodes that are evaluated in one module (0.1 s). The values of further nodes are unknown."""
 MAX_TEXT = 2000
 MATH = {"math.pi": math.pi, "pi": math.pi, "np.pi": math.pi, "numpy.pi": math.pi, "math.tau": math.tau}
 
 
 def dotted(node: ast.expr) -> str | None:
-    """Return a name or attribute such as 'self.period' as a string; None for any other expression."""
+    """Return a name or attribute such as 'self.period' as a string, or None for any other expression."""
     parts: list[str] = []
     while isinstance(node, ast.Attribute):
         parts.append(node.attr)
@@ -47,7 +47,7 @@ def dotted(node: ast.expr) -> str | None:
 
 
 def single_names(tree: ast.AST) -> Names:
-    """Return every assigned name or attribute with its expression; None if it is assigned more than once."""
+    """Return each assigned name or attribute with its expression, or with None if it is assigned more than once."""
     names = Names()
     for node in ast.walk(tree):
         targets: list[ast.expr] = []
@@ -66,7 +66,7 @@ def single_names(tree: ast.AST) -> Names:
 
 
 def written(node: ast.expr | None, names: Names) -> ast.expr | None:
-    """Return the expression; for a name, the expression that is assigned to it."""
+    """Return the expression itself or, for a name, the expression that is assigned to it."""
     for _ in range(MAX_DEPTH):
         value = names.get(dotted(node) or "") if isinstance(node, ast.Name | ast.Attribute) else None
         if value is None:
@@ -76,7 +76,7 @@ def written(node: ast.expr | None, names: Names) -> ast.expr | None:
 
 
 def evaluate(node: ast.expr | None, names: Names, depth: int = 0) -> Constant | None:
-    """Return the value of the expression, a number or a string; None if it is not constant."""
+    """Return the value of the expression, a number or a string, or None if it is not constant."""
     if node is None or depth > MAX_DEPTH or not names.spend():
         return None
     if isinstance(node, ast.Constant):
@@ -97,7 +97,7 @@ def evaluate(node: ast.expr | None, names: Names, depth: int = 0) -> Constant | 
 
 
 def number(node: ast.expr | None, names: Names) -> float | None:
-    """Return the value of the expression, a finite number; None if it is not constant."""
+    """Return the value of the expression as a finite number, or None if it is not a constant number."""
     value = evaluate(node, names)
     try:
         return float(value) if isinstance(value, int | float) and math.isfinite(value) else None
@@ -128,7 +128,7 @@ def _joined(node: ast.JoinedStr, names: Names, depth: int) -> str | None:
 
 
 def _together(between: str, pieces: Iterable[ast.expr], names: Names, depth: int) -> str | None:
-    """Return the strings joined; None if one is not a string, or if they are too long together."""
+    """Return the joined strings, or None if one of them is not a string or the result is too long."""
     parts: list[str] = []
     length = 0
     for piece in pieces:
@@ -141,7 +141,7 @@ def _together(between: str, pieces: Iterable[ast.expr], names: Names, depth: int
 
 
 def _call(node: ast.expr, names: Names, depth: int) -> str | None:
-    """Evaluate os.path.join of strings, which is common in setup.py."""
+    """Evaluate a call to os.path.join with strings, which is common in setup.py."""
     if not isinstance(node, ast.Call) or dotted(node.func) not in ("os.path.join", "path.join", "join"):
         return None
     return _together("/", node.args, names, depth)

@@ -1,4 +1,4 @@
-"""Submission: the folder of a student, with its only package found and read."""
+"""Submission: a student's folder, in which the only package has been found and read."""
 
 from __future__ import annotations
 
@@ -20,39 +20,41 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 ANSWERS = "answers.toml"
-"""The file with the answers to an exercise."""
+"""The file that contains the answers to an exercise."""
 MAX_REJECTED = 20
-"""The most lines in `rejected`; further files are counted."""
+"""The maximum number of lines in `rejected`. Further files are only counted."""
 
 
 @dataclass(frozen=True)
 class Submission:
-    """A package. `package_dir` is its folder, `files` maps POSIX paths relative to that folder to bytes.
+    """A package. `package_dir` is its folder, and `files` maps POSIX paths relative to that folder to bytes.
 
-    Without build/, install/, log/, hidden folders, virtual environments, caches and everything that is not a regular
-    file in the folder. `rejected` names the files that are a fault of the submission, such as a symlink to a place
-    outside, with the reason. A link to another file of the package is that file. Every path in `files` is printable.
+    `files` leaves out build/, install/, log/, hidden folders, virtual environments, caches and everything that is not a
+    regular file in the folder. `rejected` names the files that are a fault of the submission, with the reason, such as
+    a symlink to a place outside the package. A link to another file of the package has the content of that file. Every
+    path in `files` is printable.
     """
 
     name: str
     """The name that the user gave."""
     package_dir: Path
-    """An absolute path, for messages and for the name of the folder. `files` is what is graded."""
+    """An absolute path, used for messages and for the name of the folder. What is graded is `files`."""
     files: Mapping[str, bytes]
     rejected: tuple[str, ...]
     digest: str
-    """sha256 of the sorted paths and contents of `files`: the same on every machine, whatever the permissions."""
+    """The SHA-256 hash of the sorted paths and contents of `files`. It is the same on every machine, whatever the
+    permissions are."""
     executable: frozenset[str] = frozenset()
-    """The paths of `files` with the executable bit."""
+    """The paths in `files` that have the executable bit."""
     student: str | None = None
-    """The student, if known (in a class)."""
+    """The student, if known (when a class is graded)."""
 
 
 def open_submission(path: str | os.PathLike[str]) -> Submission:
-    """Read the package in the folder, or the only package below it.
+    """Read the package in this folder, or the only package below it.
 
-    Raises UsageError if there is no such folder, or not exactly one package in it, and MachineError if the disk or the
-    system fails. Every other problem is a fault of the student, and `rejected` names it.
+    Raises UsageError if there is no such folder or if it does not contain exactly one package, and MachineError if the
+    disk or the system fails. Every other problem is the student's fault and is named in `rejected`.
     """
     return _read(_submission, os.fspath(path))
 
@@ -85,7 +87,7 @@ def _submission(name: str) -> Submission:
 
 
 def open_answers(path: str | os.PathLike[str]) -> Submission:
-    """Read only answers.toml in the folder, for an exercise without a package.
+    """Read only answers.toml in this folder, for an exercise without a package.
 
     Raises UsageError if there is no such folder or file, and MachineError if the disk fails.
     """
@@ -109,7 +111,10 @@ def _answers(name: str) -> Submission:
 
 
 def digest(files: Mapping[str, bytes]) -> str:
-    """Return the sha256 of paths and contents, each after its length, so that different files never look equal."""
+    """Return the SHA-256 hash of paths and contents.
+
+    Each part follows its length, so that different files never look equal.
+    """
     whole = hashlib.sha256()
     for path in sorted(files, key=tree.sort_key):
         for part in (os.fsencode(path), files[path]):
@@ -119,9 +124,9 @@ def digest(files: Mapping[str, bytes]) -> str:
 
 
 def write_copy(submission: Submission, destination: Path) -> None:
-    """Write the files to the new folder `destination`, readable by all users: a sandbox runs as another user.
+    """Write the files to the new folder `destination`. All users can read them, because a sandbox runs as another user.
 
-    Raises UsageError for a path that leaves the folder (in a submission that is not from `open_submission`), and
+    Raises UsageError if a path leads out of the folder (in a submission that is not from `open_submission`), and
     MachineError if the disk is full or cannot be written.
     """
     made: set[Path] = set()

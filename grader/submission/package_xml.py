@@ -16,9 +16,9 @@ NO_NEWS = re.compile(r"Error\(s\) in package '[^']*':|Error\(s\):|The manifest c
 
 @dataclass(frozen=True)
 class Manifest:
-    """A package.xml. `run_depends` are declared for running, `other_depends` only for building or tests.
+    """A package.xml. `run_depends` are declared for running, and `other_depends` only for building or testing.
 
-    `problem` says why it is not valid, with its `line` if known. The other fields are empty then.
+    `problem` says why the file is not valid, and `line` says where, if known. The other fields are empty then.
     """
 
     name: str = ""
@@ -30,7 +30,7 @@ class Manifest:
 
 
 def read_manifest(data: bytes) -> Manifest:
-    """Read a package.xml. An error is reported as `problem`, never raised."""
+    """Read a package.xml. An error is stored in `problem` and never raised."""
     if len(data) > MAX_BYTES:
         return Manifest(problem=f"it is larger than {MAX_BYTES // 1000} kB")
     from catkin_pkg.package import parse_package_string  # type: ignore[import-untyped]  # takes 0.07 s, pyparsing
@@ -54,7 +54,7 @@ def read_manifest(data: bytes) -> Manifest:
 
 
 def open_tag(data: bytes) -> tuple[str, int]:
-    """Return the innermost open tag at the place where an XML file is broken, with its line."""
+    """Return the innermost tag that is open at the place where an XML file is broken, with its line."""
     parser = ParserCreate()
     opened: list[tuple[str, int]] = []
     parser.StartElementHandler = lambda name, _: opened.append((name, parser.CurrentLineNumber))
@@ -65,7 +65,7 @@ def open_tag(data: bytes) -> tuple[str, int]:
 
 
 def line_of(data: bytes, *patterns: str) -> int | None:
-    """Return the first line (from 1) with the first of the patterns that is found in the file; else None."""
+    """Return the first line (from 1) that matches the first of the patterns found in the file, or None."""
     lines = data.decode("utf-8", "replace").splitlines()
     for pattern in patterns:
         for number, line in enumerate(lines, start=1):

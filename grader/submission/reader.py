@@ -1,7 +1,7 @@
-"""Reader: it reads the files of a student in a child process with limits on time and memory.
+"""Reader: read a student's files in a child process with limits on time and memory.
 
-`read` is the only way to do so. The child is a fork with all data of its parent, and returns plain data. A test
-(grader/tests/test_reading.py) finds every other place that reads a submission.
+All such reading must go through `read`. The child is a fork that has all data of its parent, and it returns plain data.
+A test (grader/tests/test_reading.py) finds every other place that reads a submission.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ T = TypeVar("T")
 CPU_S = 10
 TIMEOUT_S = 120.0
 MEMORY = 1024 * 1024 * 1024
-"""Address space of the child, in addition to that of the grader (bytes)."""
+"""The address space of the child, in addition to that of the grader (bytes)."""
 MOST_ANSWER = 256 * 1024 * 1024
-"""The largest result (bytes): most of it is the files of a submission."""
+"""The maximum size of a result (bytes). Most of it is the files of a submission."""
 _CHUNK = 1024 * 1024
 _STANDARD = {
     "builtins": ("set", "frozenset", "bytearray", "complex"),
@@ -44,22 +44,22 @@ _STANDARD = {
     "markupsafe": ("Markup",),
     "numpy": ("_frombuffer", "_reconstruct", "dtype", "ndarray", "scalar"),
 }
-"""The types in a result, besides our dataclasses and errors: their names, by package."""
+"""The names of the types that a result may contain, by package, in addition to our dataclasses and errors."""
 
 
 class _Child:
-    """Whether this process is such a child. `read` calls the function directly there."""
+    """Whether this process is such a child. In a child, `read` calls the function directly."""
 
     inside = False
 
 
 def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> T:
-    """Call the function in a child and return its result, which may hold our dataclasses and built-in types.
+    """Call the function in a child process and return its result, which may contain our dataclasses and built-in types.
 
     Raises:
         TooLargeError: the function took too much time or memory.
-        UnreadableError: the function raised an error that is not ours.
-        GraderError: the function raised it.
+        UnreadableError: the function raised an exception that is not one of ours.
+        GraderError: the function itself raised this error.
     """
     if _Child.inside:
         return function(*arguments, **keywords)
@@ -83,7 +83,8 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
 
 def _fork() -> int:
     try:
-        # The child needs no lock that another thread may hold: it reads, computes, and writes to its pipe.
+        # The child does not need any lock that another thread may hold. It only reads, computes, and writes to its
+        # pipe.
         return os.fork()
     except OSError as error:
         message = refusal(error) or str(error)
@@ -94,14 +95,14 @@ def _ended(child: int) -> int:
     try:
         return os.waitpid(child, 0)[1]
     except ChildProcessError:
-        return 0  # our parent ignores SIGCHLD, so the exit status is unknown
+        return 0  # our parent process ignores SIGCHLD, so the exit status is unknown
 
 
 def _run(sends: int, function: Callable[[], object]) -> NoReturn:
-    """Run the function in the child, and end the process."""
+    """Run the function in the child, and exit."""
     try:
         _Child.inside = True
-        gc.disable()  # it would touch, and so copy, all memory of the parent
+        gc.disable()  # it would touch, and therefore copy, all memory of the parent
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
         _close_all_but(sends)
@@ -114,10 +115,10 @@ def _run(sends: int, function: Callable[[], object]) -> NoReturn:
 
 
 def _close_all_but(sends: int) -> None:
-    """Close the files of the parent: the child reads none of them, and must not keep a pipe open."""
+    """Close the parent's files, because the child reads none of them and must not keep a pipe open."""
     for number in [int(entry.name) for entry in Path("/proc/self/fd").iterdir()]:
         if number > 2 and number != sends:
-            with suppress(OSError):  # the descriptor of the listing itself
+            with suppress(OSError):  # the descriptor that was used for listing the folder
                 os.close(number)
 
 
@@ -160,7 +161,7 @@ def _packed(*, fine: bool, value: object) -> bytes:
 
 
 def _received(pipe: int) -> bytes | None:
-    """Return all that the child sends; None if it is too late or too much."""
+    """Return everything that the child sends, or None if it takes too long or is too large."""
     poll = select.poll()
     poll.register(pipe, select.POLLIN)
     until = time.monotonic() + TIMEOUT_S
@@ -186,7 +187,7 @@ def _value(answer: bytes | None, status: int | None) -> Any:  # noqa: ANN401 - w
         message = f"it could not be read: reading it ended with {signal.Signals(number).name}"
         raise UnreadableError(message)
     if os.WEXITSTATUS(status) != 0 or not answer:
-        raise TooLargeError(_too_much())  # there was not even memory for the answer
+        raise TooLargeError(_too_much())  # there was not enough memory even for the answer
     try:
         fine, value = _Unpacker(io.BytesIO(answer)).load()
     except Exception as error:
@@ -202,20 +203,20 @@ def _too_much() -> str:
 
 
 class _Packer(pickle.Pickler):
-    """Pickles members of enumerations and our errors as calls of their classes, whatever else is registered."""
+    """Pickles enumeration members and our errors as calls to their classes, whatever other reducers are registered."""
 
     def reducer_override(self, obj: object) -> Any:  # noqa: ANN401 - as the base class
-        """Return how to create the object again."""
+        """Return how to recreate the object."""
         if isinstance(obj, Enum):
             return type(obj), (obj.value,)
         return (type(obj), obj.args) if isinstance(obj, GraderError) else NotImplemented
 
 
 class _Unpacker(pickle.Unpickler):
-    """Accepts only our dataclasses, our errors and their parts, since the child has read the files of a stranger."""
+    """Accepts only our dataclasses, our errors and their parts, because the child has read untrusted files."""
 
     def find_class(self, module: str, name: str) -> Any:  # noqa: ANN401 - a class
-        """Return the class if it is one of these."""
+        """Return the class if it is allowed."""
         if name in _STANDARD.get(module.partition(".")[0], ()):
             return super().find_class(module, name)
         found = getattr(import_module(module), name, None) if module.startswith("grader.") else None

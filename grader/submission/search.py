@@ -1,6 +1,6 @@
-"""Find the only package in a folder, or tell a beginner why there is not exactly one.
+"""Find the only package in a folder, or explain to a beginner why there is not exactly one.
 
-As in colcon, a folder with package.xml or setup.py is a package, and all folders below belong to it.
+As in colcon, a folder that contains package.xml or setup.py is a package, and all folders below it belong to it.
 """
 
 from __future__ import annotations
@@ -21,27 +21,29 @@ IGNORE_MARKER = "COLCON_IGNORE"
 GIVE = "Give the folder of your package: the one with package.xml in it."
 MAX_FOLDERS = 5000
 MAX_NAMED = 10
-"""The most names in a message."""
+"""The maximum number of names in a message."""
 
 
 @dataclass
 class _Search:
-    """What the search found. Paths are relative to the folder where it began."""
+    """The results of the search. Paths are relative to the folder where it started."""
 
     packages: list[str] = field(default_factory=list)
     nearly: list[str] = field(default_factory=list)
-    """Files that would be package.xml or setup.py but for upper case or a second suffix."""
+    """Files that would be package.xml or setup.py if they were in lower case and had no second suffix."""
     linked: list[str] = field(default_factory=list)
     """Links to folders. They are not followed."""
     ignored: list[str] = field(default_factory=list)
-    """Folders that colcon ignores because of a marker file."""
+    """Folders that colcon ignores because they contain a marker file."""
     folders: int = 0
 
 
 def find_package(root: int, name: str) -> str:
-    """Return the POSIX path of the only package in the folder `root`, "." for itself. `name` is what the user typed.
+    """Return the POSIX path of the only package in the folder `root`; "." is the folder itself.
 
-    Raises UsageError if there is none, or several.
+    `name` is the path as the user typed it.
+
+    Raises UsageError if there is no package or more than one.
     """
     search = _Search()
     _visit(search, root, ".", 0, name)
@@ -52,7 +54,7 @@ def find_package(root: int, name: str) -> str:
 
 
 def why_not_opened(error: OSError, name: str) -> str:
-    """Return the message for a path that is not a folder or cannot be read."""
+    """Return a message about a path that is not a folder or cannot be read."""
     path = shown(name)
     if error.errno not in (errno.ENOENT, errno.ENOTDIR):
         return f"{path} cannot be opened: it {tree.reason(error, name)}."
@@ -92,12 +94,13 @@ def _visit_below(search: _Search, folder: int, entry: Entry, path: str, depth: i
         with tree.open_folder(entry.name, folder) as descriptor:
             _visit(search, descriptor, path, depth + 1, name)
     except OSError as error:
-        # This raises for a fault of the machine. A folder that we cannot enter has no package for us.
+        # This raises an exception if the machine is at fault. Otherwise, a folder that we cannot enter has no package
+        # for us.
         tree.reason(error, path)
 
 
 def _is_folder_behind(name: str, folder: int) -> bool:
-    """Return whether the link leads to a folder, for a message. Nothing behind the link is read."""
+    """Return whether the link leads to a folder, for use in a message. Nothing behind the link is read."""
     try:
         return stat.S_ISDIR(os.stat(name, dir_fd=folder).st_mode)
     except OSError:
@@ -148,7 +151,7 @@ def _for_a_file(name: str) -> str:
 
 
 def _nearest_parent(name: str) -> str:
-    """Return the part of the path that exists: the user probably mistyped the next part."""
+    """Return the part of the path that exists. The user probably mistyped the part after it."""
     above = Path(name).absolute().parent
     if above.is_dir():
         return ""

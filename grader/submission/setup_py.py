@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 TARGET = re.compile(r"(?P<module>[\w.]+)\s*:\s*(?P<attribute>[\w.]+)\s*(\[.*\])?")
-"""The part of an entry point after the "=": module:attribute."""
+"""The part of an entry point after the "=", which is module:attribute."""
 MAX_ENTRY_POINT = 300
 MOST_ENTRY_POINTS = 1000
 
 
 @dataclass(frozen=True)
 class EntryPoint:
-    """One string in console_scripts. `target` is "module:attribute"; None if the string has another form."""
+    """A string in console_scripts. `target` is "module:attribute", or None if the string has another form."""
 
     text: str
     line: int
@@ -33,7 +33,7 @@ class EntryPoint:
 
 @dataclass(frozen=True)
 class SetupPy:
-    """The arguments of setup() that are constants; the others are None."""
+    """The arguments of setup() that are constants. The others are None."""
 
     name: str | None = None
     name_line: int | None = None
@@ -49,7 +49,7 @@ class SetupPy:
     required: tuple[str, ...] = ()
     """The value of install_requires."""
     stray: tuple[EntryPoint, ...] = ()
-    """Strings outside console_scripts that look like an entry point."""
+    """Strings outside console_scripts that look like entry points."""
     unreadable: Unreadable | None = None
 
     def entry_point(self, name: str) -> EntryPoint | None:
@@ -58,7 +58,10 @@ class SetupPy:
 
 
 def read_setup_py(data: bytes) -> SetupPy:
-    """Read a setup.py. Arguments that are not constant stay unknown. Nothing is raised."""
+    """Read a setup.py.
+
+    Arguments that are not constant remain unknown. No exception is raised for a mistake in the file.
+    """
     module = read_module("setup.py", data)
     if module.tree is None:
         return SetupPy(unreadable=module.unreadable)
@@ -97,7 +100,7 @@ def _stray(module: Module, points: tuple[EntryPoint, ...]) -> tuple[EntryPoint, 
 
 
 def _entry_point(text: str, line: int) -> EntryPoint:
-    """Read `name = module:attribute` as setuptools does, in linear time whatever the string is."""
+    """Read `name = module:attribute` as setuptools does, but in linear time for any string."""
     kept = text[:MAX_ENTRY_POINT]
     name, _, rest = kept.partition("=")
     match = TARGET.fullmatch(rest.strip()) if name.strip() else None
@@ -109,8 +112,8 @@ def _last(node: ast.expr) -> str:
 
 
 def _value_line(node: ast.expr | None, module: Module) -> int | None:
-    """Return the line of the string itself, if a name refers to it."""
-    for _ in range(MAX_DEPTH):  # `a = b; b = a` would never end
+    """Return the line of the value itself, even if the argument is a name that refers to it."""
+    for _ in range(MAX_DEPTH):  # `a = b; b = a` would loop forever
         if not isinstance(node, ast.Name) or module.names.get(node.id) is None:
             break
         node = module.names[node.id]
@@ -118,12 +121,12 @@ def _value_line(node: ast.expr | None, module: Module) -> int | None:
 
 
 def _resolved(node: ast.expr | None, module: Module) -> ast.expr | None:
-    """Return the expression; for a name, the expression that it refers to."""
+    """Return the expression itself or, for a name, the expression that it refers to."""
     return module.names.get(node.id) if isinstance(node, ast.Name) else node
 
 
 def _groups(call: Call, module: Module) -> dict[str, ast.expr] | None:
-    """Return the groups of entry_points, empty if there are none; None if they are not constant."""
+    """Return the groups in entry_points (empty if there are none), or None if they are not constant."""
     given = call.argument(99, "entry_points")
     if given is None:
         return None if any(keyword.arg is None for keyword in call.node.keywords) else {}
@@ -168,7 +171,7 @@ def _data_files(call: Call, module: Module) -> tuple[tuple[str, tuple[str, ...]]
 
 
 def _data_file(item: ast.expr, module: Module) -> tuple[str, tuple[str, ...]]:
-    """One (folder, [files]). A part that is not constant is an empty string."""
+    """Return one pair (folder, [files]). A part that is not constant becomes an empty string."""
     if not isinstance(item, ast.Tuple | ast.List) or len(item.elts) != 2:
         return "", ()
     folder, files = item.elts

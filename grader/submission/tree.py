@@ -1,7 +1,7 @@
-"""Read a folder of a stranger, without trusting it.
+"""Read a folder from an untrusted source.
 
-No link is followed. Every folder is opened relative to the descriptor of the folder above, with O_NOFOLLOW. So a folder
-that is replaced by a link while it is read leads nowhere.
+Links are never followed. Every folder is opened relative to the descriptor of its parent folder, with O_NOFOLLOW. So if
+a folder is replaced by a link while it is being read, the link is not followed.
 """
 
 from __future__ import annotations
@@ -23,31 +23,32 @@ MAX_FILE_BYTES = 8 * 1024 * 1024
 MAX_TOTAL_BYTES = 64 * 1024 * 1024
 MAX_FILES = 4000
 MAX_ENTRIES = 20_000
-"""The most entries in one folder, and in all. A larger folder is left out, since the order of its entries is random."""
+"""The maximum number of entries in one folder, and in total. A larger folder is left out, because the order of its
+entries is random."""
 MAX_DEPTH = 24
 MAX_PATH_BYTES = 1000
 
 LEFT_OUT = frozenset({"build", "install", "log"})
-"""Folders that colcon creates beside src/. Students often submit them."""
+"""Folders that colcon creates next to src/. Students often submit them."""
 
 OF_THE_MACHINE = frozenset({errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ESTALE})
-"""Errors of the machine. They have nothing to do with the student."""
+"""Errors that the machine causes. They have nothing to do with the student."""
 
 
 def shown(path: str) -> str:
-    """Return the path in printable characters, with escapes for control characters and bytes that are not UTF-8."""
+    """Return the path in printable characters. Control characters and bytes that are not UTF-8 are escaped."""
     text = os.fsencode(path).decode("utf-8", "backslashreplace")
     return "".join(char if char.isprintable() else char.encode("unicode_escape").decode() for char in text)
 
 
 def sort_key(path: str) -> bytes:
-    """The sort key of a name: its bytes, so that the order is the same on every machine and in every language."""
+    """Return the sort key of a name: its bytes, so that the order is the same on every machine and in every locale."""
     return os.fsencode(path)
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One entry of a folder, from lstat. `target` is the target of a link."""
+    """An entry of a folder, from lstat. `target` is the target of a link."""
 
     name: str
     mode: int
@@ -56,27 +57,27 @@ class Entry:
 
     @property
     def is_folder(self) -> bool:
-        """Whether it is a folder, and not a link to one."""
+        """Whether the entry is a folder, and not a link to one."""
         return stat.S_ISDIR(self.mode)
 
     @property
     def is_file(self) -> bool:
-        """Whether it is a regular file, and not a link to one."""
+        """Whether the entry is a regular file, and not a link to one."""
         return stat.S_ISREG(self.mode)
 
 
 @dataclass
 class Tree:
-    """The files below a folder, by POSIX path. `executable` are those with the executable bit of the owner."""
+    """The files below a folder, by POSIX path. `executable` are those that their owner can execute."""
 
     files: dict[str, bytes] = field(default_factory=dict)
     executable: set[str] = field(default_factory=set)
     rejected: dict[str, str] = field(default_factory=dict)
     """Path -> why it is not among the files, if the folder is at fault."""
     links: dict[str, str] = field(default_factory=dict)
-    """Path -> the target, as written in the link."""
+    """Path -> the target of the link, as written in the link."""
     total: int = 0
-    """Bytes in all files. A file behind links counts once per link."""
+    """The total size of all files (bytes). A file that is reached through links counts once per link."""
     entries: int = 0
 
 
@@ -93,7 +94,7 @@ def open_folder(name: str, parent: int | None = None) -> Iterator[int]:
 
 @contextmanager
 def open_below(folder: int, path: str) -> Iterator[int]:
-    """Open the folder at the POSIX path `path` below `folder`, "." for itself. No link is followed."""
+    """Open the folder at the POSIX path `path` below `folder`; "." is `folder` itself. No link is followed."""
     with ExitStack() as stack:
         for name in path.split("/"):
             folder = stack.enter_context(open_folder(name, folder))
@@ -101,7 +102,7 @@ def open_below(folder: int, path: str) -> Iterator[int]:
 
 
 def entries(folder: int) -> list[Entry] | None:
-    """Return the entries of a folder, in the order of `sort_key`; None if there are more than MAX_ENTRIES."""
+    """Return the entries of a folder in the order of `sort_key`, or None if there are more than MAX_ENTRIES."""
     found: list[Entry] = []
     with os.scandir(folder) as scan:
         for entry in scan:
@@ -110,18 +111,21 @@ def entries(folder: int) -> list[Entry] | None:
             try:
                 status = entry.stat(follow_symlinks=False)
                 target = os.readlink(entry.name, dir_fd=folder) if stat.S_ISLNK(status.st_mode) else None
-            except FileNotFoundError:  # removed since the listing
+            except FileNotFoundError:  # removed after the listing
                 continue
             found.append(Entry(entry.name, status.st_mode, status.st_size, target))
     return sorted(found, key=lambda entry: sort_key(entry.name))
 
 
 def is_left_out(name: str, folder: int) -> bool:
-    """Return whether the folder `name` in `folder` is left out: a build, hidden, a cache or an environment."""
+    """Return whether the folder `name` in `folder` is left out.
+
+    Build folders, hidden folders, caches and virtual environments are left out.
+    """
     if name.startswith(".") or name == "__pycache__" or name.endswith(".egg-info"):
         return True
     if name in LEFT_OUT:
-        # A Python package may be called log. The folder log of colcon has no __init__.py.
+        # A Python package may be named log. The folder log that colcon creates has no __init__.py.
         return not _exists(f"{name}/__init__.py", folder)
     return _exists(f"{name}/pyvenv.cfg", folder)
 
@@ -141,7 +145,7 @@ def read_folder(folder: str | os.PathLike[str]) -> Tree:
 
 
 def read_tree(folder: int) -> Tree:
-    """Return all regular files below the folder, and the links to them."""
+    """Return all regular files below the folder, and the links to those files."""
     tree = Tree()
     _read_folder(tree, folder, "", 0)
     for path in tree.links:
@@ -158,7 +162,7 @@ def _read_folder(tree: Tree, folder: int, prefix: str, depth: int) -> None:
     for entry in listing:
         path = prefix + entry.name
         if not entry.name.isprintable():
-            # The tools of Python fail on such names, and nobody can import or type them.
+            # Python's tools fail on such names, and nobody can import or type them.
             tree.rejected[path] = "has a name with control characters, or one that is not UTF-8"
         elif len(os.fsencode(path)) > MAX_PATH_BYTES:
             tree.rejected[path] = f"has a path of more than {MAX_PATH_BYTES} bytes"
@@ -197,7 +201,7 @@ def _has_room(tree: Tree, path: str, size: int) -> bool:
 
 
 def _read_file(tree: Tree, folder: int, entry: Entry, path: str) -> None:
-    # O_NONBLOCK: a pipe that replaced the file since the listing must not block us.
+    # O_NONBLOCK ensures that a pipe that replaced the file after the listing does not block us.
     flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
     try:
         descriptor = os.open(entry.name, flags, dir_fd=folder)
@@ -221,7 +225,7 @@ def _add(tree: Tree, path: str, data: bytes, *, executable: bool) -> None:
 
 
 def _resolve(tree: Tree, path: str) -> None:
-    """Give a link the content of its target, if that is one of the files. The disk is not read for that."""
+    """Give a link the content of its target, if the target is one of the files. This does not read the disk."""
     at = path
     for _ in range(len(tree.links)):
         target = tree.links[at]
@@ -241,7 +245,10 @@ def _resolve(tree: Tree, path: str) -> None:
 
 
 def reason(error: OSError, path: str) -> str:
-    """Return why something could not be read, for `rejected`. A fault of the machine is raised instead."""
+    """Return why something could not be read, for `rejected`.
+
+    If the machine is at fault, raise MachineError instead.
+    """
     if error.errno in OF_THE_MACHINE:
         message = f"{shown(path)} could not be read: {error.strerror}. This is a fault of the machine; try again."
         raise MachineError(message) from error

@@ -1,8 +1,8 @@
-"""Uses of functions, found by their last names, even if the source gives them other names.
+"""Uses of functions, found by their last names, even if the source gives the functions other names.
 
-A search for calls of `sleep` does not find `from time import sleep as nap`, `nap = time.sleep`,
-`partial(time.sleep, 1)` or `getattr(time, "sleep")`, nor a function of another file that calls it for the node. So
-every mention of such a function counts as a use, and names of other files that lead to one are followed.
+A search for calls of `sleep` does not find `from time import sleep as nap`, `nap = time.sleep`, `partial(time.sleep,
+1)` or `getattr(time, "sleep")`. Neither does it find a function in another file that calls `sleep` for the node. So
+every mention of such a function counts as a use, and names in other files that lead to one are followed.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 BY_STRING = frozenset(
     {"getattr", "attrgetter", "methodcaller", "__getattribute__", "__getattr__", "get", "exec", "eval"}
 )
-"""Functions that get the name of a function as a string."""
+"""Functions that take the name of a function as a string."""
 
 
 @dataclass(frozen=True)
 class Use:
-    """A use of a function: its own `name`, and the name as `written` in the source."""
+    """A use of a function, with its original `name` and its name as `written` in the source."""
 
     name: str
     written: str
@@ -37,25 +37,25 @@ class Use:
 
 @dataclass
 class _File:
-    """One file of the submission, and the meaning of its names."""
+    """One file of the submission, and what its names refer to."""
 
     module: Module
     functions: dict[str, str] = field(default_factory=dict)
-    """Local name -> one of the functions, from `from x import FUNCTION as LOCAL`."""
+    """Local name -> one of the functions, as in `from x import FUNCTION as LOCAL`."""
     modules: set[str] = field(default_factory=set)
-    """Names that may be modules."""
+    """Names that may refer to modules."""
     others: dict[str, Top] = field(default_factory=dict)
-    """Local name, or MODULE.NAME -> the name at the top level of another file that it refers to."""
+    """Local name or MODULE.NAME -> the top-level name in another file that it refers to."""
     stored: set[str] = field(default_factory=set)
-    """Attributes that the file itself assigns: `self.sleep = 0` is a number, not a function."""
+    """Attributes that the file itself assigns. For example, `self.sleep = 0` is a number and not a function."""
 
 
 Top = tuple[str, str]
-"""A file, and a name at its top level."""
+"""A file, and a name at the top level of that file."""
 
 
 def uses_of(modules: Sequence[Module], file: str | None, names: Collection[str]) -> list[Use]:
-    """Return all uses of the named functions in `file`, one of `modules`, in the order of the source."""
+    """Return all uses of the named functions in `file`, which is one of `modules`, in the order of the source."""
     files = {module.file: _read(module, modules, names) for module in modules}
     found = files.get(file or "")
     if found is None:
@@ -71,7 +71,7 @@ def uses_of(modules: Sequence[Module], file: str | None, names: Collection[str])
 
 
 def _reached(files: Sequence[_File], names: Collection[str]) -> dict[Top, str]:
-    """Return the top-level names of the files that lead to one of the functions -> the name of that function."""
+    """Return the top-level names in the files that lead to one of the functions -> the name of that function."""
     reached: dict[Top, str] = {}
     users: dict[Top, set[Top]] = {}
     for each in files:
@@ -95,7 +95,7 @@ def _reached(files: Sequence[_File], names: Collection[str]) -> dict[Top, str]:
 
 
 def _below_top(module: Module) -> Iterator[tuple[set[Top], ast.AST]]:
-    """Yield every node of a file, with the names that its top-level statement defines."""
+    """Yield every node of a file, together with the names that its top-level statement defines."""
     for statement in module.body:
         bound = {(module.file, name) for name in _bound([statement])}
         if bound and not isinstance(statement, ast.Import | ast.ImportFrom):
@@ -103,7 +103,7 @@ def _below_top(module: Module) -> Iterator[tuple[set[Top], ast.AST]]:
 
 
 def _bound(statements: Iterable[ast.stmt]) -> set[str]:
-    """Return the names that these statements define at their own level."""
+    """Return the names that these statements define in their own scope."""
     bound: set[str] = set()
     for statement in statements:
         if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
@@ -120,7 +120,7 @@ def _bound(statements: Iterable[ast.stmt]) -> set[str]:
 
 
 def _read(module: Module, modules: Sequence[Module], names: Collection[str]) -> _File:
-    """Read a file with the meaning that its imports, at any level, give its names."""
+    """Read a file, and determine what its names refer to because of its imports at any level."""
     found = _File(module)
     tops = {
         each.file.rpartition("/")[2].removesuffix(".py"): {name: (each.file, name) for name in _bound(each.body)}
@@ -162,7 +162,7 @@ def _below(module: str, tops: dict[str, Top]) -> dict[str, Top]:
 
 
 def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
-    """Yield the use that this node is, if it is one."""
+    """Yield the use that this node represents, if it is one."""
     name: str | None = None
     written: str | None = None
     if isinstance(node, ast.Call):
@@ -182,12 +182,12 @@ def _use(node: ast.AST, file: _File, names: Collection[str]) -> Iterable[Use]:
 
 
 def _is_of_a_module(node: ast.expr) -> bool:
-    """Return whether it may be the dictionary of a module."""
+    """Return whether the expression may be the dictionary of a module."""
     return isinstance(node, ast.Call) or getattr(node, "attr", "") == "__dict__"
 
 
 def _by_string(call: ast.Call, names: Collection[str]) -> str | None:
-    """Return the function that a string argument names, or that source code in a string uses."""
+    """Return the function that is named by a string argument, or used by source code in a string."""
     for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
         if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
             words: list[str] = re.findall(r"\w+", argument.value[:10_000])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Where:
-    """A place in the submission. `file` is relative to the package folder, `line` counts from 1."""
+    """A place in the submission. `file` is relative to the package folder, and `line` counts from 1."""
 
     file: str
     line: int | None = None
