@@ -79,7 +79,7 @@ def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -
 
 
 def _save_recording(folder: Path, recording: Recording, prefixes: Iterable[Path]) -> None:
-    from grader.evidence.bag import write_bag  # importing rosbags is slow: only if a bag is written
+    from grader.evidence.bag import write_bag  # importing rosbags is slow, so import it only when needed
 
     folder.mkdir(parents=True)
     write_bag(folder / "bag", recording.messages, prefixes)

@@ -52,8 +52,8 @@ class Run:
 class Evidence:
     """A submission and what was observed of it. `build` is None if the submission was not built.
 
-    A check uses the evidence as a view from one of the exercise's trials. `trial` is that trial, and `recording` is its
-    recording. The source files are parsed on first use, from `submission.files`.
+    A check sees the evidence from the viewpoint of one of the exercise's trials. `trial` is that trial, and `recording`
+    is its recording. The source files are parsed on first use, from `submission.files`.
     """
 
     exercise: Exercise
@@ -65,7 +65,7 @@ class Evidence:
     tries: Tries = field(default_factory=Tries)
     """The results of trying to fix the causes."""
     trial_id: str = ""
-    """The id of the trial of this view; empty for the first trial of the exercise."""
+    """The id of the trial from whose viewpoint the evidence is seen; empty for the first trial of the exercise."""
 
     def __getstate__(self) -> dict[str, Any]:
         """Return only the fields. What was parsed on first use is not sent to another process."""
@@ -73,7 +73,7 @@ class Evidence:
 
     @property
     def trial(self) -> TrialSpec:
-        """The trial of this view of the evidence."""
+        """The trial from whose viewpoint the evidence is seen."""
         return self.exercise.trial(self.trial_id) if self.trial_id else self.exercise.trials[0]
 
     @property
@@ -82,11 +82,11 @@ class Evidence:
         return self.runs.get(self.trial.id, Run())
 
     def from_trial(self, id_: str) -> Evidence:
-        """Return the view of the same evidence from this trial."""
+        """Return the same evidence from the viewpoint of this trial."""
         return self if id_ == self.trial.id else self._views[id_]
 
     def views(self) -> tuple[Evidence, ...]:
-        """Return a view of the evidence from each trial that was run, and always from the first trial."""
+        """Return the evidence from the viewpoint of each trial that was run, and always of the first trial."""
         ids = [trial.id for trial in self.exercise.trials]
         return tuple(self.from_trial(id_) for id_ in ids if id_ in self.runs or id_ == ids[0])
 
@@ -176,7 +176,7 @@ class Evidence:
         return self.build
 
     def place(self, *calls: str) -> Where | None:
-        """Return where the first of these functions that occurs in the code is called; otherwise the node's file."""
+        """Return where the code calls the first of these functions that it calls at all, or else the node's file."""
         for name in calls:
             found = self.code.calls(name)
             if found:

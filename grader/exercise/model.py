@@ -35,7 +35,10 @@ class CheckSpec:
 
 @dataclass(frozen=True)
 class Drive:
-    """From `from_s` (s) onwards, the simulator drives the turtle. Each speed is drawn from between its two limits."""
+    """From `from_s` (s) onwards, the simulator drives the turtle.
+
+    Each speed is drawn at random between its two limits.
+    """
 
     from_s: float
     linear_x_m_s: tuple[float, float]

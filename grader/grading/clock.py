@@ -81,7 +81,7 @@ def first_clock(choice: ClockChoice, evidence: Evidence) -> Clock:
     try:
         entry = evidence.entry_point()
         clues = wall_clues(evidence.submission.files, entry.partition(":")[0].strip() if entry else None)
-    except Exception as error:  # (the checks that read the source report it)
+    except Exception as error:  # the checks that read the source report this error
         return Clock("wall", f"the source could not be read ({in_words(error)}), so it may follow wall time")
     if clues:
         return Clock("wall", f"{clues[0].name} at {clues[0].file}:{clues[0].line} may follow wall time")
@@ -94,7 +94,7 @@ def stops_at_doubt(choice: ClockChoice) -> bool:
 
 
 def after_doubt(doubt: WallTimeNeeded) -> Clock:
-    """Return the clock for the trial that follows one that stopped at a doubt (rule 3)."""
+    """Return the clock for repeating a trial that stopped at a doubt (rule 3)."""
     return Clock("wall", str(doubt))
 
 

@@ -214,7 +214,7 @@ def read_module(file: str, data: bytes) -> Module:
         with warnings.catch_warnings():
             warnings.simplefilter(
                 "ignore"
-            )  # a warning about an escape sequence of the student must not appear in our output
+            )  # a warning about an escape sequence in the student's code must not appear in our output
             return Module(file, ast.parse(data, filename=file))
     except SyntaxError as error:
         return Module(file, unreadable=Unreadable(error.msg, error.lineno))

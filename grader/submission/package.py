@@ -113,7 +113,7 @@ def _answers(name: str) -> Submission:
 def digest(files: Mapping[str, bytes]) -> str:
     """Return the SHA-256 hash of paths and contents.
 
-    Each part follows its length, so that different files never look equal.
+    Each part is preceded by its length, so that different files never look equal.
     """
     whole = hashlib.sha256()
     for path in sorted(files, key=tree.sort_key):

@@ -71,7 +71,7 @@ def uses_of(modules: Sequence[Module], file: str | None, names: Collection[str])
 
 
 def _reached(files: Sequence[_File], names: Collection[str]) -> dict[Top, str]:
-    """Return the top-level names in the files that lead to one of the functions -> the name of that function."""
+    """Map the files' top-level names that lead to one of the functions to the name of that function."""
     reached: dict[Top, str] = {}
     users: dict[Top, set[Top]] = {}
     for each in files:
@@ -120,7 +120,7 @@ def _bound(statements: Iterable[ast.stmt]) -> set[str]:
 
 
 def _read(module: Module, modules: Sequence[Module], names: Collection[str]) -> _File:
-    """Read a file, and determine what its names refer to because of its imports at any level."""
+    """Read a file, and use its imports, at any level, to determine what its names refer to."""
     found = _File(module)
     tops = {
         each.file.rpartition("/")[2].removesuffix(".py"): {name: (each.file, name) for name in _bound(each.body)}

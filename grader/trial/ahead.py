@@ -1,8 +1,8 @@
 """The trials of one submission. They start while the submission is built, and those in simulated time run in parallel.
 
-They start one after the other, so that the build keeps most of a processor, because all of them wait for the build.
-Simulated time does not depend on the speed of the machine, so other trials do not affect it. A trial in wall time needs
-the processors for itself, so the caller first waits for the other trials (`settle`).
+They start one after the other. This leaves most of a processor to the build, for which all of them wait. Simulated time
+does not depend on the speed of the machine, so other trials do not affect it. A trial in wall time needs the processors
+for itself, so the caller first waits for the other trials (`settle`).
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class _UnderWay:
 
 
 class _Started:
-    """A trial that was started, or soon will be."""
+    """A trial that has been started or is about to be started."""
 
     def __init__(self, trial: Trial, ready: Future[None]) -> None:
         self._trial = trial

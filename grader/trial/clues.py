@@ -1,4 +1,4 @@
-"""Clues in the source that a node may follow wall time, so that simulated time would misjudge it.
+"""Find clues in the source that a node may follow wall time. Simulated time would misjudge such a node.
 
 Only the module of the executable and the modules of the package that it imports count. A sleep in another node of the
 package does not matter.

@@ -19,18 +19,18 @@ SIMULATOR = 0.3
 """The share of a processor that the simulator may use for itself. A tenth was measured. The rest counts as the
 node's."""
 OTHERS = 0.2
-"""Other programs are using the machine if they take at least this share of one processor ..."""
+"""Other programs use the machine if they take at least this share of one processor."""
 WAITED = 0.05
-"""... and they crowd it if the simulator and the node together wait for a processor for at least this share of the
-time."""
+"""Other programs that use the machine crowd it if the simulator and the node together wait for a processor for at least
+this share of the time."""
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
 def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
     """Return whether others crowd the machine.
 
-    In `of_s` seconds, the other programs worked for `others_s`, and the simulator and the node waited for `waited_s`
-    (s).
+    In a period of `of_s` (s), the other programs worked for `others_s` (s), and the simulator and the node waited for
+    `waited_s` (s).
     """
     return waited_s >= WAITED * of_s and others_s >= OTHERS * of_s
 

@@ -28,7 +28,7 @@ class Inputs:
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Inputs:
-        """Return the Inputs in JSON data that dataclasses.asdict produced."""
+        """Create Inputs from the JSON data that dataclasses.asdict produced."""
         drives = tuple((from_s, linear, angular) for from_s, linear, angular in data["drives"])
         return cls(drives, tuple(data["rename"]), data["pose_every"])
 

@@ -14,7 +14,7 @@ WORKED_S = 20.0
 HANDSHAKE_S = 100.0
 """The time limit for both on a crowded machine (s). The limit for the whole trial is slightly higher (trial.py)."""
 TICK_CPU_S = 1.0
-"""A node that works longer than this on one frame never becomes idle (s of CPU time)."""
+"""If a node works longer than this on one frame, it counts as never idle (s of CPU time)."""
 TICK_S = 30.0
 ASK_EVERY_S = 0.02
 """The interval at which its CPU time is checked (s)."""

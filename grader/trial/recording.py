@@ -167,8 +167,6 @@ class Recording:
     """The services and actions of the simulator that were called, in order: "reset", "spawn", "teleport_absolute".
 
     If there are very many calls, only the first ones are kept, and then each further name once.
-
-    If they are very many, the first are kept, and each name of the others once.
     """
     interventions_dropped: int = 0
     """The number of calls that were not kept because there were too many."""

@@ -115,7 +115,7 @@ class Threads:
         """Look at every thread once.
 
         Raises:
-            GoneError: the process has ended.
+            GoneError: the process has exited.
         """
         for _ in range(100):
             self._refresh()
@@ -136,14 +136,14 @@ class Threads:
         """Return how often each thread of the last look has run. This takes a third of the time of a look."""
         try:
             return tuple([os.pread(schedstat, 64, 0) for _, schedstat in self._files.values()])
-        except ProcessLookupError:  # some or all threads have exited: this differs from every look
+        except ProcessLookupError:  # some or all threads have exited, so the result must differ from every look
             return ()
 
     def main_asleep(self) -> bool:
         """Return whether the main thread sleeps, without checking the other threads.
 
         Raises:
-            GoneError: the process has ended.
+            GoneError: the process has exited.
         """
         try:
             return _state(os.pread(self._main, 64, 0)) not in b"RD"

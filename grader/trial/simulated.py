@@ -76,7 +76,7 @@ class SimulatedTrial(Simulation):
         """Run the scenario, and return when SIGINT was sent, on the trial's clock (s).
 
         Raises:
-            DoubtError: the node may follow wall time, and the plan says `stop_at_doubt`.
+            DoubtError: the node may follow wall time, and the plan sets `stop_at_doubt`.
         """
         try:
             self.lap("start")

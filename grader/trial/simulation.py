@@ -121,7 +121,8 @@ class Simulation:
 
         Return the entities that were handled.
 
-        An entity is a subscription, for one or more messages, or a service, for each request, and so on.
+        An entity is, for example, a subscription that received one or more messages, or a service that received a
+        request.
         """
         handled: list[object] = []
         until = time.monotonic() + timeout_s + _MOST_AT_ONCE_S
