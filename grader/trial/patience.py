@@ -1,4 +1,4 @@
-"""How long simulated time waits for a node. Only CPU time counts, so a loaded machine makes no difference."""
+"""How long simulated time waits for a node. CPU time counts, so that a loaded machine makes no difference."""
 
 from __future__ import annotations
 
