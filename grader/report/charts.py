@@ -1,7 +1,8 @@
 """Charts over time as SVG: the intervals between commands, and the values in the commands.
 
-All charts have the same time axis. If there are more values than a chart can show, each short period of time is drawn
-as its lowest and its highest value. Colour is never the only sign: a value outside its band is drawn as a cross.
+All charts have the same time axis. If there are more values than a chart can show, only the lowest and the highest
+value of each short period of time are drawn. Colour is never the only cue: a value outside its band is drawn as a
+cross.
 """
 
 from __future__ import annotations
@@ -24,16 +25,16 @@ if TYPE_CHECKING:
 WIDTH = 440.0
 LEFT, RIGHT, TOP, BOTTOM = 58.0, 12.0, 24.0, 34.0
 HEIGHT = 150.0
-"""The size of the area inside the axes, for one row of a chart."""
+"""The height of the area inside the axes, for one row of a chart."""
 GAP = 46.0
 """The space between two rows."""
 BINS = 120
-"""Time is divided into this many bins. At most the lowest and the highest value of each bin are drawn."""
+"""The number of bins for a long series of values. Only the lowest and the highest value of each bin are drawn."""
 HUGE = 1e4
 """Larger values are drawn as if they were this large."""
 
 DOT, BAD, BAND = "#1c7ed6", "#d6336c", "#2f9e44"
-"""Mid tones, with a contrast of at least 3:1 against the white page and the dark page."""
+"""Colours with a contrast of at least 3:1 against both the white page and the dark page."""
 
 Series = tuple[tuple[float, float], ...]
 """Pairs (t_s, value), sorted by time."""
@@ -65,7 +66,7 @@ class Area:
         return self.top + HEIGHT * (1.0 - (min(max(value, self.low), self.high) - self.low) / (self.high - self.low))
 
     def frame(self, label: str) -> str:
-        """Draw the axes with their numbers. `label` names the values."""
+        """Draw the axes with their numbers. `label` says what the values are."""
         bottom = self.top + HEIGHT
         parts = [words(label, LEFT, self.top - 8, font_weight="bold")]
         for value in ticks(self.low, self.high):
@@ -112,7 +113,7 @@ def thin(series: Series, end_s: float, bins: int = BINS) -> Series:
 
 
 def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> Chart | None:
-    """Draw the time from each command to the next, with the allowed band; None for fewer than two commands."""
+    """Draw the time from each command to the next, with the allowed band. Return None if no interval was measured."""
     measured = evidence.command_arrivals
     if not measured.intervals:
         return None
@@ -150,14 +151,15 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
 
 
 def _s(seconds: float) -> str:
-    """Format seconds with two decimals; shorter times with two significant digits."""
+    """Format a time with two decimals, or with two significant digits if it is shorter than 0.1 s."""
     return f"{seconds:.2f}" if seconds >= 0.1 else f"{seconds:.2g}"
 
 
 def values(evidence: Evidence, name: str = "values", bins: int = BINS) -> Chart | None:
     """Draw the values of the commands over time.
 
-    Each field that the exercise requires or that was not always 0 gets a row.
+    There is one row for each field that the exercise requires or that was not always 0, and always one for linear.x and
+    one for angular.z.
     """
     commands = evidence.commands
     if not commands:

@@ -15,20 +15,20 @@ if TYPE_CHECKING:
     from grader.submission.where import Where
 
 AROUND = 4
-"""How many lines are shown before and after the line."""
+"""The number of lines that are shown before and after the line."""
 MOST_COLOURED = 60_000
 """Characters. A longer file is not coloured, because that would take too long."""
 
 NEWLINE = re.compile(r"\r\n|\r|\n")
-"""The line ends that Python knows. str.splitlines knows more, so it would count lines differently."""
+"""The line endings that Python recognizes. str.splitlines recognizes more, so it would count lines differently."""
 
 Piece = tuple[str, str]
-"""(class, text). The class is empty or one of those that the page's style sheet colours."""
+"""A pair (class, text). The class is empty, or it is one that has a colour in the page's style sheet."""
 
 
 @dataclass(frozen=True)
 class CodeLine:
-    """A line with its number, as coloured pieces; `here` is true for the line that a check points to."""
+    """A line with its number, as coloured pieces; `marked` is true for the line that a check points to."""
 
     number: int
     pieces: tuple[Piece, ...]
@@ -44,7 +44,7 @@ class Excerpt:
 
     @property
     def size(self) -> int:
-        """About how many bytes the excerpt takes in a page."""
+        """The approximate size of the excerpt in a page, in bytes."""
         return sum(size(text) + 24 * bool(kind) for line in self.lines for kind, text in line.pieces)
 
 

@@ -5,16 +5,16 @@
     points      the points that the submission got
     max         the points of the whole exercise, including checks that could not be judged
     percent     points as a percentage of max
-    status      passed, failed, or error; an error is graded again by the next run
+    status      passed, failed, or error; a submission with an error is graded again by the next run
     failed      ids of the failed checks in the order of the exercise, separated by spaces
     diagnoses   the stable ids of their causes
     first       what the first failed check observed, in words
     clock, seed
     graded_by   the version of the grader and the first digits of the sha256 of its sources
-    report      the file with the whole report
-    attention   why an instructor should look at it: "suspicious" if the grader failed at it again and again
+    report      the file with the full report
+    attention   why an instructor should look at it: "suspicious" if the grader repeatedly failed to judge it
 
-No cell is a formula, whatever a student wrote.
+No cell is ever a formula, regardless of what a student wrote.
 """
 
 from __future__ import annotations
@@ -52,16 +52,16 @@ COLUMNS = (
 FORMULA = frozenset({"=", "+", "-", "@", "\N{MINUS SIGN}"})
 SEPARATORS = frozenset({";", "|", "\t", "\r", "\n"})
 BEFORE = frozenset({"", '"', "'", "`"})
-"""What may come before the first character of a formula: spaces, and quotes that a reader removes."""
+"""What may come before the first character of a formula: spaces, and quotes that a spreadsheet removes."""
 
 
 def to_csv(rows: Iterable[tuple[str, Report, str, str, str]]) -> str:
-    """Return the table for rows of (student, report, grader, name of the JSON file, why to look at it).
+    """Return the table for rows of (student, report, grader, name of the JSON file, reason to look at the submission).
 
     The table begins with a byte order mark, so that Excel reads it as UTF-8.
     """
     text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\r\n")  # The line ends are those of RFC 4180.
+    writer = csv.writer(text, lineterminator="\r\n")  # RFC 4180 specifies these line endings.
     writer.writerow(COLUMNS)
     for row in rows:
         writer.writerow([_safe(str(value)) for value in _row(*row)])
@@ -89,11 +89,11 @@ def _row(student: str, report: Report, grader: str, file: str, attention: str) -
 
 
 def _safe(text: str) -> str:
-    """Return the text on one line, and not as a formula: spreadsheets execute cells that look like one (CWE-1236).
+    """Return the text on one line, changed so that no spreadsheet executes it as a formula (CWE-1236).
 
-    A reader may use another separator than the comma. For such a reader, a new cell begins after each separator in
-    SEPARATORS, so the text after it is checked too. Full-width and small characters count as the characters that they
-    are variants of, because some spreadsheets normalize them on import.
+    A spreadsheet may split cells at a separator other than the comma. A new cell could then begin after any separator
+    in SEPARATORS, so the text after each of them is checked too. Full-width and small variants are treated like the
+    characters themselves, because some spreadsheets normalize them on import.
     """
     begins, line = True, ""
     for char in printable(text):

@@ -23,7 +23,7 @@ def fill(template: str, values: Mapping[str, object]) -> str:
 
 @cache
 def compiled(template: str) -> Template:
-    """Return the compiled template. Compiling takes longer than filling in: do it before a child process is forked."""
+    """Return the compiled template. Compile it before forking a child process, because compiling is slow."""
     environment = Environment(
         loader=FileSystemLoader(ASSETS),
         autoescape=True,

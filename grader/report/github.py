@@ -1,8 +1,8 @@
 """A report for GitHub Actions: the step's summary in Markdown, and annotations as workflow commands.
 
-Both contain text from a student. It must never act as Markdown or as a command. In the summary it is always plain text.
-In a command it is escaped as described in GitHub's documentation ("Workflow commands for GitHub Actions") and as
-`escapeData` and `escapeProperty` of GitHub's toolkit do it. Hidden checks are left out.
+Both contain text from a student. It must never be interpreted as Markdown or as a command. In the summary it is always
+plain text. In a command it is escaped as described in GitHub's documentation ("Workflow commands for GitHub Actions")
+and as implemented by `escapeData` and `escapeProperty` in GitHub's toolkit. Hidden checks are left out.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 MOST_SUMMARY = 900_000
 """Bytes. GitHub allows one MiB per step."""
 MOST_ANNOTATIONS = 10
-"""The number of annotations of each kind in a step. GitHub does not show more."""
+"""The maximum number of annotations of each kind per step. GitHub does not show more."""
 LONGEST = 300
 _MARKDOWN = re.compile(r"([\\`*_{}\[\]()#+\-.!|<>~&@:$^=])")
 _SIGNS = {Status.PASSED: "✅", Status.FAILED: "❌", Status.SKIPPED: "\N{HEAVY MINUS SIGN}", Status.ERROR: "⚠️"}
@@ -71,13 +71,13 @@ def _told(outcome: Outcome) -> str:
 
 
 def _text(text: str) -> str:
-    """Escape text for Markdown, also inside a table: no links, no HTML and no mentions."""
-    # Markdown and GitHub read numeric references as plain text, never as Markdown signs, mentions or emoji.
+    """Escape text for Markdown, including tables, so that it contains no links, HTML or mentions."""
+    # Markdown and GitHub treat numeric character references as plain text, never as Markdown, mentions or emoji.
     return _MARKDOWN.sub(lambda sign: f"&#{ord(sign.group())};", shorten(text, LONGEST))
 
 
 def to_annotations(rows: Iterable[tuple[str, Report]], folder: str = "") -> str:
-    """Return workflow commands, one per line: an error for each failed check, a warning for each that was not judged.
+    """Return workflow commands, one per line: errors for failed checks, and warnings for checks that were not judged.
 
     `folder` is the path of the package in the repository. GitHub needs it to show an annotation next to the line.
     """
@@ -111,7 +111,7 @@ def _command(kind: str, student: str, outcome: Outcome, folder: str) -> str:
 
 def _data(text: str) -> str:
     escaped = text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
-    # GitHub reads an older form of commands anywhere in a line.
+    # GitHub recognizes an older form of commands anywhere in a line.
     return escaped.replace("##[", "# #[")
 
 

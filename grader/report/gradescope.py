@@ -1,6 +1,6 @@
 """A report as Gradescope's results.json (see "Autograder Specifications", "Output Format" in its documentation).
 
-Students may see it. Of a hidden check they see only whether it passed.
+Students may see it. For a hidden check, they see only whether it passed.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The ROS graph as SVG: publishers on the left, topics with their types in the middle, subscribers on the right.
 
-The layout does not come from Graphviz, as it does for rqt_graph. A page needs light and dark colours and must be quick
-to make, and a C library should not read names that a student chose.
+Unlike rqt_graph, this module does not use Graphviz for the layout. A page needs light and dark colours and must be
+generated quickly, and a C library should not process names that a student chose.
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ NODE_CHARS, TOPIC_CHARS = 21, 31
 
 @dataclass(frozen=True)
 class GraphDrawing:
-    """The picture, the same as rows (node, "publishes on" or "subscribes to", topic, type), and the number left out."""
+    """The graph as a picture and as rows; `left_out` is the number of topics and nodes that did not fit.
+
+    A row is (node, "publishes on" or "subscribes to", topic, type).
+    """
 
     svg: str
     rows: tuple[tuple[str, str, str, str], ...]
@@ -38,7 +41,7 @@ class GraphDrawing:
 
 
 def draw_graph(recording: Recording, name: str = "graph") -> GraphDrawing | None:
-    """Draw all nodes and topics that were ever in the graph, without the topics that every node has.
+    """Draw all nodes and topics that were ever in the graph, except for the topics that every node has.
 
     Returns None if there was no node.
     """
@@ -108,7 +111,7 @@ def _ordered(names: Sequence[str]) -> list[str]:
 
 
 def _places(names: Sequence[str], height: float) -> dict[str, float]:
-    """Return the y coordinate of the middle of each name, with equal distances."""
+    """Return the y coordinate of the middle of each name, with even spacing."""
     room = (height - 34) / max(len(names), 1)
     return {name: 30 + room * (index + 0.5) for index, name in enumerate(names)}
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def for_students(report: Report) -> Report:
-    """Return the report without what is hidden."""
+    """Return the report without the details of hidden checks."""
     numbers = {outcome.id: number for number, outcome in enumerate((o for o in report.outcomes if o.hidden), 1)}
     return replace(
         report, outcomes=tuple(_covered(each, numbers[each.id]) if each.hidden else each for each in report.outcomes)

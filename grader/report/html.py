@@ -1,7 +1,7 @@
 """The page of one submission: verdict, checks with the code that they point to, replay, graph and logs.
 
-The page leaves out what differs from run to run (seconds, paths of recordings). So a page that is made again from a
-recording is identical.
+The page leaves out what differs from run to run (wall times and paths of recordings), so generating it again from a
+recording gives an identical page.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 TEMPLATE = "report.html"
 CODE_BYTES = 50_000
-"""The size of all code excerpts together. When it is reached, later checks show the file and the line only."""
+"""The maximum size of all code excerpts together. Once it is reached, later checks show only the file and the line."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def _page(evidence: Evidence, report: Report) -> str:
     runs = runs_of(evidences)
     shown = list(_shown(evidence, report))
     fault = evidence.fault.message if evidence.fault and not evidence.fault.unreadable else ""
-    # A fault of the machine is shown once, not again with each check that could not be judged because of it.
+    # A fault of the machine is shown only once, instead of with every check that could not be judged because of it.
     unmade = [check for check in shown if check.kind == "error" and check.outcome.finding.observed == fault]
     values = {
         "report": report,

@@ -1,6 +1,6 @@
-"""The page of a class, made from its reports: points, the checks that fail most and why, and errors of the machine.
+"""The page of a class, made from its reports: points, the most frequently failed checks and why, and machine errors.
 
-Reports are the JSON files below a folder. If a page with the same name lies next to a report, it is linked.
+The reports are the JSON files below a folder. If there is a page with the same name next to a report, it is linked.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ BAR = "#1c7ed6"
 
 @dataclass(frozen=True)
 class Entry:
-    """A report of the class; `link` leads from the class page to the page of the submission, or is empty."""
+    """A report of the class; `link` is the link from the class page to the submission's page, or an empty string."""
 
     report: Report
     name: str
     link: str
     attention: str = ""
-    """Why an instructor should look at it."""
+    """Why an instructor should look at the submission."""
 
     @property
     def share(self) -> float:
@@ -64,19 +64,19 @@ class Entry:
 
     @property
     def failed(self) -> tuple[Outcome, ...]:
-        """The failed checks, without those that were not judged because of them."""
+        """The failed checks, without the checks that were skipped because of them."""
         return self.report.with_status(Status.FAILED)
 
     @property
     def first_error(self) -> str:
-        """The first error of the machine, or an empty string."""
+        """The message of the first machine error, or an empty string."""
         errors = self.report.with_status(Status.ERROR)
         return errors[0].finding.observed if errors else ""
 
 
 @dataclass
 class Diagnosis:
-    """Why a check failed: the stable id of the cause, its messages with their counts, and the submissions."""
+    """Why a check failed: the stable id of the cause, its messages with their counts, and the affected submissions."""
 
     id: str
     texts: Counter[str] = field(default_factory=Counter)
@@ -100,7 +100,7 @@ class FailedCheck:
 
     @property
     def diagnoses(self) -> list[Diagnosis]:
-        """The most frequent causes, the most frequent first."""
+        """The most frequent causes, sorted by frequency."""
         ordered = sorted(self.by_cause.values(), key=lambda each: (-len(each.entries), each.id))
         return ordered[:MOST_DIAGNOSES]
 
@@ -152,7 +152,7 @@ def _natural(name: str) -> list[tuple[int, str]]:
 
 
 def _short(names: Sequence[str]) -> list[str]:
-    """Return the names without the folders that all of them begin with or end with."""
+    """Return the names without the leading and trailing folders that all of them have in common."""
     parts = [name.rstrip("/").split("/") for name in names]
     if len(parts) < 2:
         return list(names)
@@ -162,7 +162,7 @@ def _short(names: Sequence[str]) -> list[str]:
 
 
 def _alike(paths: Sequence[Sequence[str]]) -> int:
-    """Return how many folders all the paths have in common at their beginning, the last part not counted."""
+    """Return how many leading folders all the paths have in common, not counting the last part of a path."""
     same = 0
     for level in zip(*(path[:-1] for path in paths), strict=False):
         if len(set(level)) > 1:
@@ -173,12 +173,12 @@ def _alike(paths: Sequence[Sequence[str]]) -> int:
 
 def _link(file: Path, folder: Path) -> str:
     page = file.with_suffix(".html")
-    # A link must never have a scheme of its own: "./" makes it a relative path.
+    # A link must never be read as a URL with a scheme: "./" makes it a relative path.
     return "./" + quote(page.relative_to(folder).as_posix(), errors="surrogateescape") if page.is_file() else ""
 
 
 def failures(entries: Iterable[Entry]) -> list[FailedCheck]:
-    """Return the failed checks, the most frequent first."""
+    """Return the failed checks, the most frequently failed first."""
     checks: dict[tuple[str, str], FailedCheck] = {}
     for entry in entries:
         for outcome in entry.failed:
@@ -224,7 +224,7 @@ BINS = [f"{10 * each} to {10 * each + 9}" for each in range(10)] + ["100"]
 
 
 def counts(shares: Iterable[float]) -> list[int]:
-    """Count the submissions with 0 to 9 % of the points, 10 to 19 %, and so on; the last number is for all points."""
+    """Count the submissions with 0 to 9 % of the points, 10 to 19 %, and so on; the last count is for full marks."""
     found = [0] * len(BINS)
     for share in shares:
         found[min(int(share * 10 + 1e-9), 10)] += 1
@@ -237,7 +237,7 @@ def _in_words(shares: Iterable[float]) -> str:
 
 
 def distribution(shares: Iterable[float]) -> str:
-    """Draw a bar chart: how many submissions got which percentage of the points."""
+    """Draw a bar chart of the number of submissions in each range of percentages of the points."""
     found = counts(shares)
     width, height, top, bar = 560.0, 170.0, 24.0, 46.0
     most = max(*found, 1)

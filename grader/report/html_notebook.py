@@ -1,7 +1,7 @@
 """The verdict as HTML for the output of a notebook cell: a table with reasons, and then the charts of each run.
 
-It has no script, and its style sheet changes nothing outside of it. Every id begins with a key of its own, because one
-notebook may show many verdicts.
+The HTML has no script, and its style sheet affects nothing outside of it. Every id begins with a key for this verdict,
+because one notebook may show many verdicts.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ TEMPLATE = "notebook.html"
 
 
 def html_fragment(evidence: Evidence, report: Report) -> str:
-    """Return the HTML; without drawings if the output of the submission cannot be drawn."""
+    """Return the HTML. It has no drawings if the output of the submission cannot be drawn."""
     compiled(TEMPLATE)
     try:
         return read(_fragment, evidence, report)

@@ -1,4 +1,4 @@
-"""What a page shows of each trial: the canvas with its player, the charts, the graph, and a table of the commands."""
+"""What a page shows for each trial: the canvas with its player, the charts, the graph, and a table of the commands."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from grader.trial.recording import Recording
 
 MOST_FRAMES = 1500
-"""The number of points of the turtle's trajectory in all players of a page together."""
+"""The approximate maximum number of trajectory points in all players of a page together."""
 MOST_ROWS = 100
-"""The number of rows in the table of commands."""
+"""The maximum number of rows in the table of commands."""
 MOST_STEPS = 1000
-"""The number of commands that a player shows."""
+"""The maximum number of commands in all players of a page together."""
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ class Picture:
 class Run:
     """A trial, ready for the template.
 
-    `data` is what the player reads. `end` describes how the node's process ended. `idle` is true if no command arrived
-    although the exercise needs some.
+    `data` is the input of the player. `end` describes how the node's process exited. `idle` is true if no command
+    arrived although the exercise requires some.
     """
 
     key: str
@@ -98,7 +98,7 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
 
 
 def _left_out(recording: Recording) -> list[str]:
-    """Describe what the recording left out because there was too much of it."""
+    """Describe what was left out because the recording was full."""
     amounts = (
         (recording.dropped, "message", ""),
         (recording.interventions_dropped, "call", " of the simulator's services"),
@@ -109,9 +109,9 @@ def _left_out(recording: Recording) -> list[str]:
 
 
 def _end(evidence: Evidence) -> str:
-    """Describe in one sentence how the node's process ended."""
+    """Describe in one sentence how the node's process exited."""
     end = evidence.recording.end
-    # A shell shows the end by a signal as 128 plus the signal's number.
+    # If a signal terminated the process, a shell reports 128 plus the signal's number as the exit code.
     code = end.exit_code if end.exit_code >= 0 else 128 - end.exit_code
     if end.by == "itself":
         return f"The node ended by itself after {end.t_s:.1f} s, with exit code {code}."

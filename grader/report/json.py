@@ -3,13 +3,13 @@
 Schema 4. Every key is always present. Strings are never null unless stated below.
 
     schema        4; schemas 1 to 3 can be read too: 1 has no `confined`; in 1 and 2, `max` excludes checks with
-                  "error"; up to 3, there is no `tried`
+                  "error"; 1 to 3 have no `tried`
     exercise      {id, title, sha256 of exercise.toml}
     submission    {name as the user typed it, sha256 of its files}
     grader, ros   their versions
     clock         {used: "simulated" or "wall" ("none" when no trial ran), why: a sentence}
     confined      false if the student's code ran without a sandbox, with resource limits only
-    seed          the seed of the turtle's random start pose; null for turtlesim's usual start
+    seed          the seed of the turtle's random start pose; null for turtlesim's default start
     points, max   sums over the outcomes; a check with status "error" counts 0 points
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
                   cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,
@@ -81,9 +81,9 @@ def _outcome(outcome: Outcome) -> dict[str, Any]:
 
 
 def _encodable(text: str) -> str:
-    """Replace lone surrogates by escapes, because JSON must be UTF-8.
+    """Replace lone surrogates with escapes, because JSON must be valid UTF-8.
 
-    They stand for bytes of a file name that are not UTF-8.
+    A lone surrogate stands for a byte in a file name that is not valid UTF-8.
     """
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
 

@@ -57,7 +57,7 @@ def _suite(root: ET.Element, student: str, report: Report) -> None:
 
 
 def _case(suite: ET.Element, student: str, report: Report, outcome: Outcome) -> None:
-    # The time of a single check is not known. Without the attribute, no tool adds up wrong times.
+    # The time of a single check is not known, so it is given as 0. Otherwise, tools might add up wrong times.
     case = ET.SubElement(
         suite, "testcase", name=_text(outcome.title), classname=_text(f"{report.exercise}.{student}"), time="0"
     )

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 HEAD_BYTES, TAIL_BYTES, ERROR_BYTES = 20_000, 14_000, 6_000
 LOOKED_AT = 400_000
-"""Characters at the end of a log that are searched for errors."""
+"""The number of characters at the end of a log that are searched for errors."""
 MOST_ERRORS = 40
 ERROR = re.compile(r"\b(?:Traceback \(most|\w*Error\b|\w*Exception\b|error:|ERROR|FATAL|Failed\b)|\[ERROR\]")
 BEGINS = "Traceback (most recent call last):"
@@ -24,7 +24,7 @@ BEGINS = "Traceback (most recent call last):"
 
 @dataclass(frozen=True)
 class Size:
-    """How many bytes of a page the beginning, the end and the errors of a log may take."""
+    """The number of bytes that the beginning, the end and the errors of a log may take up in a page."""
 
     head: int
     tail: int
@@ -83,9 +83,9 @@ def _dropped(output: Output) -> str:
 
 
 def errors_in(text: str, room: int = ERROR_BYTES) -> list[tuple[int, str]]:
-    """Return the lines that look like errors, with whole tracebacks; at most as many as fit into a page.
+    """Return the lines that look like errors, with complete tracebacks, up to the limits for a page.
 
-    Line numbers count from 1.
+    Line numbers start at 1.
     """
     searched = text[-LOOKED_AT:]
     first = text.count("\n", 0, len(text) - len(searched)) + 1

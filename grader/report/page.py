@@ -1,7 +1,7 @@
-"""Make a page in one file from a template, a style sheet and a script, with a strict Content-Security-Policy.
+"""Make a single-file page from a template, a style sheet and a script, with a strict Content-Security-Policy.
 
-The policy names the style sheet and the script by their hashes. Nothing else on the page can run or load, whatever a
-submission contains. All text from a student is escaped as well.
+The policy allows the style sheet and the script by their hashes. Nothing else on the page can run or be loaded,
+regardless of what a submission contains. In addition, all text from a student is escaped.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def make_page(template: str, script: str, data: object, values: Mapping[str, object]) -> str:
-    """Return the page of a template with a style sheet, a script and data for it; both are files in assets/."""
+    """Return a page with the style sheet, a script and its data; `template` and `script` name files in assets/."""
     style, code = _text("page.css"), _text(script)
     policy = (
         f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(code)}; img-src data:; base-uri 'none'; "
@@ -33,7 +33,7 @@ def make_page(template: str, script: str, data: object, values: Mapping[str, obj
 
 
 def save_page(page: str, file: Path) -> None:
-    """Write a page. Raises the error of `not_written` if that is not possible."""
+    """Write a page. Raises the error that `not_written` returns if that is not possible."""
     try:
         file.write_text(page, encoding="utf-8", errors="replace")
     except OSError as error:

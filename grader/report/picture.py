@@ -1,4 +1,4 @@
-"""A run as a PNG: the turtle's canvas with axes, verdict, legend and numbers; several trials side by side."""
+"""A run as a PNG: the turtle's canvas with axes, verdict, legend and numbers. Several trials are shown side by side."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 SIDE_PX = 640
 LEFT, TOP, RIGHT, BOTTOM = 64, 72, 300, 60
 SMALL_PX = 420
-"""The side of each canvas if there are several."""
+"""The side length of each canvas (pixels) if there are several."""
 ACROSS = 2
 HEADING = 40
 
@@ -39,7 +39,7 @@ BAD: Rgb = (176, 28, 28)
 
 @dataclass(frozen=True)
 class Panel:
-    """The position of a canvas on the page, in pixels; `left` and `top` do not include axes and legend."""
+    """The position of a canvas on the page, in pixels; `left` and `top` do not include the axes and the legend."""
 
     left: int
     top: int
@@ -47,7 +47,7 @@ class Panel:
 
 
 def save_picture(evidence: Evidence, report: Report, file: Path) -> None:
-    """Write the picture as a PNG file. Raises the error of `not_written` if that is not possible."""
+    """Write the picture as a PNG file. Raises the error that `not_written` returns if that is not possible."""
     image = read(_png, evidence, report)
     try:
         file.write_bytes(image)
@@ -101,7 +101,7 @@ def _font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
 
 
 def _axes(draw: ImageDraw.ImageDraw, panel: Panel) -> None:
-    """Draw the scale in metres along the left and the lower edge."""
+    """Draw the scale in metres along the left and bottom edges."""
     bottom = panel.top + panel.side
     font = _font(14)
     for metre in range(12):
@@ -139,7 +139,7 @@ def _cut(draw: ImageDraw.ImageDraw, text: str, width: float) -> str:
 
 
 def _legend(draw: ImageDraw.ImageDraw, scene: Scene, panel: Panel) -> None:
-    """Draw the legend: each sign on the canvas's colour with its meaning, and the numbers below."""
+    """Draw the legend: each symbol on the canvas's background colour, with its meaning, and the numbers below."""
     x, y = panel.left + panel.side + 20, panel.top
     font = _font(15)
     for role, text in scene.legend:

@@ -1,7 +1,7 @@
 """Make text from a student safe and short enough for a page.
 
-The template escapes all HTML. This module handles what escaping leaves: control characters, invisible characters, text
-that runs from right to left over its neighbours, and very long text.
+The template escapes all HTML. This module handles what escaping does not: control characters, invisible characters,
+characters that change the direction of text, and very long text.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from grader.common.words import UNSAFE_CATEGORIES
 
 COLOURS = re.compile(r"\x1b\[[0-9;?]*[ -/]*[@-~]")
-"""Control sequences of a terminal."""
+"""Terminal control sequences."""
 LONGEST_LINE = 400
 GROWTH = {"&": 5, "<": 4, ">": 4, '"': 5, "'": 5}
-"""The number of bytes of the entity that replaces a character in a page."""
+"""The size in bytes of the entity that replaces a character in a page."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Cut:
 
 
 def plain_line(text: str) -> str:
-    """Return the text as one line of limited length without colours, with "?" for each unsafe character."""
+    """Return the text as one line of limited length, without colours and with "?" for each unsafe character."""
     line = text[: 2 * LONGEST_LINE].rstrip("\r\n")
     if not line.isprintable():
         line = COLOURS.sub("", line).expandtabs(4)
@@ -60,5 +60,5 @@ def _fitting(lines: list[str], room: int) -> tuple[str, ...]:
 
 
 def size(text: str) -> int:
-    """Return how many bytes a text takes in a page."""
+    """Return how many bytes a text takes up in a page."""
     return len(text.encode("utf-8", "replace")) + sum(text.count(char) * (more - 1) for char, more in GROWTH.items())

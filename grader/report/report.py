@@ -22,7 +22,7 @@ class Report:
     exercise: str
     exercise_title: str
     submission: str
-    """The submission as the user named it."""
+    """The name of the submission, as the user gave it."""
     digest: str
     """The sha256 of the submission's files."""
     grader: str
@@ -58,7 +58,7 @@ class Report:
 
     @property
     def warnings(self) -> tuple[Outcome, ...]:
-        """The failed or skipped checks without points, if nothing else failed; otherwise nothing."""
+        """The failed or skipped checks without points, or an empty tuple if anything else failed."""
         missing = (*self.with_status(Status.FAILED), *self.with_status(Status.SKIPPED))
         costs = any(outcome.max for outcome in missing) or self.max == 0 or self.with_status(Status.ERROR)
         return () if costs else missing
@@ -75,7 +75,7 @@ class Report:
 def report_of(
     evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float], *, confined: bool = True
 ) -> Report:
-    """Return the report on evidence that was judged. `ros` names the ROS 2, `seconds` is the time of each stage."""
+    """Return the report on judged evidence. `ros` is the name of the ROS 2, and `seconds` the time of each stage."""
     recording = evidence.run.recording
     return Report(
         exercise=evidence.exercise.id,
@@ -114,7 +114,7 @@ def _with_try(outcome: Outcome, tries: Tries) -> Outcome:
 
 
 def _why_this_clock(evidence: Evidence) -> str:
-    """Return why the first trial was judged under its clock, and which trials were judged under the other one."""
+    """Return why the first trial was judged by its clock, and which trials were judged by the other clock and why."""
     first = evidence.run.recording
     if first is None:
         return "The node was not run." if evidence.run.overwhelmed is None else "The trial could not be finished."

@@ -1,6 +1,6 @@
-"""Scene: what is drawn of a run on the turtle's canvas, as pure data in metres. picture.py and svg.py paint it.
+"""Scene: what to draw for a run on the turtle's canvas, as pure data in metres. picture.py and svg.py paint it.
 
-The PNG, the page and the notebooks use the same scene, so they always show the same.
+The PNG, the page and the notebooks use the same scene, so they always show the same thing.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ TICK_M = 0.11
 
 @dataclass(frozen=True)
 class Scene:
-    """What to draw: `shapes` from the lowest to the highest, the meaning of each role, and facts with numbers.
+    """What to draw: `shapes` from bottom to top, the meaning of each role, and facts with numbers.
 
     `notice` says why there is no trajectory to draw; it is empty if there is one.
     """
@@ -36,7 +36,7 @@ class Scene:
 
 
 def scene_of(evidence: Evidence) -> Scene:
-    """Return what there is to draw of a run."""
+    """Return what to draw for a run."""
     recording = evidence.run.recording
     if recording is None:
         return Scene(notice="The node was not run.")
@@ -80,7 +80,7 @@ def scene_of(evidence: Evidence) -> Scene:
 
 
 def finite_points(trajectory: Trajectory) -> list[Point]:
-    """Return the points of the trajectory (m) up to the first that is not finite, without those at rest."""
+    """Return the points of the trajectory (m) before the first that is not finite, without consecutive duplicates."""
     points: list[Point] = []
     for x, y in zip(trajectory.x.tolist(), trajectory.y.tolist(), strict=True):
         if not (math.isfinite(x) and math.isfinite(y)):
@@ -91,7 +91,7 @@ def finite_points(trajectory: Trajectory) -> list[Point]:
 
 
 def _ticks(trajectory: Trajectory, times: list[float]) -> list[Line]:
-    """Return a short stroke across the trajectory for each of these times (s)."""
+    """Return a short line across the trajectory for each of these times (s)."""
     strokes: list[Line] = []
     if not len(trajectory.t_s):
         return strokes

@@ -1,6 +1,6 @@
 """Paint a scene as an image with smooth edges.
 
-The image is drawn with Pillow. This takes 0.1 s. With matplotlib it takes 0.7 s, because importing matplotlib is slow.
+Pillow takes 0.1 s to draw the image. Matplotlib would take 0.7 s, because importing it is slow.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from grader.report.scene import Scene
 
 FINE = 3
-"""The canvas is first drawn larger by this factor and then scaled down, so that the edges are smooth."""
+"""The canvas is first drawn enlarged by this factor and then scaled down, so that the edges are smooth."""
 DASH = 0.55
 """The fraction of one dash period (a dash and its gap) that is painted."""
 
@@ -31,7 +31,7 @@ def paint(scene: Scene, side_px: int) -> Image.Image:
 
 
 class _Canvas:
-    """A canvas that is being drawn. Its methods take metres."""
+    """A canvas that is being drawn. Its methods take coordinates in metres."""
 
     def __init__(self, side: int) -> None:
         self.image = Image.new("RGB", (side, side), SEA)
@@ -59,7 +59,7 @@ class _Canvas:
         self._draw.line([self._pixel(point) for point in points], fill=look.color, width=width, joint="curve")
 
     def _dashed(self, line: Line, look: Look) -> None:
-        """Draw each straight piece as dashes of about the length that the look gives, with a dash at both ends."""
+        """Draw each straight segment as dashes of about the length given by the look, with a dash at both ends."""
         for (x0, y0), (x1, y1) in pairwise(line.points):
             pieces = min(max(1, round(math.hypot(x1 - x0, y1 - y0) / (look.dash_m / DASH))), 400)
             whole = pieces - 1 + DASH

@@ -1,7 +1,7 @@
 """Find submissions that an instructor should look at, because the grader could not judge or read them.
 
-A fault of the machine hits submissions at random. A submission that the grader cannot judge again and again, while it
-judges the others, may have been made to break the grader.
+Faults of the machine affect submissions at random. If the grader repeatedly fails to judge a submission but can judge
+the others, the submission may have been designed to break the grader.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 ERRORS = "errors"
-"""The key in a report of a class: how often in a row grading it ended with an error."""
+"""The key in a class's reports for the number of consecutive times that grading ended with an error."""
 REPEATED = 2
-"""After this many errors in a row, chance is unlikely."""
+"""The number of consecutive errors after which chance is an unlikely explanation."""
 UNREADABLE = "unreadable"
 """The diagnosis of a submission that the grader could not read completely."""
 
 
 def suspicions(graded: Sequence[tuple[Report, int]]) -> list[str]:
-    """Return for each (report, number of errors in a row) why an instructor should look at it; empty for most."""
+    """For each (report, number of consecutive errors), return why an instructor should look at it, or ""."""
     judged = sum(not report.with_status(Status.ERROR) for report, _ in graded)
     return [_suspicion(report, errors, judged) for report, errors in graded]
 

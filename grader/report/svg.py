@@ -1,8 +1,8 @@
-"""Draw a scene as SVG, with the helpers for SVG that the charts use too.
+"""Draw a scene as SVG. This module also has the SVG helpers that the charts use.
 
 Colours and sizes are attributes, never styles, because the Content-Security-Policy of a page may forbid styles, and a
 picture must also look right outside of a page (in a notebook). `currentColor` is the text colour, so the picture
-follows light and dark mode.
+adapts to light and dark mode.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SIDE = 500.0
 """The position and size of the canvas in the picture."""
 LEFT, TOP, RIGHT, BOTTOM = 60.0, 10.0, 10.0, 46.0
 FARTHEST = 1e5
-"""Larger coordinates are cut off, because browsers store them in small numbers."""
+"""Larger coordinates are clamped to this value, because browsers store coordinates with limited precision."""
 
 
 def tag(name: str, *children: str, **attributes: Attribute) -> str:
@@ -60,7 +60,7 @@ def words(text: str, x: float, y: float, anchor: str = "start", **attributes: At
 
 
 def rgb(color: Rgb) -> str:
-    """Return a colour as CSS writes it."""
+    """Return a colour in CSS notation."""
     return "#{:02x}{:02x}{:02x}".format(*color)
 
 
@@ -70,7 +70,7 @@ def points(of: Iterable[Point]) -> str:
 
 
 def picture(*children: str, width: float, height: float, title: str, key: str, name: str, about: str = "") -> str:
-    """Return a whole picture that scales with its page; `key` is its kind, `name` is unique on the page."""
+    """Return a complete picture that scales with its page; `key` is its kind, and `name` is unique on the page."""
     named = [tag("title", escape(printable(title)), id=f"picture-{name}-title")]
     if about:
         named.append(tag("desc", escape(printable(about)), id=f"picture-{name}-about"))
@@ -90,7 +90,7 @@ def picture(*children: str, width: float, height: float, title: str, key: str, n
 
 
 def pixel(point: Point) -> Point:
-    """Return the position in the picture of a point of the canvas (m)."""
+    """Return the position in the picture for a point on the canvas (m)."""
     scale = SIDE / SIDE_M
     return LEFT + point[0] * scale, TOP + SIDE - point[1] * scale
 
@@ -154,7 +154,7 @@ def _shape(shape: Line | Ring | Arrow, scale: float) -> str:
 
 
 def _axes() -> str:
-    """Draw the scale in metres along the left and the lower edge, with a number at every second metre."""
+    """Draw the scale in metres along the left and bottom edges, with a number at every second metre."""
     marks = []
     for metre in range(12):
         x, y = pixel((metre, metre))
@@ -180,7 +180,7 @@ def _notice(text: str) -> str:
 
 
 def _turtle() -> str:
-    """Return a turtle at the origin that faces east. It is only visible if a script moves it."""
+    """Return a turtle at the origin, facing east. It is visible only if a script moves it."""
     shell = tag("ellipse", rx=15, ry=12, fill="#2f7d32", stroke="#ffffff", stroke_width=1.5)
     pattern = tag("path", d="M-6-7 L5-7 L10 0 L5 7 L-6 7 L-10 0Z", fill="none", stroke="#b9e6a5", stroke_width=1.5)
     skin: dict[str, Attribute] = {"fill": "#7cc576", "stroke": "#ffffff", "stroke_width": 1}
@@ -195,7 +195,7 @@ def _turtle() -> str:
 
 
 def sign(role: Role) -> str:
-    """Return the sign for a role in the legend, with its look on the canvas."""
+    """Return the legend symbol for a role, which looks as it does on the canvas."""
     color, water = rgb(LOOKS[role].color), tag("rect", width=46, height=26, rx=3, fill=rgb(SEA))
     stroke: dict[str, Attribute] = {"stroke": color, "stroke_width": 4, "fill": "none"}
     trajectory = tag("path", d="M5 13H41", **{**stroke, "stroke": rgb(LOOKS["trajectory"].color)})

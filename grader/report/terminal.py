@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 RESULTS = {"passes": "then it passes", "further": "the node gets further", "refuted": "it still fails"}
 NARROW = 50
-"""Columns. On a narrower terminal, texts are not indented under their labels."""
+"""A width in columns. On a narrower terminal, text is not indented under its label."""
 
 SIGNS = {"passed": "✓", "failed": "✗", "skipped": "-", "error": "!", "advice": "i"}
 ASCII_SIGNS = {"passed": "ok", "failed": "FAIL", "skipped": "skip", "error": "ERROR", "advice": "note"}
@@ -53,7 +53,7 @@ def render(report: Report, console: Console, *, brief: bool = False, verbose: bo
 
 
 def early(outcomes: Sequence[Outcome]) -> list[str]:
-    """Return lines about what is already wrong in the files, to be read while the package is built and run."""
+    """Return lines about what is already wrong in the files, to read while the package is being built and run."""
     shown = [(outcome, outcome.finding) for outcome in outcomes if not outcome.hidden]
     lines = [
         f"{outcome.title}: {finding.observed}" + (f" ({finding.where})" if finding.where else "")
@@ -63,7 +63,7 @@ def early(outcomes: Sequence[Outcome]) -> list[str]:
 
 
 def changes(tries: Tries, console: Console) -> None:
-    """Print what was changed in copies of the submission to prove the causes. This reveals solutions."""
+    """Print what was changed in copies of the submission to test the supposed causes. This reveals solutions."""
     if tries.made or tries.stopped:
         console.print()
     for each in tries.made:
@@ -82,7 +82,7 @@ def _look(outcome: Outcome) -> str:
 
 
 def _check(outcome: Outcome, console: Console, shown: str) -> None:
-    """Print one check. If it has the same message as the check before (`shown`), the message is not repeated."""
+    """Print one check. If it has the same message as the previous check (`shown`), the message is not repeated."""
     look = _look(outcome)
     signs = SIGNS if console.encoding.lower().startswith("utf") else ASCII_SIGNS
     head = Text(f"{signs[look]} ", style=STYLES[look])
@@ -148,5 +148,5 @@ def _points(points: float) -> str:
 
 
 def _line(console: Console, text: Text) -> None:
-    """Print one line. It is not wrapped if it goes to a pipe."""
+    """Print one line. It is not wrapped if the output goes to a pipe."""
     console.print(text, soft_wrap=not console.is_terminal, highlight=False, markup=False)

@@ -26,7 +26,7 @@ def tone(report: Report) -> Tone:
 
 
 def verdict(report: Report) -> str:
-    """Return one or two sentences: whether the submission passed, and with how many points."""
+    """Return one or two sentences that say whether the submission passed, and with how many points."""
     points = f"{report.points:g} of {report.max:g} points"
     errors, failed = report.with_status(Status.ERROR), report.with_status(Status.FAILED)
     skipped = report.with_status(Status.SKIPPED)
