@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 WIDE = 120
-"""The columns that a terminal needs to show both side by side. A narrower one shows a unified diff."""
+"""The columns that a terminal needs to show both files side by side. A narrower terminal shows a unified diff."""
 
 
 def print_solution(step: str, folder: Path | None, console: Console) -> None:
@@ -49,7 +49,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
 
 
 def _texts(folder: Path, *, marked: bool = False) -> dict[str, str]:
-    """Return the text of each file by path; with `marked`, only files in which the student has something to write."""
+    """Return the text of each file by path. With `marked`, return only files in which the student must write code."""
     files = read(tree.read_folder, folder).files
     texts = {}
     for path in sorted(files, key=tree.sort_key):

@@ -1,4 +1,4 @@
-"""Hints: one at a time. Hints for failed checks come first, and hints for passed checks are left out."""
+"""Give hints, one at a time. Hints for failed checks come first, and hints for passed checks are left out."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     """Return the next hint of a step (the current one by default), or of a part of it.
 
-    After the last hint, the last one is returned again. A single letter as `step` is a part of the current step.
+    After the last hint, it is returned again. If `step` is a single letter, it means that part of the current step.
 
     Raises:
         UsageError: no step was started, or the step has no such part.
@@ -44,7 +44,7 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
 
 
 def _flowing(text: str) -> str:
-    """Return the text without the line breaks of its file: a terminal has a width of its own."""
+    """Return the text without the line breaks of its file, because the width of the terminal may differ."""
     return "\n\n".join(" ".join(paragraph.split()) for paragraph in text.split("\n\n"))
 
 
@@ -81,7 +81,7 @@ def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | N
     unread = [index for index in in_order if index not in known.read]
     if unread:
         return unread[0]
-    # All were read: repeat the last one for a failed check, or the last of all.
+    # All hints were read. Repeat the last one for a failed check, or else the last one of all.
     return max(failed or open_, default=None)
 
 
@@ -90,7 +90,7 @@ def _is_done(hint: Hint, known: StepProgress) -> bool:
 
 
 def _about(exercise: Exercise, index: int, known: StepProgress) -> str:
-    """Return the title of the failed check that the hint is for, as the end of a phrase."""
+    """Return a phrase that names the failed check that the hint is for, or an empty string."""
     titles = {check.id: check.title for check in exercise.checks if not check.hidden}
     about = [titles[check] for check in known.failed if check in exercise.hints[index].checks and check in titles]
     return f', for "{about[0]}"' if about else ""

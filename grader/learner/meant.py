@@ -1,4 +1,4 @@
-"""Which exercise and which folder a learner means with the arguments of `grader check` and `grader watch`."""
+"""Determine which exercise and which folder a learner means by the arguments of `grader check` and `grader watch`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise, Path]:
-    """Return the exercise and the folder with the work on it; for the arguments see `guessed`.
+    """Return the exercise and the folder with the work on it. See `guessed` for the arguments.
 
     Raises:
         UsageError: nothing determines the exercise, or the step was never started.
@@ -34,12 +34,12 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
     """Return the exercise, or None if nothing determines it, and the folder with the work on it.
 
     `path` is what was typed: a package, a step ("03", "3"), the workspace (this means the current step), or None.
-    `exercise` is the one named by --exercise. `folder` is the workspace; None means the learner's default.
+    `exercise` is the value of --exercise. `folder` is the workspace; None means the learner's default workspace.
 
         guessed(Path("03"), None)  # step 03 and the package in the workspace
 
     Raises:
-        UsageError: there is no exercise of that name, or the step was never started.
+        UsageError: there is no exercise with that name, or the step was never started.
     """
     root = progress.workspace_of(folder)
     if path is not None and not path.exists() and _is_step(str(path)):

@@ -36,9 +36,9 @@ class StepProgress:
     max: float = 0.0
     passed: bool = False
     read: tuple[int, ...] = ()
-    """The indices in exercise.toml of the hints that were read, in the order of reading."""
+    """The indices (in exercise.toml) of the hints that were read, in the order in which they were read."""
     failed: tuple[str, ...] = ()
-    """The ids of the checks that failed in the last verdict, in its order."""
+    """The ids of the checks that failed in the last verdict, in the same order."""
     done: tuple[str, ...] = ()
     """The ids of the checks that passed in the last verdict."""
 
@@ -90,7 +90,7 @@ def state_file() -> Path:
 
 
 def load(workspace: Path) -> Progress:
-    """Return the progress in a workspace. It is empty at the beginning.
+    """Return the progress in a workspace. At first, it is empty.
 
     Raises:
         MachineError: the file is damaged or cannot be read.
@@ -103,14 +103,14 @@ def load(workspace: Path) -> Progress:
 
 
 def _step(data: dict[str, Any]) -> StepProgress:
-    # Older versions stored the number of hints, which came in order.
+    # Older versions stored only the number of hints that were read, because hints were always given in order.
     read = data.get("read", range(data.get("hints", 0)))
     lists = {"read": tuple(read), "failed": tuple(data.get("failed", ())), "done": tuple(data.get("done", ()))}
     return StepProgress(data["points"], data["max"], data["passed"], **lists)
 
 
 def update(workspace: Path, change: Callable[[Progress], Progress]) -> Progress:
-    """Change the progress in a workspace, completely or not at all. Other processes may write at the same time.
+    """Change the progress in a workspace atomically. Other processes may write at the same time.
 
         update(root, lambda known: known.at("03-circle-publisher"))
 

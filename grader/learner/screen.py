@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 BELOW = 5
-"""The number of lines below a report, for the watched folder, the keys and the answer to a key."""
+"""The number of lines below a report, for the watched folder, the keys and the response to a key."""
 KEYS = "h hint · l list · n next · r rerun · q quit"
 
 
 def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
-    """Grade now and after every save, until q, Ctrl-C or the end of the terminal.
+    """Grade now and after every save, until the user presses q or Ctrl-C, or the terminal is closed.
 
     Raises:
         UsageError: there is no such folder.
@@ -62,7 +62,7 @@ class _Screen:
         self._console = console
 
     def show(self, events: Events, told: str) -> steps.Begun | None:
-        """Show verdicts until the learner leaves. Return the step to continue with, or None to end.
+        """Show verdicts until the learner quits or goes on. Return the step to continue with, or None to quit.
 
         The first verdict clears the screen. `told` is printed below it.
         """
@@ -103,7 +103,7 @@ class _Screen:
         self._say(f"\nWatching {self.watched.folder}   {KEYS if self._console.is_terminal else ''}".rstrip())
 
     def _render(self, report: Report, more: int) -> None:
-        """Print the whole report if the window has space for it and for the lines below, otherwise only what failed."""
+        """Print the full report if it and the lines below fit into the window. Otherwise, print only what failed."""
         with self._console.capture() as whole:
             terminal.render(report, self._console)
         fits = whole.get().count("\n") + more + BELOW <= self._console.height

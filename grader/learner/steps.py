@@ -43,7 +43,7 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
         message = "--student needs a name or a number."
         raise UsageError(message)
 
-    # The student id is stored first and never changes. The step is stored when all its files are in place.
+    # The student id is stored before any file is added. The step is stored once all its files are in place.
     known = progress.update(
         root, lambda before: replace(before, student=student.strip() if student else before.student)
     )
@@ -53,7 +53,7 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
 
 
 def told(begun: Begun) -> str:
-    """Return the text that `start` prints: what was added, what was not changed, and what to type next."""
+    """Return the text that `start` prints: what was added, what was left unchanged, and what to type next."""
     started = begun.started
     lines = [f"{begun.exercise.id}: {begun.exercise.title}, in {started.folder}"]
     if started.kept:

@@ -1,7 +1,7 @@
 """Watch a folder and grade it after every save.
 
-While the learner thinks, the simulator and the launcher of the next trial already wait, and the last build is kept. So
-the verdict after a save takes little longer than the trial itself.
+While the learner works, the simulator and the launcher for the next trial are already waiting, and the last build is
+kept. Therefore, the verdict after a save takes little longer than the trial itself.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ if TYPE_CHECKING:
     from grader.submission.package import Submission
 
 DEBOUNCE_MS = 50
-"""An editor that saves by renaming causes several events. They count as one."""
+"""Events within this time count as one, because an editor that saves by renaming causes several events (ms)."""
 
 
 _LOOK_MS = 200
-"""How often to check whether the path still leads to the watched folder (s)."""
+"""The interval for checking whether the path still leads to the watched folder (ms)."""
 
 
 @dataclass(frozen=True)
 class Happened:
-    """An event for the loop: a save (which may have changed nothing), a key, or the end of the input."""
+    """An event for the main loop: a save (which may have changed nothing), a key, or the end of the input."""
 
     kind: Literal["saved", "key", "end"]
     key: str = ""
 
 
 class _Sources(DefaultFilter):
-    """Accept files that can change a verdict, and not files that colcon and Python write."""
+    """Accept files that can affect a verdict, but not files that colcon and Python write."""
 
     ignore_dirs = (*DefaultFilter.ignore_dirs, "build", "install", "log")
 
@@ -60,7 +60,7 @@ def _identity(folder: Path) -> tuple[int, int] | None:
 
 
 class Events:
-    """Keys, and saves below the watched folder, in the order in which they happen."""
+    """Key presses, and saves in the watched folder, in the order in which they happen."""
 
     def __init__(self, read_key: Callable[[], str] | None) -> None:
         self._queue: SimpleQueue[Happened] = SimpleQueue()
@@ -71,13 +71,13 @@ class Events:
             Thread(target=self._keys, args=(read_key,), daemon=True).start()
 
     def watch(self, folder: Path) -> None:
-        """Watch only this folder from now on. Its first event is a save, sent when no later save can be missed."""
+        """Watch only this folder from now on. Its first event is a save, sent once no later save can be missed."""
         self._stop.set()
         self._stop = Event()
         Thread(target=self._watch, args=(folder, self._stop), daemon=True).start()
 
     def __iter__(self) -> Iterator[Happened]:
-        """Return the next event. Several waiting saves are returned as one."""
+        """Yield each event as it happens. Several waiting saves are yielded as one."""
         while (happened := self._queue.get()).kind != "end":
             if happened.kind == "saved":
                 self._saved.clear()
@@ -89,7 +89,7 @@ class Events:
         self._queue.put(Happened("end"))
 
     def _watch(self, folder: Path, stop: Event) -> None:
-        """Watch the folder at this path. If it is renamed, watch the folder that has the path then."""
+        """Watch the folder at this path. If it is replaced, watch the new folder at this path."""
         while not stop.is_set():
             watched = _identity(folder)
             if watched is None or not self._watch_one(folder, watched, stop):
@@ -165,7 +165,7 @@ class Watched:
             self._warm_up()
 
     def close(self) -> None:
-        """End the waiting processes."""
+        """Terminate the waiting processes."""
         if self._warm is not None:
             self._warm[1].close()
             self._warm = None
@@ -174,7 +174,7 @@ class Watched:
         return open_submission(self.folder) if self.exercise.package else open_answers(self.folder)
 
     def _next_trial(self, plan: Plan, ros: Ros, *, in_cell: bool) -> Trial:
-        # The next grading begins with the first trial of this one.
+        # The next grading will begin with the same trial as this one.
         if self._wanted is None and plan.clock == "simulated":
             self._wanted = (plan, ros)
         if self._warm is not None and self._warm[0] == plan:

@@ -1,4 +1,4 @@
-"""The learner's workspace: it gets the starting point of a step, and no file of the learner is ever overwritten."""
+"""The learner's workspace: `start` adds the starting point of a step, and never overwrites a file of the learner."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 
 
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
-"""Package files. They get new lines from step to step, although a step is about something else."""
+"""Package files that need new lines from step to step, although the steps are about something else."""
 
 
 @dataclass(frozen=True)
 class Started:
-    """What `start` did; all paths are relative to the workspace.
+    """What `start` did; the paths of files are relative to `folder`.
 
-    `kept` is the folder to which older work was moved (with --fresh). `lacking` has, for each package file that was not
-    changed, the lines of the step's version that are missing in it.
+    `kept` is the folder to which older work was moved (with --fresh). `lacking` maps each package file that was left
+    unchanged to the lines of the step's version that it does not have.
     """
 
     folder: Path
@@ -53,7 +53,7 @@ def starting_point(exercise: Exercise) -> Path:
 
 
 def solution(exercise: Exercise) -> Path:
-    """Return the folder in solutions/ of the step.
+    """Return the folder of the step in solutions/.
 
     Raises:
         UsageError: this copy of the course has no solutions.
@@ -73,7 +73,7 @@ def work_folder(exercise: Exercise, workspace: Path) -> Path:
 def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = False) -> Started:
     """Add the files of the step that the workspace does not have. With `fresh`, older work is moved aside first.
 
-    If the step has the student's own numbers, they are those of `student`.
+    If the step uses the student's own numbers, they are drawn for `student`.
 
     Raises:
         UsageError: the workspace is not a folder.
@@ -97,10 +97,10 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
 
 
 def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Copy the files of `source` that `folder` does not have, without notebooks.
+    """Copy the files of `source` that `folder` does not have, except for notebooks.
 
-    `instead` has other contents for some of these files. Returns the paths that were added, and those that were not
-    changed. Raises OSError.
+    `instead` gives some of these files a different content. Returns the paths that were added, and those that were left
+    unchanged. Raises OSError.
     """
     found = tree.read_folder(source)
     added, present = [], []
@@ -125,7 +125,7 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
 def _lacking(theirs: Path, mine: Path) -> tuple[str, ...]:
     """Return the lines of the step's file that the learner's file does not have.
 
-    Comments, spaces, commas and quotes do not count.
+    Comments, spaces, commas at the end of a line and the kind of quotes are ignored.
     """
 
     def plain(text: str) -> str:
