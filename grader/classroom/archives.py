@@ -1,4 +1,4 @@
-"""Unpack an archive of a student into a temporary folder: unpack.py does the work, this module sets its limits."""
+"""Unpack a student's archive into a temporary folder: unpack.py does the work, and this module sets its limits."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _LIMITS = ("prlimit", f"--cpu={_CPU_S}", f"--as={1024 * _MIB}", f"--fsize={128 *
 
 
 class NotUnpackedError(Exception):
-    """The student's archive cannot be unpacked. The message is the end of a sentence that begins with its name."""
+    """The student's archive cannot be unpacked. The message completes a sentence that begins with its name."""
 
 
 def stem(name: str) -> str | None:
-    """Return the name of an archive without its ending, or None if the name is not that of an archive."""
+    """Return the name of an archive without its extension, or None if the name is not that of an archive."""
     ending = next((each for each in (*ENDINGS, *OTHER_ENDINGS) if name.lower().endswith(each)), None)
     return name[: -len(ending)] or None if ending else None
 
@@ -43,7 +43,7 @@ def unpacked(archive: Path) -> Iterator[Path]:
 
     Raises:
         NotUnpackedError: the archive cannot be unpacked, or is larger than a submission may be.
-        DiskError: the disk failed on which it is unpacked.
+        DiskError: the disk that it is unpacked on failed.
     """
     if not archive.name.lower().endswith(ENDINGS):
         message = "is not a supported archive: hand in a .zip or a .tar.gz"
@@ -55,7 +55,7 @@ def unpacked(archive: Path) -> Iterator[Path]:
         message = f"is larger than {MOST_PACKED // _MIB} MiB"
         raise NotUnpackedError(message)
     with tempfile.TemporaryDirectory(prefix="grader-unpacked-") as folder:
-        # In a process of its own, so that an archive that takes for ever, or takes all memory, harms only that process.
+        # Use a separate process, so that an archive that takes forever or uses all memory harms only that process.
         start = interpreter("-S", str(_SCRIPT), str(archive.absolute()), folder)
         try:
             done = subprocess.run(

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise
 
 MOST_DEEP = 4
-"""Folders that may be next to answers.toml."""
+"""The maximum depth of the folders around answers.toml, if each of them contains nothing but the next one."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused
     """Return the submission to be graded; `student` is the person who handed it in.
 
     Raises:
-        DiskError: the disk failed on which archives are unpacked.
+        DiskError: the disk that archives are unpacked on failed.
     """
     if found.refused:
         return Refused(found.refused)
@@ -64,12 +64,12 @@ def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused
 
 
 def fingerprint(found: Found, exercise: Exercise) -> str:
-    """Return the sha256 of all files that count in a submission, or of the reason why they cannot be read.
+    """Return the sha256 of all relevant files of a submission, or of the reason why they cannot be read.
 
     An archive is not unpacked for this.
 
     Raises:
-        DiskError: the disk failed on which archives are unpacked.
+        DiskError: the disk that archives are unpacked on failed.
     """
     archive = None if found.refused else _archive(found.path)
     if archive is not None:
@@ -85,7 +85,7 @@ def _of_archive(archive: Path) -> str:
     whole = hashlib.sha256(archive.name.encode("utf-8", "surrogateescape") + b"\0")
     try:
         with archive.open("rb") as file:
-            # Of what is too large to be unpacked, so much is enough.
+            # If the archive is too large to be unpacked, this much of it is enough.
             while file.tell() <= archives.MOST_PACKED and (data := file.read(1024 * 1024)):
                 whole.update(data)
     except OSError as error:

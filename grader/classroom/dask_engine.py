@@ -1,9 +1,9 @@
 """An engine that grades with Dask's workers, on one or many machines.
 
-The machines need only this project. Submissions travel to them as bytes. Each thread of a Dask worker runs one of our
-worker processes (worker.py), so that a submission that kills this process leaves the Dask worker alive. This module
-decides which thread gets which submission: one at a time, without queues. So it always knows which submissions a lost
-machine had, and no submission is blamed for another one.
+The machines need only this project. Submissions are sent to them as bytes. Each thread of a Dask worker runs one of our
+worker processes (worker.py), so a submission that kills this process does not kill the Dask worker. This module decides
+which Dask worker gets which submission. Each thread gets one submission at a time, without a queue. Therefore, it is
+always known which submissions were lost with a machine, and no submission is blamed for the fault of another one.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ if TYPE_CHECKING:
 
 CONNECT_S = 10.0
 WORKERS_S = 60.0
-"""How long to wait for the first worker, or for a new one when all are gone (s)."""
+"""How long to wait for the first worker, or for a new one after all workers are gone (s)."""
 LOOK_S = 1.0
-"""The interval for looking which workers are there (s)."""
+"""The interval for checking which workers are available (s)."""
 
-# These belong to the process of the Dask worker. They outlive a task, so the next task finds a warm process.
+# These belong to the process of the Dask worker. They outlive a task, so the next task can use a warm process.
 _idle: list[Worker] = []
 _lock = Lock()
 
 
 def perform_here(packed: bytes) -> tuple[str, object]:
-    """Grade a pickled task in a process of its own; runs in a thread of a Dask worker.
+    """Grade a pickled task in a separate process. This function runs in a thread of a Dask worker.
 
-    Returns ("done", Done), ("fails", text) if this machine cannot grade, or ("died", text) if the process is gone.
+    Returns ("done", Done), ("fails", text) if this machine cannot grade, or ("died", text) if the process died.
     """
-    task = pickle.loads(packed)  # (the instructor's command decides about Ctrl-C)
+    task = pickle.loads(packed)  # Ctrl-C is handled by the instructor's command, not here.
     with _lock:
         worker = _idle.pop() if _idle else Worker()
     worker.send(task)
@@ -74,7 +74,7 @@ class DaskEngine:
             message = "Dask is not installed. Run `make cluster` in the course's folder to install it."
             raise UsageError(message) from error
         try:
-            # Dask has no types.
+            # Dask has no type annotations.
             self._client: Any = Client(f"tcp://{address}", timeout=CONNECT_S, set_as_default=False)  # type: ignore[no-untyped-call]
         except (OSError, ValueError) as error:
             message = (
@@ -106,11 +106,11 @@ class DaskEngine:
         return (self._most is None or len(self._running) < self._most) and self._free() is not None
 
     def start(self, task: Task) -> None:
-        """Begin a task."""
+        """Start a task."""
         where = self._free()
         assert where is not None
         key = f"grade-{uuid.uuid4().hex}"
-        # The scheduler passes bytes on without unpacking them.
+        # The scheduler forwards bytes without unpickling them.
         packed = pickle.dumps(task)
         future = self._client.submit(
             perform_here, packed, key=key, workers=[where], allow_other_workers=False, pure=False, retries=0
@@ -119,7 +119,7 @@ class DaskEngine:
         future.add_done_callback(lambda ended: self._ended.put(ended.key))
 
     def events(self, timeout_s: float) -> list[Event]:
-        """Return what happened since the last call; see Engine."""
+        """Return what has happened since the last call; see Engine."""
         happened: list[Event] = []
         try:
             first = self._ended.get(timeout=timeout_s)
@@ -136,7 +136,7 @@ class DaskEngine:
     def _event(self, ended: _Running) -> Event:
         try:
             kind, what = ended.future.result(timeout=CONNECT_S)
-        except Exception as error:  # Dask has several exceptions for a worker that died
+        except Exception as error:  # Dask raises various exceptions if a worker has died
             return Died(ended.task, f"{type(error).__name__}: {error}")
         if kind == "done":
             done: Done = what
@@ -146,14 +146,14 @@ class DaskEngine:
         return Died(ended.task, str(what))
 
     def _free(self) -> str | None:
-        """Return the worker with the most free threads."""
+        """Return the worker with the most free threads, or None if no thread is free."""
         busy = [each.where for each in self._running.values()]
         free = {where: threads - busy.count(where) for where, threads in self._threads.items()}
         best = max(free, key=lambda where: free[where], default=None)
         return best if best is not None and free[best] > 0 else None
 
     def _look(self) -> list[Event]:
-        """Look which workers are there. The tasks of lost workers are lost."""
+        """Update the list of workers. Return an event for each task whose worker is gone."""
         self._looked = time.monotonic()
         try:
             self._threads = dict(self._client.nthreads())

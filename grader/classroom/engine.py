@@ -1,4 +1,4 @@
-"""An engine runs tasks: in processes of this machine (local.py), or with Dask on many machines (dask_engine.py)."""
+"""An engine runs tasks: in processes on this machine (local.py), or with Dask on many machines (dask_engine.py)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Finished:
 
 @dataclass(frozen=True)
 class Died:
-    """The worker of a task is gone: it was killed, had no memory left, or its machine was lost."""
+    """The worker of a task is gone: it was killed, it ran out of memory, or its machine was lost."""
 
     task: Task
     why: str
@@ -39,7 +39,7 @@ Event = Tells | Finished | Died
 
 
 class Engine(Protocol):
-    """A context manager that runs tasks. Leaving it ends all of them.
+    """A context manager that runs tasks. Leaving the context stops all of them.
 
     with engine:
         while engine.has_room():
@@ -59,11 +59,11 @@ class Engine(Protocol):
         """Return whether another task can be started now."""
 
     def start(self, task: Task) -> None:
-        """Begin a task. Call it only if there is room."""
+        """Start a task. Call this only if there is room."""
 
     def events(self, timeout_s: float) -> list[Event]:
-        """Return what happened since the last call; wait at most `wait_s` for something to happen.
+        """Return what has happened since the last call. Wait at most `timeout_s` for something to happen.
 
         Raises:
-            MachineError: this machine cannot grade any submission any more.
+            MachineError: this machine can no longer grade any submission.
         """

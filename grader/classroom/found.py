@@ -1,10 +1,12 @@
-"""Find the submissions of a class: which student handed in what, for which exercise.
+"""Find the submissions of a class: which student handed in what, and for which exercise.
 
-Three layouts are known and can be mixed: one folder or archive per student; nbgrader's submitted/STUDENT/EXERCISE; and
-a folder of classroom clones, each with exercises/EXERCISE of the course in it.
+Three layouts are supported and can be mixed: one folder or archive per student; nbgrader's submitted/STUDENT/EXERCISE;
+and a folder of classroom clones, each of which contains the course's exercises/EXERCISE.
 
-No student is lost: each folder and archive becomes a submission, even if it only has a reason why it is not graded.
-This module uses os.path, whose functions return False for a path that cannot be accessed. Those of pathlib raise.
+No student is left out: each folder and archive becomes a submission, even if it contains only the reason why it cannot
+be graded.
+This module uses os.path, whose functions return False for a path that cannot be accessed. The methods of pathlib raise
+an exception instead.
 """
 
 # ruff: noqa: PTH110, PTH112, PTH114
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
 UNKNOWN = ""
-"""The exercise of a folder that does not say for which exercise it is."""
+"""The exercise of a folder that does not indicate which exercise it is for."""
 OWN = "exercises"
 """The folder of a clone in which the student works."""
 
@@ -42,7 +44,7 @@ class Found:
     exercise: str
     path: Path
     refused: str = ""
-    """Why it cannot be graded, if it could not be read when it was found."""
+    """Why it cannot be graded, if this is already known."""
 
     @property
     def name(self) -> str:
@@ -51,10 +53,10 @@ class Found:
 
 
 def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Path) -> tuple[Found, ...]:
-    """Return all submissions in the folders, archives and packages `given`, sorted by student, without `leave_out`.
+    """Return all submissions in the given folders, archives and packages except `leave_out`, sorted by student.
 
     Raises:
-        UsageError: there is none, or the exercise is not known.
+        UsageError: there are no submissions, or the exercise is not known.
     """
     wanted = find_exercise(exercise).id if exercise else None
     found = [each for path in given for each in _in(path, wanted, leave_out)]
@@ -72,7 +74,7 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
 
 
 def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
-    """Yield the same submissions. One of an unknown exercise is repeated for each exercise of the others.
+    """Yield the same submissions. One with an unknown exercise is repeated for each exercise of the others.
 
     Raises:
         UsageError: no exercise is known.
@@ -105,7 +107,7 @@ def _one_of(alike: Sequence[Found]) -> Found:
 
 
 def passed_over(given: Sequence[Path], leave_out: Path) -> tuple[str, ...]:
-    """Return the names of files and links that are not submissions. Hidden files are left out."""
+    """Return the names of files and links that are not submissions, except for hidden files."""
     folders = [path for path in given if os.path.isdir(path) and not _is_one(path)]
     return tuple(
         shown(entry.name)
@@ -125,7 +127,7 @@ def _entries(folder: Path) -> list[Path]:
 
 
 def _same(one: Path, other: Path) -> bool:
-    """Return whether both paths lead to the same place. Links that form a circle lead nowhere."""
+    """Return whether both paths lead to the same place. A loop of symbolic links is not an error."""
     return os.path.realpath(one) == os.path.realpath(other)
 
 
@@ -153,7 +155,7 @@ def _is_one(folder: Path) -> bool:
 
 
 def _student(entry: Path) -> str | None:
-    """Return the student's name, or None for other entries: hidden files, lists, notes."""
+    """Return the student's name, or None for other entries, such as hidden files, lists and notes."""
     if entry.name.startswith(".") or entry.name == "__MACOSX":
         return None
     try:

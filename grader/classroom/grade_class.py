@@ -34,7 +34,7 @@ DASK = "dask://"
 
 @dataclass(frozen=True)
 class Request:
-    """The options of the command line."""
+    """The command-line options."""
 
     submissions: Sequence[Path]
     out: Path
@@ -55,7 +55,7 @@ def grade_class(request: Request, say: Callable[[str], None], tell: Callable[[st
 
     Raises:
         UsageError: the command is wrong.
-        MachineError: nothing more can be graded or written. Results that were written stay, and the next run continues.
+        MachineError: nothing more can be graded or written. Written results are kept, and the next run continues.
     """
     _engine_is_known(request)
     return grade_found(request, find_submissions(request.submissions, request.exercise, request.out), say, tell)
@@ -64,7 +64,7 @@ def grade_class(request: Request, say: Callable[[str], None], tell: Callable[[st
 def grade_found(
     request: Request, found: tuple[Found, ...], say: Callable[[str], None], tell: Callable[[str], None]
 ) -> list[Result]:
-    """Grade submissions that were found before; raises as `grade_class`."""
+    """Grade submissions that have already been found. Raises the same exceptions as `grade_class`."""
     local = _engine_is_known(request)
     roster = read_owners(request.roster) if request.roster else {}
     beside = passed_over(request.submissions, request.out)
@@ -117,16 +117,16 @@ def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
     if any(result.report.with_status(Status.ERROR) for result in graded):
         return 3
     shares = [result.report.points / result.report.max if result.report.max else 0.0 for result in graded]
-    # Without the tolerance, float rounding could fail a class.
+    # Without the tolerance, a rounding error could fail a class.
     return 1 if fail_under is not None and any(100.0 * share < fail_under - 1e-9 for share in shares) else 0
 
 
 def _ros(*, local: bool, tell: Callable[[str], None]) -> str:
-    """Return the ROS 2 that a result depends on. With Dask, the workers have their own, and all must have the same."""
+    """Return the name of the ROS 2 that a result depends on. With Dask, all workers must have the same ROS 2."""
     try:
         ros = find_ros()
         if local:
-            underlay.ensure(ros, tell)  # once, and not in all workers at the same time
+            underlay.ensure(ros, tell)  # once here, instead of in all workers at the same time
     except MachineError:
         if local:
             raise

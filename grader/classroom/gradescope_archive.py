@@ -1,4 +1,4 @@
-"""Make the archive that Gradescope takes as an autograder: setup.sh, run_autograder, and the course with its grader."""
+"""Make the archive for Gradescope's autograder: setup.sh, run_autograder, and the course with its grader."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bo
     """
     known = find_exercise(exercise)
     sources = sources_of({known.id}, checks)[known.id]
-    exercise_from(sources)  # mistakes must be reported here, not at Gradescope
+    exercise_from(sources)  # mistakes must be reported here, not on Gradescope
     root = course_folder().parent
     if not (root / "Makefile").is_file():
         message = f"The archive needs a checkout of the course, but {root} is not one."
@@ -57,7 +57,7 @@ def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bo
 
 
 def _course(root: Path) -> Iterator[Path]:
-    """Return the files of the course that grading needs, without solutions and tests."""
+    """Yield the files of the course that grading needs, without solutions and tests."""
     yield from (root / name for name in _FILES if (root / name).is_file())
     for folder in _FOLDERS:
         for path in sorted((root / folder).rglob("*")):

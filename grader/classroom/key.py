@@ -24,7 +24,7 @@ class Key:
     """The sha256 of the submission."""
     student: str
     exercise: str
-    """The sha256 of exercise.toml, private checks included."""
+    """The sha256 of exercise.toml, including private checks."""
     grader: str
     """The version of the grader and the sha256 of its sources."""
     ros: str
@@ -43,7 +43,7 @@ def changed(old: Mapping[str, Any], new: Key) -> tuple[str, ...]:
 
 @cache
 def grader_key() -> str:
-    """Return the version of the grader and the sha256 of the sources that decide about a report."""
+    """Return the version of the grader and the sha256 of the source files that determine a report."""
     folder = Path(grader.__file__).parent
     whole = hashlib.sha256()
     for path in sorted(folder.rglob("*")):

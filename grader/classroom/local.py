@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from grader.classroom.task import Task
 
 MEMORY_A_TASK = 1536 * 1024 * 1024
-"""Bytes. A cell may use more (sandbox.Limits), but few submissions do, and never all at the same time."""
+"""The memory for a task (bytes). A cell may use more (sandbox.Limits), but few do, and never all at the same time."""
 WAITING_A_JOB = 2
-"""Additional tasks for each job, while as many tasks wait for wall time and hardly use a processor."""
+"""How many additional tasks per job are started while tasks wait for wall time and hardly use the processor."""
 TASK_S = 1800.0
-"""Longer than all limits of one grading together. A worker that is still busy after this time hangs (s)."""
+"""A worker that is still busy after this time hangs, because all limits of one grading add up to less (s)."""
 
 
 def default_jobs() -> int:
@@ -84,13 +84,13 @@ class LocalEngine:
         return working < self._jobs and len(self._busy) < self._most
 
     def start(self, task: Task) -> None:
-        """Begin a task."""
+        """Start a task."""
         worker = self._idle.pop() if self._idle else Worker()
         self._busy[worker] = _Busy(task, time.monotonic())
         worker.send(task)
 
     def events(self, timeout_s: float) -> list[Event]:
-        """Return what happened since the last call; see Engine."""
+        """Return what has happened since the last call; see Engine."""
         happened: list[Event] = []
         by_connection = {worker.connection: worker for worker in self._busy}
         for ready in wait(list(by_connection), timeout_s):

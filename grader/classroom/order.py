@@ -1,4 +1,4 @@
-"""Order: what a run of `grader grade` has to do, and what earlier runs already did."""
+"""Order: what a run of `grader grade` has to do, and what earlier runs have already done."""
 
 from __future__ import annotations
 
@@ -35,18 +35,18 @@ class Order:
     clock: ClockChoice = "auto"
     seed: int | None = None
     explain: bool = True
-    """Whether causes are proved by trying to fix them."""
+    """Whether supposed causes are tested by changing them in a copy."""
     in_cell: bool = True
     """Whether there is a sandbox. It is False only if the submissions are trusted."""
     trusted: bool = False
 
     @cached_property
     def exercises(self) -> dict[str, Exercise]:
-        """The exercises by id. Raises UsageError with every problem of the private checks."""
+        """The exercises by id. Raises UsageError, which lists every problem with the private checks."""
         return {name: exercise_from(sources) for name, sources in self.sources.items()}
 
     def key(self, found: Found) -> Key:
-        """Return the key of a submission's result. Raises DiskError as `content.read`."""
+        """Return the key of a submission's result. Raises DiskError like `content.read`."""
         exercise = self.exercises[found.exercise]
         return Key(
             submission=fingerprint(found, exercise),
@@ -59,7 +59,7 @@ class Order:
         )
 
     def task(self, found: Found) -> Task:
-        """Read the submission and return its task. Raises DiskError as `content.read`."""
+        """Read the submission and return its task. Raises DiskError like `content.read`."""
         owner = self._owner(found)
         content = read(found, self.exercises[found.exercise], owner)
         if isinstance(content, Refused):
@@ -108,7 +108,7 @@ class Order:
 
 
 def sources_for(found: tuple[Found, ...], checks: Path | None) -> dict[str, Sources]:
-    """Return the sources of the exercises of these submissions. Raises UsageError as `sources_of`."""
+    """Return the sources of the exercises of these submissions. Raises UsageError like `sources_of`."""
     return sources_of({each.exercise for each in found}, checks)
 
 
@@ -120,11 +120,11 @@ class Todo:
     key: Key
     why: str
     errors: int = 0
-    """How many times in a row its grading ended with an `error` so far."""
+    """How many times in a row grading it has ended with an `error` so far."""
 
 
 def sort_out(order: Order, results: Results) -> tuple[list[Result], list[Todo]]:
-    """Return the results that are still valid, and what must be graded. Raises DiskError as `content.read`."""
+    """Return the results that are still valid, and what must be graded. Raises DiskError like `content.read`."""
     kept: list[Result] = []
     todo: list[Todo] = []
     for found in order.found:

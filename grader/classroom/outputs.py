@@ -1,8 +1,8 @@
-"""Write the files in the folder of results after a run: a page of the class, a table, and files for CI and Gradescope.
+"""Write the files in the results folder after a run: a page of the class, a table, and files for CI and Gradescope.
 
     index.html            the page of the class, for the instructor
     summary.csv           for a spreadsheet or gradebook, for the instructor
-    junit.xml             for the list of tests of a CI
+    junit.xml             for the list of tests in a CI system
     gradescope/NAME.json  Gradescope's results.json of each submission
     github-summary.md, github-annotations.txt   for a step of GitHub Actions
 

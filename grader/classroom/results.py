@@ -6,8 +6,8 @@
     OUT/reports/STUDENT.EXERCISE.html   the page of the submission, without hidden checks
 
 Each file is written completely or not at all. The JSON is written after the page, so a result with a JSON file is
-complete. A killed run may leave files that end in .partial. The next run removes them. Only one run at a time may use
-a folder.
+complete. A killed run may leave files whose names end in .partial. The next run removes them. Only one run at a time
+may use a folder.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _LOCK = ".grader-results"
 _PARTIAL = ".partial"
 _SAFE = re.compile(r"[^A-Za-z0-9 _@+,=-]")
 _LONGEST = 120
-"""Bytes. Longer file names are cut, and a digest keeps them different."""
+"""A length in bytes. Longer file names are truncated, and a digest keeps them distinct."""
 
 
 @dataclass(frozen=True)
@@ -48,15 +48,15 @@ class Result:
     key: Mapping[str, Any]
     page: str
     errors: int = 0
-    """How many times in a row its grading ended with an `error`, including this time."""
+    """How many times in a row grading it has ended with an `error`, including this time."""
 
 
 def file_name(student: str, exercise: str) -> str:
-    """Return the file name of a result without its ending.
+    """Return the file name of a result without its extension.
 
-    It is different for every student and valid on every disk.
+    It is different for every student and valid on every file system.
     """
-    # Replaced characters become numbers, so that two names never become equal. A dot would look like an ending.
+    # Characters are replaced with numbers, so that different names stay different. A dot would look like an extension.
     safe = _SAFE.sub(lambda match: "".join(f"%{byte:02X}" for byte in os.fsencode(match.group())), student)
     if len(safe) > _LONGEST:
         import hashlib
@@ -67,12 +67,12 @@ def file_name(student: str, exercise: str) -> str:
 
 @dataclass(frozen=True)
 class Results:
-    """The folder of the results. Use `opened` to get one."""
+    """The folder of the results. Use `opened` to create an instance."""
 
     folder: Path
 
     def load(self, student: str, exercise: str) -> Result | None:
-        """Return the complete result of a submission, whatever its key is, or None."""
+        """Return the complete result of a submission, regardless of its key, or None if there is none."""
         name = file_name(student, exercise)
         file = self.folder / REPORTS / f"{name}.json"
         try:
@@ -82,7 +82,7 @@ class Results:
                 return None
             return Result(student, from_json(text), data["key"], f"{name}.html", int(data.get(ERRORS, 0)))
         except (OSError, ValueError, KeyError, TypeError, UsageError):
-            return None  # damaged, or written by another grader: it is graded again
+            return None  # damaged, or written by another version of the grader: it is graded again
 
     def save(self, student: str, report: Report, key: Key, page: bytes, errors: int = 0) -> Result:
         """Write a result. Raises MachineError if the disk is full or not writable."""
@@ -128,7 +128,7 @@ def opened(folder: Path) -> Iterator[Results]:
             old = results.load("anna", "03-circle-publisher")
 
     Raises:
-        UsageError: another run uses it, or it contains something else than results.
+        UsageError: another run is using it, or it contains something other than results.
         MachineError: it cannot be written.
     """
     lock = folder / _LOCK

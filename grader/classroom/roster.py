@@ -1,7 +1,7 @@
-"""Read a roster: the CSV in which an instructor lists the students of a class, as spreadsheets write it.
+"""Read a roster: a CSV file, written by a spreadsheet, in which an instructor lists the students of a class.
 
-Commas or semicolons, a byte order mark, empty lines, spaces around values, capital letters in column names, and
-additional columns are all allowed.
+The separator may be a comma or a semicolon. A byte order mark, empty lines, spaces around values, capital letters in
+column names, and additional columns are all allowed.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
 
 
 def read_owners(file: Path) -> dict[str, str]:
-    """Return a map from the name of a submission to the student id. Raises UsageError as `read_roster`."""
+    """Return a mapping from the name of a submission to the student id. Raises UsageError like `read_roster`."""
     return {row["submission"]: row["student"] for row in read_roster(file, ("submission", "student")).values()}
 
 
 def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> dict[int, dict[str, str]]:
-    """Return a map from line number to the values by column.
+    """Return a mapping from each line number to the values of that line by column.
 
     The columns in `needed` are never empty, and the values of the first one are unique.
 
     Raises:
-        UsageError: the file is not such a roster. The message has the line, and what to do.
+        UsageError: the file is not such a roster. The message names the line and says what to do.
     """
     (_, names), *lines = _lines(file) or [(1, [])]
     columns = [name.lower() for name in names]

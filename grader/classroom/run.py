@@ -1,4 +1,4 @@
-"""Run: grade all submissions of an order, even if the processes that do it die."""
+"""Run: grade all submissions of an order, even if worker processes die."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done
 
 TRIES = 2
-"""How many times a submission may kill its worker or end with an `error` before that is its result."""
+"""How many times a submission may kill its worker or end with an `error` before this becomes its result."""
 LOOK_S = 0.5
 """How long to wait for events of the engine (s)."""
 
@@ -27,10 +27,10 @@ def run(order: Order, todo: list[Todo], engine: Engine, results: Results, screen
     """Grade the submissions and write each result as soon as it is ready, in any order.
 
     Submissions that end with an `error` are graded once more after all others, if at least one other submission could
-    be judged: in this case the machine works, so the error was chance or the submission caused it.
+    be judged. In that case, the machine works, so the error occurred by chance or was caused by the submission.
 
     Raises:
-        MachineError: nothing more can be graded or written. Results that were written stay.
+        MachineError: nothing more can be graded or written. Results that were written are kept.
     """
     one = _Run(order, deque(todo), engine, results, screen)
     with engine:
@@ -55,7 +55,7 @@ class _Run:
     graded: dict[Name, Result] = field(default_factory=dict)
 
     def goes_on(self) -> bool:
-        """Return whether something is left to do. Submissions that ended with an `error` come last."""
+        """Return whether anything is left to do. Submissions that ended with an `error` come last."""
         if not self.waiting and not self.running and self.again:
             if len(self.again) < len(self.graded):
                 self.waiting.extend(self.again.values())
@@ -67,7 +67,7 @@ class _Run:
         return bool(self.waiting or self.running)
 
     def start(self) -> None:
-        """Give the engine as many tasks as it takes."""
+        """Give the engine as many tasks as it has room for."""
         while self.waiting and self.engine.has_room():
             one = self.waiting.popleft()
             task = self.order.task(one.found)

@@ -1,6 +1,7 @@
 """Show the progress of a run: a live table on a terminal, one line per submission elsewhere.
 
-Names come from students. They are printed so that they cannot control a terminal or a continuous integration (CI).
+Names come from students. They are escaped so that they cannot control a terminal or a continuous integration (CI)
+system.
 """
 
 from __future__ import annotations
@@ -41,12 +42,12 @@ class Screen(Protocol):
 
 def plain(text: str) -> str:
     """Return the text without anything that controls a terminal or a program that reads logs."""
-    # GitHub reads ::command:: at the beginning of a line and ##[command] anywhere; Azure Pipelines reads ##vso[.
+    # GitHub executes ::command:: at the beginning of a line and ##[command] anywhere, and Azure Pipelines ##vso[.
     return printable(text).replace("::", ": :").replace("##", "# #")
 
 
 def estimate(done: int, of: int, seconds: float) -> str:
-    """Estimate how long the rest will take, at the average speed so far."""
+    """Estimate how long the rest will take at the average speed so far."""
     if not done or done >= of:
         return ""
     left_s = seconds / done * (of - done)
@@ -55,7 +56,7 @@ def estimate(done: int, of: int, seconds: float) -> str:
 
 @contextmanager
 def screen(amount: int, *, several: bool) -> Iterator[Screen]:
-    """Yield the screen for this many submissions. With `several` exercises, their names are shown too."""
+    """Yield a screen for this many submissions. If there are `several` exercises, their names are shown too."""
     if not amount:
         yield Lines(amount, several=several)
     elif sys.stderr.isatty() and not os.environ.get("CI"):
@@ -89,7 +90,7 @@ class Lines:
 
 
 class Table:
-    """Show the submissions in progress with a bar below. Finished submissions stay above them."""
+    """Show the submissions in progress, with a progress bar below them. Finished submissions stay above them."""
 
     def __init__(self, amount: int, console: Console, *, several: bool) -> None:
         self._amount, self._several, self._console = amount, several, console

@@ -37,7 +37,7 @@ class Task:
     """A submission, its exercise, and how to grade it.
 
     `content` is the files of the submission, or the reason why there are none. `package` is the name of the package's
-    folder. `grader` is the key of the grader that made the task. Only a worker with the same key may grade it.
+    folder. `grader` is the key of the grader that created the task. Only a worker with the same key may grade it.
     """
 
     student: str
@@ -59,7 +59,7 @@ class Task:
 
     @property
     def name(self) -> tuple[str, str]:
-        """Student and exercise, which are unique in a run."""
+        """The student and the exercise. The pair is unique in a run."""
         return self.student, self.sources.id
 
 
@@ -74,12 +74,12 @@ class Done:
 def perform(
     task: Task, tell: Callable[[str], None] = lambda _: None, now: Callable[[Pace], None] = lambda _: None
 ) -> Done:
-    """Grade a task; `now` is called when a trial begins and when it ends to wait for wall time.
+    """Grade a task; `now` is called whenever a trial starts to wait for wall time and when it stops.
 
-    While it waits, other submissions can use the processors.
+    While the trial waits, other submissions can use the processors.
 
     Raises:
-        MachineError: this grader has another version than the one that made the task, or there is no sandbox.
+        MachineError: the task was created by another version of the grader, or there is no sandbox.
     """
     if task.grader != grader_key():
         message = (
@@ -122,7 +122,7 @@ def _confined(*, trusted: bool) -> bool:
 
 
 def set_aside(task: Task, why: str) -> Done:
-    """Return the result of a submission whose worker never came back: an `error`."""
+    """Return the result of a submission that could not be graded: an `error`."""
     exercise = exercise_from(task.sources)
     return _with_page(_unjudged(task, exercise, Finding(Status.ERROR, why)))
 
@@ -140,7 +140,7 @@ def _submission(task: Task, files: dict[str, bytes] | None = None) -> Submission
 
 
 def _refused(task: Task, exercise: Exercise, reason: str) -> Graded:
-    """Return a result with no points for a submission without a package; the reason comes first."""
+    """Return a result with no points for a submission without a package. The reason comes first."""
     what = "a package" if exercise.package else "answers.toml"
     title = f"The submission contains {what}"
     expected = f"One folder with {what} in it, or a .zip or .tar.gz of this folder."

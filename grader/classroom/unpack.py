@@ -1,9 +1,9 @@
 """Unpack an archive that a student handed in: `python -I -S unpack.py ARCHIVE FOLDER`.
 
-archives.py runs this script in a process of its own with limits. It uses only the standard library. It creates only
-plain files and folders, only inside the folder, and never more than the limits below. It prints JSON: {"why": null} if
-all went well; otherwise "why" is the end of a sentence that begins with the name of the archive. It exits with code 3
-if the disk fails.
+archives.py runs this script in a separate process with limits. The script uses only the standard library. It creates
+only plain files and folders, only inside the folder, and never exceeds the limits below. It prints JSON: {"why": null}
+on success; otherwise, "why" completes a sentence that begins with the name of the archive. It exits with code 3 if the
+disk fails.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 MOST_BYTES = 96 * 1024 * 1024
-"""The limit for the unpacked size: 1.5 times what is read of a package. The rest is for build/ and install/."""
+"""The maximum unpacked size: 1.5 times what is read of a package, to leave space for build/ and install/."""
 MOST_ENTRIES = 20_000
 MOST_DEPTH = 40
 MOST_PATH_BYTES = 1000
@@ -49,7 +49,7 @@ class Capped(io.RawIOBase):
         return True
 
     def read(self, size: int = -1) -> bytes:
-        """Read some bytes. Raises RefusedError beyond the limit."""
+        """Read some bytes. Raises RefusedError if the limit is exceeded."""
         data = self._stream.read(min(size, CHUNK) if size >= 0 else CHUNK)
         self._left -= len(data)
         if self._left < 0:
@@ -62,7 +62,7 @@ def _too_much() -> str:
 
 
 def unpack(archive: Path, folder: Path) -> None:
-    """Unpack into an empty folder. Raises RefusedError for an archive that is refused, OSError if the disk fails."""
+    """Unpack into an empty folder. Raises RefusedError if the archive is refused, or OSError if the disk fails."""
     with archive.open("rb") as file:
         members = _zip(file) if zipfile.is_zipfile(file) else _tar(file)
         left = MOST_BYTES
@@ -95,12 +95,12 @@ def _zip(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
 
 
 def _tar(file: IO[bytes]) -> Iterator[tuple[str, int, IO[bytes] | None]]:
-    """Yield the same as `_zip` for a tar archive, compressed with gzip or not."""
+    """Yield the same as `_zip`, but for a tar archive, which may be compressed with gzip."""
     file.seek(0)
     gzipped = file.read(2) == b"\x1f\x8b"
     file.seek(0)
     stream: IO[bytes] = gzip.GzipFile(fileobj=file) if gzipped else file  # type: ignore[assignment]
-    # A header takes 512 bytes, and long names and dates may take as much again.
+    # A header takes 512 bytes, and long names and dates need additional headers.
     capped = Capped(stream, MOST_BYTES + 2048 * MOST_ENTRIES)
     with tarfile.open(fileobj=capped, mode="r|") as packed:
         for info in packed:
@@ -137,7 +137,7 @@ def _both(target: Path, folder: Path) -> str:
 
 
 def _write(content: IO[bytes], target: Path, folder: Path, mode: int, most: int) -> int:
-    """Write a file and return its size. It replaces a file of the same name, as with unzip and tar."""
+    """Write a file and return its size. As with unzip and tar, it replaces a file of the same name."""
     _make_folder(target.parent, folder)
     if target.is_dir():
         raise RefusedError(_both(target, folder))
@@ -153,7 +153,7 @@ def _write(content: IO[bytes], target: Path, folder: Path, mode: int, most: int)
 
 
 def main(archive: str, folder: str) -> int:
-    """Unpack, and print why that was not possible."""
+    """Unpack the archive and print whether that was possible."""
     why = None
     try:
         unpack(Path(archive), Path(folder))

@@ -1,7 +1,7 @@
 """A worker: a process that grades one task after another, so that Python's imports are done only once.
 
 `python -m grader.classroom.worker DESCRIPTOR`. No student code runs in this process. It runs in the cells that the
-worker starts. If the process that started the worker ends, the worker ends too, with everything that it started.
+worker starts. If the process that started the worker exits, the worker and everything that it started exit too.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ _LAST_WORDS = 1000
 
 
 class Worker:
-    """A worker process, as its owner sees it.
+    """A worker process, as seen by its owner.
 
-    `connection` is readable when there is a message or the process has ended.
+    `connection` is readable when there is a message or the process has exited.
     """
 
     def __init__(self) -> None:
         ours, theirs = socket.socketpair()
         self._errors: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed in `close`
         with theirs:
-            # A session of its own, so that Ctrl-C reaches only its owner.
+            # The worker gets its own session, so that Ctrl-C reaches only the owner.
             start = interpreter("-m", "grader.classroom.worker", str(theirs.fileno()))
             self.process = subprocess.Popen(
                 start.argv,
@@ -53,12 +53,12 @@ class Worker:
         self.connection: Connection = Connection(ours.detach())
 
     def send(self, task: Task) -> None:
-        """Send it a task. It takes one at a time. If the process has ended, the next read reports it."""
+        """Send a task to the worker, one at a time. If the process has exited, the next `receive` reports it."""
         with suppress(BrokenPipeError, ConnectionResetError):
             self.connection.send(task)
 
     def receive(self) -> tuple[str, object] | None:
-        """Return the next message, or None if the process has ended."""
+        """Return the next message, or None if the process has exited."""
         try:
             answer: tuple[str, object] = self.connection.recv()
         except (EOFError, OSError):
@@ -66,7 +66,7 @@ class Worker:
         return answer
 
     def last_words(self) -> str:
-        """Return how the process ended and the last line that it wrote, for the instructor."""
+        """Return how the process exited and the end of its output, for the instructor."""
         code = self.process.wait()
         self._errors.seek(0)
         answer = self._errors.read()[-_LAST_WORDS:].decode("utf-8", "replace").strip()
@@ -74,7 +74,7 @@ class Worker:
         return f"{how}: {answer}" if answer else how
 
     def close(self) -> None:
-        """End the process and everything that it started."""
+        """Kill the process and everything that it started."""
         self.connection.close()
         self.process.kill()
         self.process.wait()
@@ -82,7 +82,7 @@ class Worker:
 
 
 def main(descriptor: int) -> None:
-    """Grade tasks until the owner is gone."""
+    """Grade tasks until the owner has exited."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.set_inheritable(descriptor, False)  # noqa: FBT003
     connection = Connection(descriptor)
@@ -107,13 +107,13 @@ def main(descriptor: int) -> None:
 
 
 def _import_all() -> None:
-    """Import what grading needs on first use, before the first task arrives and its clock starts."""
+    """Import everything that grading would import on first use, before the first task arrives and its time starts."""
 
 
 def _end_with_owner(descriptor: int) -> None:
-    """Exit at once. Cells and rooms die with their parent process."""
+    """Exit as soon as the owner has exited. Cells and rooms die with their parent process."""
     poll = select.poll()
-    poll.register(descriptor, 0)  # the end of a connection is always reported
+    poll.register(descriptor, 0)  # the closing of a connection is always reported
     while True:
         for _, event in poll.poll():
             if event & (select.POLLHUP | select.POLLERR | select.POLLNVAL):
