@@ -2,9 +2,9 @@
 
     python -m grader.notebook.bridge FOLDER WORKSPACE
 
-The kernel's sockets are on the cell's own disk. So the cell needs no writable folder of the machine, and the reader of
-the pipes (grader.gradebook.relay) decides how much it reads. FOLDER is a read-only copy of the submission. The kernel
-works on its own copy in WORKSPACE.
+The kernel's sockets are on the cell's own disk, so the cell needs no writable folder on the machine. The reader of the
+pipes (grader.gradebook.relay) decides how much it reads. FOLDER is a read-only copy of the submission. The kernel works
+on its own copy in WORKSPACE.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from grader.common.interpreter import interpreter
 from grader.notebook.frames import CHANNELS, CHUNK, ORDER, Unpacker, packed
 
 IDENTITY = b"bridge"
-"""All channels have the same identity: the kernel requests input on another channel than that of the request."""
+"""The identity on all channels. The kernel addresses an input request to the identity that asked it to run code."""
 RETRY_MS = 10
-"""The interval for trying to connect to a kernel that is starting (s)."""
+"""The interval for trying to connect to a kernel that is starting (ms)."""
 LAST_MS = 100
-"""How long to wait for the last messages of a kernel that has ended (s)."""
+"""How long to wait for the last messages of a kernel that has exited (ms)."""
 _IOPUB = CHANNELS.index("iopub")
 
 
 class Bridge:
-    """The sockets of one kernel, and the messages that wait until it listens."""
+    """The sockets of one kernel, and the messages that are held back until it is listening."""
 
     def __init__(self, folder: Path, key: dict[str, Any]) -> None:
         """Create the sockets in `folder`; `key` is the part of the connection file about signatures."""
@@ -60,14 +60,14 @@ class Bridge:
         return socket
 
     def send(self, channel: int, parts: list[bytes]) -> None:
-        """Pass a message on to the kernel as soon as its replies would arrive here."""
+        """Pass a message to the kernel. It is held back until the kernel's replies can be received."""
         if self._waiting is not None:
             self._waiting.append((channel, parts))
         elif channel < _IOPUB:
             self._sockets[channel].send_multipart(parts)
 
     def serve(self, kernel: int) -> None:
-        """Pass messages until standard input ends, or the process of the descriptor `kernel` (a pidfd) ends."""
+        """Pass messages until the end of standard input, or until the process of `kernel` (a pidfd) exits."""
         poller = zmq.Poller()
         for number in (0, kernel, *self._sockets):
             poller.register(number, zmq.POLLIN)
@@ -87,21 +87,21 @@ class Bridge:
                     self.send(channel, parts)
 
     def _hear(self) -> None:
-        """Pass on the messages of the kernel."""
+        """Forward the messages of the kernel."""
         for channel, socket in enumerate(self._sockets):
             while socket.poll(0):
                 data = memoryview(packed(channel, socket.recv_multipart()))
                 while data:
                     data = data[os.write(1, data) :]
                 if channel == _IOPUB and self._waiting is not None:
-                    # The kernel welcomes a new subscriber with its first message. From now on, no message is lost.
+                    # The kernel's first message welcomes a new subscriber. From now on, no message is lost.
                     waiting, self._waiting = self._waiting, None
                     for each in waiting:
                         self.send(*each)
 
 
 def main() -> None:
-    """Start the kernel and pass its messages until it ends."""
+    """Start the kernel and pass its messages until it exits."""
     folder, workspace = sys.argv[1:]
     unpacker, orders = Unpacker(), list[tuple[int, list[bytes]]]()
     while not orders:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Cells:
-    """What the magics do. The folder of the notebook is the current folder of the kernel."""
+    """The implementation of the magics. The kernel's current folder is the folder of the notebook."""
 
     def __init__(self) -> None:
         self.exercise: Exercise | None = None
@@ -65,7 +65,7 @@ class Cells:
     def ros2(self, line: str) -> None:
         """`%ros2 topic list`, or just `ros2 topic list`: run the command and show its output below the cell.
 
-        While nbgrader runs the notebook, nobody reads the output, so nothing is run.
+        When nbgrader runs the notebook, nobody reads the output, so nothing is run.
         """
         if not grading():
             run_below([str(Path(sys.prefix, "bin", "ros2")), *shlex.split(line)])
@@ -110,7 +110,7 @@ class Cells:
 def run_below(
     argv: list[str], *, cwd: Path | None = None, env: Mapping[str, str] | None = None, seconds: float | None = None
 ) -> int:
-    """Run a command and print its output, until it ends, `seconds` are over, or the cell is interrupted."""
+    """Run a command and print its output, until it exits, `seconds` have passed, or the cell is interrupted."""
     child = subprocess.Popen(
         argv, cwd=cwd, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         encoding="utf-8", errors="replace", bufsize=1, start_new_session=True,
@@ -134,7 +134,7 @@ def run_below(
 
 
 class _Alarm:
-    """Send Ctrl-C to a child after some seconds."""
+    """Send SIGINT (like Ctrl-C) to a child process after some seconds, and kill it if it does not exit."""
 
     def __init__(self, child: subprocess.Popen[str], seconds: float | None) -> None:
         from threading import Timer

@@ -1,7 +1,7 @@
 """`check("03-circle-publisher")` in a cell: grade the work next to the notebook and show the verdict below the cell.
 
 The verdict is a table with pictures, or text in a program that shows only text. If nothing has changed, the last
-verdict is returned. So the cells with the points of single checks cost nothing.
+verdict is returned, so the cells that return the points of individual checks take hardly any time.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from grader.notebook.cells import Cells
 
 GRACE_S = 5.0
-"""How long a worker may take to end after the cell was interrupted (s)."""
+"""How long a worker may take to exit after the cell was interrupted (s)."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Verdict:
 
 
 class Checking:
-    """Check function for a kernel. It remembers what was already graded."""
+    """The `check` function of a kernel. It remembers what it has already graded."""
 
     def __init__(self, cells: Cells) -> None:
         self._cells = cells
@@ -117,7 +117,7 @@ def _graded(exercise: Exercise, folder: Path) -> Verdict:
 
 
 def _end(worker: subprocess.Popen[bytes]) -> None:
-    """End a worker that is still running: it is interrupted, and killed if it does not end."""
+    """Stop a worker that is still running: interrupt it, and kill it if it does not exit."""
     for number, wait_s in ((signal.SIGINT, GRACE_S), (signal.SIGKILL, None)):
         if worker.poll() is not None:
             return
@@ -128,7 +128,7 @@ def _end(worker: subprocess.Popen[bytes]) -> None:
 
 
 class _Progress:
-    """Show a line below the cell with what is being done, until it is done. Under nbgrader, show nothing."""
+    """Show below the cell what is being done, and clear this line at the end. Under nbgrader, show nothing."""
 
     def __enter__(self) -> Self:
         from IPython.display import DisplayHandle

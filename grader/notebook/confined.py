@@ -15,9 +15,8 @@ from pathlib import Path
 
 
 def main() -> None:
-    """Replace this process by the kernel."""
-    # These are imported before the submission's folder becomes the current one, because its modules must not shadow
-    # Python's.
+    """Replace this process with the kernel."""
+    # This import comes before the change to the submission's folder, whose modules must not shadow Python's.
     from ipykernel import kernelapp
 
     folder = Path(sys.argv[2], "submission")

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 def load(shell: InteractiveShell) -> None:
     """Add everything to the notebook of this shell."""
-    # In a cell, all processes end with the cell.
+    # In a sandbox, no guardian is needed, because all processes end when the sandbox does.
     if not confined():
         _guard()
     cells = Cells()
@@ -43,16 +43,16 @@ def _tell(
     traceback: TracebackType,  # noqa: ARG001
     tb_offset: int | None = None,  # noqa: ARG001
 ) -> list[str]:
-    """Show an error of the grader as one sentence without a traceback."""
+    """Show an error of the grader as one sentence, without a traceback."""
     shell._showtraceback(GraderError, error, [str(error)])  # type: ignore[no-untyped-call, unused-ignore]
     return [str(error)]
 
 
 def _guard() -> None:
-    """Mark the future children of this kernel, and start the guardian that ends them when the kernel is gone."""
+    """Mark the kernel's future child processes, and start the guardian that stops them when the kernel has exited."""
     mark = f"{os.getpid()}-{secrets.token_hex(8)}"
-    # Only this process holds the pipe: Python's descriptors are closed in its children.
-    # Nothing of the kernel's: neither its folder nor its marks.
+    # Only this process holds the pipe, because Python does not pass its descriptors to child processes.
+    # The guardian must get neither the folder of the kernel nor its marks.
     env = {"PATH": os.environ.get("PATH", ""), "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
     start = interpreter(str(Path(guardian.__file__).absolute()), mark, env=env)
     started = subprocess.Popen(
@@ -69,4 +69,4 @@ def _guard() -> None:
 
 
 _guardians: list[subprocess.Popen[bytes]] = []
-"""Kept as long as the kernel lives. If the object were deleted, its pipe would close."""
+"""The guardian is kept here as long as the kernel runs. If the object were deleted, its pipe would close."""

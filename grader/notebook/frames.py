@@ -1,7 +1,7 @@
 """Frames: the format of a kernel's messages on the pipe between relay (outside of the cell) and bridge (inside).
 
-A frame is a message of ZeroMQ with its channel: one byte for the channel, two for the number of parts, four for the
-size of each part, all big-endian, then the parts. So the reader knows the size of a message before it reads any of it.
+A frame is a ZeroMQ message with its channel: one byte for the channel, two for the number of parts, four for the size
+of each part, all big-endian, and then the parts. The reader therefore knows the size of a message before reading it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 CHANNELS = ("shell", "control", "stdin", "iopub")
 """The channels. A frame names its channel by the index in this list."""
 ORDER = len(CHANNELS)
-"""The channel of the very first frame, which gives the bridge the key of the signatures."""
+"""The channel of the first frame, which gives the bridge the key for the signatures."""
 CHUNK = 1024 * 1024
 """The number of bytes that are read from a pipe at a time."""
 MOST_PARTS = 1000
@@ -25,7 +25,7 @@ _SIZE = 4
 
 
 class FrameError(ValueError):
-    """The data are not a frame, or the frame is too large; the message says which."""
+    """The data is not a frame, or the frame is too large. The message says which."""
 
 
 def packed(channel: int, parts: Sequence[bytes]) -> bytes:

@@ -1,9 +1,9 @@
-"""Guardian: ends the processes that a kernel started when the kernel is gone, however it ended.
+"""Guardian: stops the processes that a kernel started once the kernel is gone, no matter how it exited.
 
     python guardian.py MARK          its standard input is a pipe that only the kernel holds open
 
 Every process that a notebook starts has MARK in its environment. When the pipe closes, these processes and all their
-descendants are ended: first with SIGINT, so that nodes can stop properly, then with SIGKILL.
+descendants are stopped: first with SIGINT, so that nodes can shut down properly, and then with SIGKILL.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ VARIABLE = "GRADER_NOTEBOOK"
 
 
 def main() -> None:
-    """Wait until the kernel has ended, then end its processes."""
+    """Wait until the kernel has exited, and then stop its processes."""
     mark = f"{VARIABLE}={sys.argv[1]}".encode()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)

@@ -2,7 +2,7 @@
 
     python -m grader.notebook.kernel -f CONNECTION_FILE     what Jupyter runs
 
-The environment is made again at each start. So a ROS 2 that was installed or sourced in the meantime is found.
+The environment is created anew at each start, so a ROS 2 that was installed or sourced in the meantime is found.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ _AGAIN = "_GRADER_KERNEL_STARTED_AGAIN"
 
 
 def main() -> None:
-    """Replace this process by the kernel.
+    """Replace this process with the kernel.
 
-    If Jupyter was started without the ROS 2 of the set-up, that one is sourced first. Without any ROS 2, the kernel is
-    a plain Python kernel, in which `check` says what is missing.
+    If Jupyter was started without the ROS 2 that the course was set up for, that ROS 2 is sourced first. Without any
+    ROS 2, the kernel is a plain Python kernel, in which `check` says what is missing.
     """
     from grader.errors import GraderError
     from grader.notebook.simulator import environment
@@ -43,7 +43,7 @@ def main() -> None:
 
 
 def _source_and_start_again() -> None:
-    """Start again in a shell that has sourced the ROS 2 of the set-up. Return if that cannot help."""
+    """Restart in a shell that has sourced the ROS 2 that the course was set up for. Return if that cannot help."""
     prefix, bash = made_for(Path(sys.prefix)), shutil.which("bash", path="/usr/bin:/bin")
     if prefix is None or bash is None or _AGAIN in os.environ or not Path(prefix, "setup.bash").is_file():
         return

@@ -1,11 +1,11 @@
-"""How a notebook is run: for a reader, or by nbgrader, which wants it quick and quiet."""
+"""How a notebook is being run: for a reader, or by nbgrader, for which it must be fast and print little."""
 
 from __future__ import annotations
 
 import os
 
 CONFINED = "GRADER_CONFINED"
-"""Set in a kernel that already runs in a cell (grader.sandbox). Another cell inside of it is not possible."""
+"""Set in a kernel that already runs in a cell (grader.sandbox). Another cell cannot be started inside it."""
 
 
 def grading() -> bool:

@@ -1,4 +1,4 @@
-"""The files next to a notebook: which file a cell writes, and which text counts if cell and file differ.
+"""The files next to a notebook: which file a cell writes, and which text counts if the cell and the file differ.
 
 A student hands in the package (or the answers) next to the notebook. A cell writes one of its files:
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 MAGICS = ("node", "package", "answers")
 KEPT = ".kept"
-"""The folder for a file that a cell replaces although it was changed elsewhere. It is hidden, so it is never graded."""
+"""The folder for files that were changed elsewhere before a cell replaced them. It is hidden, so it is never graded."""
 _FIRST_LINE = re.compile(rf"\s*%%({'|'.join(MAGICS)})\b[ \t]*(.*?)\s*")
 
 
@@ -65,9 +65,9 @@ def part_path(magic: str, name: str, exercise: Exercise) -> str:
 
 
 def parts_of(sources: list[str], exercise: Exercise) -> list[Part]:
-    """Return what cells with these sources write. A cell with a wrong name writes nothing.
+    """Return what cells with these sources write. A cell with an invalid name writes nothing.
 
-    The last cell for a file counts.
+    If several cells write the same file, the last one counts.
     """
     parts: dict[str, Part] = {}
     for source in sources:
@@ -84,14 +84,14 @@ def parts_of(sources: list[str], exercise: Exercise) -> list[Part]:
 
 
 def ended(text: str) -> str:
-    """Return the text with one newline at its end."""
+    """Return the text with exactly one newline at its end."""
     return text.rstrip("\n") + "\n"
 
 
 def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
-    """Return which text is handed in: the file if the student has changed it, otherwise the cell.
+    """Return which text is handed in: that of the file if the student has changed it, or else that of the cell.
 
-    `file` is the text of the file, `start` that of the starting point. They are None if there is no such file.
+    `file` is the text of the file, and `start` its text in the starting point. Each is None if there is no such file.
     """
     if file is None or (start is not None and ended(file) == ended(start)):
         return "cell"
@@ -108,7 +108,7 @@ def starting_text(exercise: Exercise, path: str) -> str | None:
 
 
 def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str, ...]:
-    """Add the files of the step that `folder` does not have, next to the notebook. Return the paths that were written.
+    """Add the step's files that are missing from `folder`, next to the notebook. Return the paths that were written.
 
     If there is no package yet, it is copied from the learner's workspace, or else from the starting point. With
     `alone`, it is always copied from the starting point. No file of the student is overwritten.
@@ -137,6 +137,6 @@ def _own_numbers(source: Path, target: Path) -> tuple[str, ...]:
 
 
 def _student() -> str:
-    """Return the student's name for nbgrader: the name of the user, or of JupyterHub's user if the user is shared."""
+    """Return the student's name for nbgrader: the user name, or JupyterHub's user name if the account is shared."""
     name = getpass.getuser()
     return os.environ.get("JUPYTERHUB_USER", name) if name == "jovyan" else name

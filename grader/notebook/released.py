@@ -1,4 +1,4 @@
-"""The notebook of a step as students get it: byte for byte the same as nbgrader's generate_assignment makes it.
+"""The notebook of a step as students get it, byte for byte identical to the output of nbgrader's generate_assignment.
 
 This module repeats the steps of nbgrader 0.9 (LockCells, ClearSolutions, ClearOutput, ClearHiddenTests,
 ComputeChecksums), so that a course can be released without Jupyter. A test compares the two.
@@ -18,11 +18,11 @@ Cell = dict[str, Any]
 
 _FILE_CELL = re.compile(r"\s*%%\w+[ \t]+(\S+)\s*")
 _HIDDEN = {"BEGIN HIDDEN TESTS": True, "END HIDDEN TESTS": False}
-"""nbgrader's marks for tests that only the instructor's copy has -> whether a hidden test begins there."""
+"""nbgrader's markers for hidden tests, mapped to whether a hidden test begins there."""
 
 
 def released_notebook(data: bytes, name: str) -> bytes:
-    """Return the released version of a source notebook. Raises UsageError with `name` and cell for a mistake in it."""
+    """Return the released version of a source notebook. Raises UsageError with `name` and cell if it has a mistake."""
     try:
         notebook = json.loads(data)
         for number, cell in enumerate(notebook["cells"], 1):
@@ -42,7 +42,7 @@ def solved_away(source: str, cell_type: str, *, solution: bool, name: str) -> st
     """Return a cell's source with the starting point instead of its solutions.
 
     Raises:
-        UsageError: markers are wrong, or a solution cell has none, so that all of it would be released.
+        UsageError: markers are wrong, or a solution cell has no markers, so that all of it would be released.
     """
     text = stripped(source, _syntax(source, cell_type), name)
     if solution and text == source:
@@ -52,7 +52,7 @@ def solved_away(source: str, cell_type: str, *, solution: bool, name: str) -> st
 
 
 def without_hidden_tests(source: str, name: str) -> str:
-    """Return a cell's source without its hidden tests. Raises UsageError if a begin or an end is missing."""
+    """Return a cell's source without its hidden tests. Raises UsageError if a begin or end marker is missing."""
     kept, hidden = [], False
     for line in source.splitlines(keepends=True):
         mark = next((begins for words, begins in _HIDDEN.items() if words in line), None)
@@ -73,7 +73,7 @@ def without_hidden_tests(source: str, name: str) -> str:
 
 
 def _syntax(source: str, cell_type: str) -> Syntax:
-    """Return how the cell writes comments: like the file that it writes, if any."""
+    """Return the comment syntax of the cell, which is that of the file that the cell writes, if any."""
     match = _FILE_CELL.fullmatch(source.partition("\n")[0])
     if cell_type != "code":
         return ANGLE
@@ -106,7 +106,7 @@ def _release(cell: Cell, name: str) -> None:
 
 
 def _checksum(source: str, kind: str, about: dict[str, Any]) -> str:
-    """Return nbgrader's checksum. It shows whether a cell was changed, but it does not protect a secret."""
+    """Return nbgrader's checksum. It reveals whether a cell was changed, but it does not protect a secret."""
     locked = not about["solution"] and (about["grade"] or about["locked"])
     parts = [source, kind, str(about["grade"]), str(about["solution"]), str(locked), about["grade_id"]]
     if about["grade"]:

@@ -4,7 +4,8 @@
         %ros2 topic list
         sim.run("draw_circle", seconds=7)
 
-It runs in a process of its own, which ends with the `with` statement, an interrupt or the kernel.
+It runs in a separate process, which is stopped when the `with` statement ends, the cell is interrupted or the kernel
+exits.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 START_S = 30.0
-"""A turtlesim that has shown no picture after this time is broken, even on a busy machine (s)."""
+"""If turtlesim has shown no picture after this time, it is broken, even on a busy machine (s)."""
 
 
 class Simulator:
@@ -93,7 +94,7 @@ class Simulator:
             run_below(argv, cwd=folder, env=self._env, seconds=seconds)
 
     def start(self, executable: str) -> None:
-        """Start a node and continue with the cell. The node is stopped at the end of the `with` statement.
+        """Start a node and continue running the cell. The node is stopped at the end of the `with` statement.
 
         Raises:
             UsageError: there is no such file.
@@ -122,7 +123,7 @@ class Simulator:
         return self._picture
 
     def _end(self) -> str:
-        """End the process and show its last picture. Return its standard error."""
+        """Stop the process and show its last picture. Return its standard error."""
         process = self._process
         assert process is not None
         assert process.stdin is not None
@@ -172,7 +173,7 @@ def _wait_or_kill(process: subprocess.Popen[bytes]) -> None:
 
 
 def _command(executable: str) -> tuple[list[str], Path]:
-    """Return the command and the folder to start a node of the package next to the notebook."""
+    """Return the command that starts a node of the package next to the notebook, and the folder to run it in."""
     name = executable.removesuffix(".py")
     files = [file for file in Path.cwd().glob(f"*/*/{name}.py") if file.parent.name == file.parent.parent.name]
     if not files:
@@ -184,7 +185,7 @@ def _command(executable: str) -> tuple[list[str], Path]:
 
 
 def environment() -> dict[str, str]:
-    """Return the kernel's environment with ROS 2. The course's kernel already has it, and other kernels get it here."""
+    """Return the kernel's environment with ROS 2. The course's kernel already has ROS 2; other kernels get it here."""
     from grader.ros.installation import find_ros, users_environment
     from grader.ros.underlay import with_turtlesim
 

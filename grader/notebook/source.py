@@ -1,4 +1,4 @@
-"""The source notebook of a step: its text is written by hand, and parts that exist elsewhere are inserted.
+"""The source notebook of a step. Its text is written by hand, and parts that exist elsewhere are inserted.
 
 A cell that begins with `%%node`, `%%package` or `%%answers` gets the text of that file of the solution, including the
 markers. Each check of exercise.toml gets a grade cell with the same id and points at the end of the notebook.
@@ -23,10 +23,11 @@ BEGIN = "begin"
 
 
 def refreshed(data: bytes, exercise: Exercise, files: Mapping[str, bytes], name: str) -> bytes:
-    """Return the updated source notebook. `files` are those of the solution, by their path in the step's folder.
+    """Return the updated source notebook. `files` are the solution's files by their paths in the step's folder.
 
     Raises:
-        UsageError: it is not a notebook, or a cell writes a file that the solution does not have; with `name` and cell.
+        UsageError: it is not a notebook, or a cell writes a file that the solution does not have. The message contains
+            `name` and the cell.
     """
     try:
         notebook: dict[str, Any] = json.loads(data)
@@ -55,7 +56,7 @@ def _refresh(cell: Cell, exercise: Exercise, files: Mapping[str, bytes], name: s
         raise UsageError(message)
     text = files[path].decode("utf-8")
     cell["source"] = f"{first}\n{text}".rstrip("\n").splitlines(keepends=True)
-    # The cell's id alone is not enough: a check may be called "answers" too, and nbgrader uses both as names of cells.
+    # The cell's id alone is not enough: a check may be called "answers" too, and nbgrader uses both as cell names.
     cell["metadata"]["nbgrader"] = _about(f"write-{cell['id']}", solution=True)
 
 
@@ -79,7 +80,7 @@ def _grade_cell(exercise: Exercise, spec: CheckSpec) -> Cell:
 
 
 def _about(name: str, *, grade: bool = False, solution: bool = False, locked: bool = False) -> dict[str, Any]:
-    """Return the metadata by which nbgrader knows a cell (schema 3)."""
+    """Return the metadata by which nbgrader recognizes a cell (schema 3)."""
     return {
         "grade": grade,
         "grade_id": name,

@@ -1,9 +1,9 @@
-"""Grade for a notebook, in a process of its own that cells cannot change.
+"""Grade for a notebook, in a separate process that cells cannot change.
 
     python -m grader.notebook.worker EXERCISE FOLDER
 
-It prints progress on standard error, one line each, and the verdict as JSON on standard output: {"points": {id:
-number}, "reasons": {id: text}, "text": the whole verdict, "html": the same as HTML, "passed": bool}.
+It prints its progress line by line to standard error, and the verdict as JSON to standard output: {"points": {id:
+number}, "reasons": {id: text}, "text": the full verdict, "html": the same as HTML, "passed": bool}.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def opened(exercise: Exercise, folder: Path) -> Submission:
 
 
 def reason(outcome: Outcome) -> str:
-    """Return a check as several lines of plain text: its status and, if it did not pass, the reason."""
+    """Return the outcome of a check as lines of plain text: its status and, if it did not pass, the reason."""
     sign = {Status.PASSED: "✓", Status.FAILED: "✗", Status.SKIPPED: "-", Status.ERROR: "!"}[outcome.status]
     points = f"  {outcome.points:g}/{outcome.max:g}" if outcome.max else ""
     if outcome.hidden:
@@ -57,7 +57,7 @@ def reason(outcome: Outcome) -> str:
 
 
 def to_data(graded: Graded, *, html: bool) -> dict[str, object]:
-    """Return the verdict as JSON."""
+    """Return the verdict as a dictionary, ready for JSON."""
     from rich.console import Console
 
     from grader.report import terminal
