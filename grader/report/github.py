@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 MOST_SUMMARY = 900_000
-"""Bytes. GitHub allows one MiB per step."""
+"""The maximum size of a summary (bytes). GitHub allows one MiB per step."""
 MOST_ANNOTATIONS = 10
 """The maximum number of annotations of each kind per step. GitHub does not show more."""
 LONGEST = 300

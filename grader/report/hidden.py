@@ -1,4 +1,4 @@
-"""A report as the student may see it: a hidden check shows only whether it passed.
+"""A report as students may see it: a hidden check shows only whether it passed.
 
 Ids, titles and findings of hidden checks are left out, and so are trials that only hidden checks use.
 """
@@ -25,7 +25,7 @@ def for_students(report: Report) -> Report:
 
 
 def _covered(outcome: Outcome, number: int) -> Outcome:
-    # A hidden check that was not judged counts as not passed, and the reason stays hidden too.
+    # A hidden check that was not judged counts as failed, and the reason stays hidden too.
     status = Status.FAILED if outcome.status is Status.SKIPPED else outcome.status
     verdict = "passed" if status is Status.PASSED else "could not be judged" if status is Status.ERROR else "failed"
     return replace(

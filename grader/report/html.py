@@ -47,7 +47,7 @@ class ShownCheck:
 
     @property
     def title(self) -> str:
-        """The title of the check; a hidden check does not show what it looks at."""
+        """The title of the check. The title of a hidden check does not reveal what it is about."""
         return "Hidden check" if self.outcome.hidden else self.outcome.title
 
     @property

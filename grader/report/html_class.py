@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 LARGEST = 4_000_000
-"""Bytes. No report is this large."""
+"""A file size in bytes. No report is this large."""
 PAGE = "index.html"
 MOST_DIAGNOSES = 5
 BAR = "#1c7ed6"

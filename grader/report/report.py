@@ -32,7 +32,7 @@ class Report:
     seed: int | None
     outcomes: tuple[Outcome, ...]
     seconds: dict[str, float] = field(default_factory=dict)
-    """The wall time of each stage. Two reports are compared without it."""
+    """The wall time of each stage. It is ignored when two reports are compared."""
     recording: str | None = None
     confined: bool = True
     """False if the student's code ran outside of a sandbox, with resource limits only."""
@@ -75,7 +75,7 @@ class Report:
 def report_of(
     evidence: Evidence, outcomes: tuple[Outcome, ...], ros: str, seconds: dict[str, float], *, confined: bool = True
 ) -> Report:
-    """Return the report on judged evidence. `ros` is the name of the ROS 2, and `seconds` the time of each stage."""
+    """Return the report on judged evidence. `ros` names the ROS 2 version; `seconds` is the wall time of each stage."""
     recording = evidence.run.recording
     return Report(
         exercise=evidence.exercise.id,
