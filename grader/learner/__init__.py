@@ -1,1 +1,1 @@
-"""Learning alone: the learner's workspace, the steps, hints and progress."""
+"""Self-study: the learner's workspace, steps, hints and progress."""

@@ -93,7 +93,7 @@ def watch(
 
 
 def _print(text: str) -> None:
-    """Print text. On a terminal, lines are wrapped at words. In a pipe, they are not wrapped."""
+    """Print text. On a terminal, lines are wrapped between words. In a pipe, they are not wrapped."""
     from rich.console import Console
 
     console = Console(highlight=False)

@@ -30,7 +30,7 @@ DEFAULT_WORKSPACE = Path("~/ros2_ws")
 
 @dataclass(frozen=True)
 class StepProgress:
-    """One step: the best points so far, the maximum in that report, and whether the step has passed."""
+    """The progress in one step: the best points so far, the maximum in that report, and whether the step has passed."""
 
     points: float = 0.0
     max: float = 0.0
@@ -60,11 +60,11 @@ class Progress:
         return replace(self, steps={**self.steps, name: step})
 
     def at(self, name: str) -> Progress:
-        """Return a copy with another current step."""
+        """Return a copy with a different current step."""
         return replace(self, current=name, steps={**self.steps, name: self.step(name)})
 
     def graded(self, name: str, report: Report) -> Progress:
-        """Return a copy after a verdict. Points never go down, and a step that has passed stays passed."""
+        """Return a copy that includes a new verdict. Points never go down, and a step that has passed stays passed."""
         before = self.step(name)
         better = report.points >= before.points
         after = replace(

@@ -1,4 +1,4 @@
-"""The steps in order: start one, store a verdict, show the progress."""
+"""The steps of the course: start a step, store a verdict, and show the progress."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ class _Sources(DefaultFilter):
 
 
 def _identity(folder: Path) -> tuple[int, int] | None:
-    """Return the identity of the folder at this path, or None if there is no folder."""
+    """Return the device and the inode of the folder at this path, or None if there is no folder."""
     try:
         status = folder.stat()
     except OSError:
@@ -66,7 +66,7 @@ class Events:
         self._queue: SimpleQueue[Happened] = SimpleQueue()
         self._stop = Event()
         self._saved = Event()
-        # One reader for all folders, because a second one would take keys from the first.
+        # There is one reader for all folders, because a second one would take keys from the first.
         if read_key is not None:
             Thread(target=self._keys, args=(read_key,), daemon=True).start()
 
