@@ -1,1 +1,1 @@
-"""Grade a whole class: many submissions side by side, with each result saved as soon as it is ready."""
+"""Grade a whole class: many submissions in parallel, with each result saved as soon as it is ready."""

@@ -1,4 +1,4 @@
-"""An engine that grades with Dask's workers, on one or many machines.
+"""An engine that grades with Dask workers on one or many machines.
 
 The machines need only this project. Submissions are sent to them as bytes. Each thread of a Dask worker runs one of our
 worker processes (worker.py), so a submission that kills this process does not kill the Dask worker. This module decides

@@ -114,7 +114,7 @@ class Table:
         self._console.print(Text(f"{SIGNS[kind]} {_line(result, self._several)}", style=STYLES[kind]))
 
     def render(self) -> RenderableType:
-        """Return what the terminal shows now."""
+        """Return what the terminal should show now."""
         from rich.console import Group
         from rich.progress_bar import ProgressBar
         from rich.table import Table as Grid

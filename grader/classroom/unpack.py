@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 MOST_BYTES = 96 * 1024 * 1024
-"""The maximum unpacked size: 1.5 times what is read of a package, to leave space for build/ and install/."""
+"""The maximum unpacked size: 1.5 times the size limit of a package, to leave space for build/ and install/."""
 MOST_ENTRIES = 20_000
 MOST_DEPTH = 40
 MOST_PATH_BYTES = 1000

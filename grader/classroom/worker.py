@@ -1,4 +1,4 @@
-"""A worker: a process that grades one task after another, so that Python's imports are done only once.
+"""A worker: a process that grades one task after another, so that Python modules are imported only once.
 
 `python -m grader.classroom.worker DESCRIPTOR`. No student code runs in this process. It runs in the cells that the
 worker starts. If the process that started the worker exits, the worker and everything that it started exit too.
