@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 CHANNELS = ("shell", "control", "stdin", "iopub")
-"""The channels. A frame names its channel by the index in this list."""
+"""The channels. A frame identifies its channel by the index in this list."""
 ORDER = len(CHANNELS)
 """The channel of the first frame, which gives the bridge the key for the signatures."""
 CHUNK = 1024 * 1024

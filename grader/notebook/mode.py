@@ -1,4 +1,4 @@
-"""How a notebook is being run: for a reader, or by nbgrader, for which it must be fast and print little."""
+"""How a notebook is being run: for a reader, or by nbgrader, which needs it to be fast and quiet."""
 
 from __future__ import annotations
 
