@@ -1,1 +1,1 @@
-"""Which ROS 2 is used, the environment of child processes, and the ROS 2 packages that are installed."""
+"""The ROS 2 installation in use, the environment of child processes, and the installed ROS 2 packages."""

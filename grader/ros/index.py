@@ -1,6 +1,6 @@
-"""Packages, executables and types that are installed, read from the ament index of each prefix on AMENT_PREFIX_PATH.
+"""The installed packages, executables and types, as read from the ament index of each prefix on AMENT_PREFIX_PATH.
 
-It only reads files, so the verbs that use it do not need rclpy.
+This module only reads files, so the verbs that use it do not need rclpy.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def prefixes() -> list[Path]:
 
 
 def _resources(kind: str) -> dict[str, Path]:
-    """Return the packages that have a resource of this kind, each with its first prefix; sorted by name."""
+    """Return the packages that have a resource of this kind, sorted by name, each with its first prefix."""
     found: dict[str, Path] = {}
     for prefix in prefixes():
         for file in _entries(prefix / _INDEX / kind):
@@ -33,12 +33,12 @@ def _resources(kind: str) -> dict[str, Path]:
 
 
 def packages() -> dict[str, Path]:
-    """Return the name and the prefix of each package, sorted by name."""
+    """Return the names and prefixes of all packages, sorted by name."""
     return _resources("packages")
 
 
 def contents(kind: str) -> dict[str, list[str]]:
-    """The lines of each package's entry in one part of the index, as "rclcpp_components"; sorted by package."""
+    """Return the lines of each package's entry in a part of the index, such as "rclcpp_components", by package."""
     return {
         name: (prefix / _INDEX / kind / name).read_text("utf-8", "replace").splitlines()
         for name, prefix in _resources(kind).items()
@@ -49,8 +49,8 @@ def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
     """Return the prefix of a package.
 
     Raises:
-        Ros2Error: there is no such package. The message is `unknown` with the most similar name among `likely`, or
-    among all names.
+        Ros2Error: there is no such package. The message is `unknown` and the most similar name from `likely`, or from
+            all packages if `likely` is empty.
     """
     found = packages()
     if package not in found:
@@ -59,7 +59,7 @@ def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
 
 
 def executables(package: str, unknown: str) -> list[Path]:
-    """Return the executables of a package that `ros2 run` can start, sorted by path.
+    """Return the executables in a package that `ros2 run` can start, sorted by path.
 
     Raises:
         Ros2Error: there is no such package. The message is `unknown`.
@@ -69,12 +69,12 @@ def executables(package: str, unknown: str) -> list[Path]:
 
 
 def interface_packages() -> dict[str, Path]:
-    """Return the name and the prefix of each package that has messages, services or actions."""
+    """Return the names and prefixes of all packages that have messages, services or actions."""
     return _resources("rosidl_interfaces")
 
 
 def interfaces(package: str) -> list[str]:
-    """Return the interfaces of a package, sorted, for example "geometry_msgs/msg/Twist"; empty if it has none.
+    """Return the sorted interfaces of a package, for example "geometry_msgs/msg/Twist". The list may be empty.
 
     Raises:
         Ros2Error: there is no such package.
@@ -110,7 +110,7 @@ def interface_file(name: str) -> Path:
     prefix = prefix_of(parts[0], f"Unknown package '{parts[0]}'", interface_packages())
     found = prefix / "share" / parts[0] / parts[1] / f"{parts[2]}.{parts[1]}"
     if not found.is_file():
-        # Compare only the last part of the name, since the other parts are equal in all of them.
+        # Compare only the last part of the name, since the other parts are the same in all candidates.
         known = interfaces(parts[0]) if parts[0] in interface_packages() else []
         ends = {candidate.rsplit("/", 1)[1]: candidate for candidate in known}
         hint = did_you_mean(parts[2], ends).replace("Did you mean '", f"Did you mean '{parts[0]}/{parts[1]}/")
@@ -120,7 +120,7 @@ def interface_file(name: str) -> Path:
 
 
 def _meant(name: str) -> list[str]:
-    """Return the full names of a short name: "Twist" or "geometry_msgs/Twist" -> "geometry_msgs/msg/Twist"."""
+    """Return the full names for a short name: "Twist" or "geometry_msgs/Twist" -> "geometry_msgs/msg/Twist"."""
     package, _, last = name.rpartition("/")
     found = [full for full in all_interfaces() if full.endswith(f"/{last}") and full.startswith(package)]
     return found or all_interfaces()

@@ -1,7 +1,7 @@
-"""Which ROS 2 is installed, and the environment that child processes need for it.
+"""Find the ROS 2 installation, and create the environment that child processes need for it.
 
-If a ROS 2 Jazzy is sourced, it is used; otherwise the wheels in this Python's environment are. The grader's own process
-never imports rclpy: everything of ROS 2 runs in child processes, with the environment made here.
+If a ROS 2 Jazzy is sourced, it is used. Otherwise, the wheels in this Python's environment are used. The grader's own
+process never imports rclpy. All ROS 2 code runs in child processes, with the environment that this module creates.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 DISTRO = "jazzy"
 SEARCHED = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH")
-"""The search paths that lead to ROS 2 and to overlays."""
+"""The variables with search paths for ROS 2 and overlays."""
 FASTDDS_PROFILE = Path(__file__).with_name("fastdds.xml")
 _UNWATCHED = (
     "ROS_LOG_DIR",
@@ -33,20 +33,20 @@ _UNWATCHED = (
     "PYTHONUNBUFFERED",
     "OPENBLAS_NUM_THREADS",
 )
-"""Variables for a run in a trial. Nodes that users start themselves get the users' own settings."""
+"""Variables that are set only in a trial. Nodes that users start themselves use the users' own settings."""
 _THEIRS = frozenset(
     {
         *("HOME", "LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"),
         *("FASTDDS_BUILTIN_TRANSPORTS", "FASTRTPS_DEFAULT_PROFILES_FILE"),
     }
 )
-"""What stays as the user has set it."""
+"""Variables that keep the values that the user has set."""
 _PYTHON_LIB = Path(f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages")
 
 
 @dataclass(frozen=True)
 class Ros:
-    """A ROS 2 installation; the lists are in search order."""
+    """A ROS 2 installation. The lists of paths are in search order."""
 
     kind: Literal["sourced", "wheels"]
     version: str
@@ -62,7 +62,7 @@ class Ros:
 
     @property
     def name(self) -> str:
-        """The name in a report. It has none of this machine's paths."""
+        """The name in a report. It contains no paths of this machine."""
         return f"Jazzy (rclpy {self.version}, {'sourced' if self.kind == 'sourced' else 'wheels'})"
 
     @property
@@ -72,7 +72,7 @@ class Ros:
 
 
 def find_ros(env: Mapping[str, str] = os.environ) -> Ros:
-    """Return the ROS 2 Jazzy to use: the sourced one, or else the wheels beside this Python.
+    """Return the ROS 2 Jazzy to use: the sourced installation, or else the wheels in this Python's environment.
 
     Raises:
         MachineError: there is neither.
@@ -84,7 +84,7 @@ def find_ros(env: Mapping[str, str] = os.environ) -> Ros:
 
 
 def _why_none(env: Mapping[str, str]) -> str:
-    """Return why there is no ROS 2 Jazzy, and what to type."""
+    """Return a message that explains why no ROS 2 Jazzy was found and what to type."""
     made = made_for(Path(sys.prefix))
     if made is not None:
         return (
@@ -109,10 +109,10 @@ def made_for(prefix: Path) -> str | None:
 
 
 def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: int | None = 0) -> dict[str, str]:
-    """Return the whole environment of a child process; nothing from the caller's environment gets in.
+    """Return the whole environment of a child process. It contains nothing from the caller's environment.
 
-    `overlays` are install folders of packages (install/<package>), searched first. `home` must be writable: HOME,
-    ROS_LOG_DIR and TMPDIR are in it. `domain` is None in a room (grader.sandbox), which has a network of its own.
+    `overlays` are install folders of packages (install/<package>), which are searched first. `home` must be writable,
+    since HOME and ROS_LOG_DIR are in it. `domain` is None in a room (grader.sandbox), which has its own network.
     """
     local = [*overlays, *([ros.underlay] if ros.underlay else [])]
     env = {
@@ -122,28 +122,28 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
         "PYTHONNOUSERSITE": "1",
         # Sets and dictionaries have the same order in every run, so that equal submissions get equal reports.
         "PYTHONHASHSEED": "0",
-        # Every printed line arrives at once, as on a terminal.
+        # Every printed line arrives immediately, as on a terminal.
         "PYTHONUNBUFFERED": "1",
-        # numpy, which geometry_msgs imports, starts one thread per processor; they busy-wait for 0.1 s.
+        # numpy, which geometry_msgs imports, would start one thread per processor. These threads busy-wait for 0.1 s.
         "OPENBLAS_NUM_THREADS": "1",
         "ROS_DISTRO": DISTRO,
         "ROS_VERSION": "2",
         "ROS_PYTHON_VERSION": "3",
         "ROS_LOG_DIR": str(home / "log"),
         "ROS_DOMAIN_ID": str(domain or 0),
-        # LOCALHOST turns shared memory on again despite the transports below; a room and a cell do not share memory.
+        # LOCALHOST enables shared memory again despite the transports below, but a room and a cell share no memory.
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET" if domain is None else "LOCALHOST",
         "RCUTILS_COLORIZED_OUTPUT": "0",
         "AMENT_PREFIX_PATH": os.pathsep.join(map(str, [*local, *ros.prefixes])),
         "CMAKE_PREFIX_PATH": os.pathsep.join(map(str, [*local, *ros.prefixes])),
         "LD_LIBRARY_PATH": os.pathsep.join(map(str, [*(p / "lib" for p in local), *ros.library_path])),
         "PYTHONPATH": os.pathsep.join(map(str, [*(p / _PYTHON_LIB for p in local), *ros.python_path])),
-        # The .pth file of the wheels would start every interpreter a second time, and mix their libraries with a
-        # sourced ROS.
+        # Otherwise, the .pth file of the wheels would start every interpreter a second time, and mix their libraries
+        # with those of a sourced ROS.
         "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1",
-        # `msg.linear.x = 2` gives one clear error instead of garbage on the wire.
+        # `msg.linear.x = 2` raises a clear error instead of sending garbage.
         "ROS_PYTHON_CHECK_FIELDS": "1",
-        # Shared memory would need a common /dev/shm, which a sandboxed node does not have.
+        # Shared memory requires a common /dev/shm, which a sandboxed node does not have.
         "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
         "FASTRTPS_DEFAULT_PROFILES_FILE": str(FASTDDS_PROFILE),
         "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp",
@@ -152,20 +152,20 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
 
 
 def domain_of(uid: int) -> int:
-    """Return a user's ROS domain id, 1 to 101. Users whose user ids are close together never share a domain.
+    """Return a user's ROS domain id, from 1 to 101. Users whose user ids are close together never share a domain.
 
-    101 is the highest domain whose ports are below Linux's range of ephemeral ports. 0 is the default domain of ROS 2.
+    The domain 101 is the highest with ports below Linux's range of ephemeral ports. ROS 2 uses domain 0 by default.
     """
     return 1 + uid % 101
 
 
 def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int | None = None) -> dict[str, str]:
-    """Return the environment of a node that a user starts: the user's own environment, with what ROS 2 needs added.
+    """Return the environment of a node that a user starts: the user's own, extended by what ROS 2 needs.
 
-    What the user has set stays theirs, workspaces that they sourced are searched first. `domain` is the one to use,
-    else what they have set. Else it is one of the user's own, since classmates on one machine must not drive each
-    other's turtles. A ROS 2 that they sourced keeps its own rule, or the programs of this environment and those of a
-    terminal where nothing but that ROS 2 was sourced would never meet: domain 0, as far as its setup.bash says.
+    The user's own settings are kept, and workspaces that the user sourced are searched first. The domain is `domain`
+    if it is not None, or else the domain that the user has set. If neither is given, each user gets a separate domain,
+    since classmates on one machine must not drive each other's turtles. With a sourced ROS 2, the domain is then 0, its
+    own default. Otherwise, nodes in this environment could not reach nodes in terminals that only source that ROS 2.
     """
     home = Path(env.get("HOME", "/"))
     own = 0 if ros.kind == "sourced" else domain_of(os.getuid())
@@ -187,7 +187,7 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
 
 
 def who_hears(env: Mapping[str, str]) -> str:
-    """Return a message for the user: the domain of the nodes in an environment, and who can reach them."""
+    """Return a message for the user that says which domain an environment's nodes use and who can reach them."""
     domain = env.get("ROS_DOMAIN_ID") or "0"
     reach = env.get("ROS_AUTOMATIC_DISCOVERY_RANGE") or "SUBNET"
     if reach == "LOCALHOST" or env.get("ROS_LOCALHOST_ONLY") == "1":
@@ -198,7 +198,7 @@ def who_hears(env: Mapping[str, str]) -> str:
 
 
 def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str:
-    """Return a search path: the user's own entries first, without those of another ROS 2 or of an older underlay."""
+    """Return a search path with the user's own entries first. Omit those of another ROS 2 or an older underlay."""
     ours = [entry for entry in needed.get(name, "").split(os.pathsep) if entry]
     prefixes = [Path(entry) for entry in env.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
     current = needed["AMENT_PREFIX_PATH"].split(os.pathsep)
@@ -209,7 +209,7 @@ def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str
 
 
 def _users_path(ros: Ros, env: Mapping[str, str]) -> str:
-    """Return PATH with our commands: after those of a sourced ROS 2, or else first, so that `python3` has rclpy."""
+    """Return PATH with our commands added: last with a sourced ROS 2, or else first, so that `python3` has rclpy."""
     path = env.get("PATH", "/usr/local/bin:/usr/bin:/bin")
     ours = str(Path(sys.prefix, "bin"))
     if ours in path.split(os.pathsep):
@@ -225,7 +225,7 @@ def _sourced(env: Mapping[str, str]) -> Ros | None:
     if prefix is None:
         return None
 
-    # Take only the installation's own entries: a workspace that a student sourced must not hide anything.
+    # Use only the installation's own entries, since a workspace that a student sourced must not hide anything.
     def own(variable: str) -> tuple[Path, ...]:
         entries = [Path(p) for p in env.get(variable, "").split(os.pathsep) if p]
         return tuple(p for p in entries if p.is_relative_to(prefix))
@@ -260,7 +260,7 @@ def _has(prefix: Path, package: str) -> bool:
 
 
 def has_turtlesim(ros: Ros) -> bool:
-    """Return whether this ROS 2 has its own turtlesim, so that ours need not be built."""
+    """Return whether this ROS 2 has its own turtlesim. If so, ours does not have to be built."""
     return any(_has(prefix, "turtlesim") for prefix in ros.prefixes)
 
 

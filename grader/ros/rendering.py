@@ -16,17 +16,20 @@ ARRAY = re.compile(r"sequence<(?P<sequence>.+?)(?:, (?P<most>\d+))?>|(?P<array>.
 
 @dataclass(frozen=True)
 class Form:
-    """How much of a message is shown: `limit` elements or characters (None: all), with or without arrays, strings."""
+    """How much of a message is shown: up to `limit` elements or characters, with or without arrays and strings.
+
+    If `limit` is None, everything is shown.
+    """
 
     limit: int | None = TRUNCATED_AT
     arrays: bool = True
     strings: bool = True
     flow: bool = False
-    """Whether arrays are on one line: "[1, 2]"."""
+    """Whether an array is on one line, as in "[1, 2]"."""
 
 
 class _Dumper(yaml.SafeDumper):  # type: ignore[misc]
-    """Writes the fields of a message on lines of their own in flow style too, as the real `ros2` does."""
+    """Writes each field of a message on a separate line, even in flow style, as the real `ros2` does."""
 
 
 _Dumper.add_representer(
@@ -44,7 +47,7 @@ def is_message(value: Any) -> bool:  # noqa: ANN401
 
 
 def plain(value: Any, form: Form | None = None, declared: str = "") -> Any:  # noqa: ANN401
-    """Return a message as dictionaries, lists, numbers and strings; `declared` is the type of the field."""
+    """Convert a message to dictionaries, lists, numbers and strings. `declared` is the type of the field."""
     form = form or Form()
     if is_message(value):
         types = value.get_fields_and_field_types()
@@ -54,7 +57,7 @@ def plain(value: Any, form: Form | None = None, declared: str = "") -> Any:  # n
     if isinstance(value, str):
         return _cut(value, form.limit) if form.strings else _length(value)
     if isinstance(value, bool) or not hasattr(value, "__len__"):
-        # Make a Python number of a numpy number first.
+        # Convert a numpy number to a Python number.
         return value.item() if hasattr(value, "item") else value
     if not form.arrays and declared:
         return _kind(declared, len(value))
@@ -78,7 +81,7 @@ def dumped(values: Any, form: Form) -> str:  # noqa: ANN401
 
 
 def on_one_line(value: Any) -> str:  # noqa: ANN401
-    """Return a message as it is typed after `ros2 topic pub`: "{linear: {x: 0.0}}"."""
+    """Return a message in the form that is typed after `ros2 topic pub`, as in "{linear: {x: 0.0}}"."""
     text: str = yaml.safe_dump(
         plain(value), sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=True
     )
@@ -86,7 +89,7 @@ def on_one_line(value: Any) -> str:  # noqa: ANN401
 
 
 def to_csv(value: Any, form: Form | None = None, declared: str = "") -> str:  # noqa: ANN401
-    """Return the values of a message in the order of its fields, with commas in between."""
+    """Return the values of a message in the order of its fields, separated by commas."""
     form = form or Form()
     if is_message(value):
         types = value.get_fields_and_field_types()

@@ -23,7 +23,7 @@ COMMANDS = ("ros2", "rqt_graph")
 def users_environment(
     domain: int | None, tell: Callable[[str], None], env: Mapping[str, str] = os.environ
 ) -> dict[str, str]:
-    """Return the user's environment with ROS 2 in it. It builds turtlesim's interfaces first if necessary.
+    """Return the user's environment with ROS 2 added. Build the turtlesim interfaces first if necessary.
 
     Raises:
         UsageError: there is no such domain.
@@ -37,14 +37,14 @@ def users_environment(
 
 
 def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sourced: bool = False) -> str:
-    """Shell code, for bash, zsh and sh, that turns `env` into `wanted`, and completes the words of our commands.
+    """Return code for bash, zsh and sh that turns `env` into `wanted` and sets up completion for our commands.
 
-    `sourced`: the ROS 2 is not ours, and may have an rqt_graph of its own.
+    `sourced` means that the ROS 2 is not ours and may have its own rqt_graph.
     """
     lines = [f"# For `source <(grader env)`: ROS 2 Jazzy, in domain {wanted['ROS_DOMAIN_ID']}."]
     lines += [f"export {name}={shlex.quote(value)}" for name, value in wanted.items() if env.get(name) != value]
     lines += [
-        # zsh has no words to complete before its own set-up ran.
+        # zsh cannot complete words before its own completion system has been initialized.
         'if [ -n "${ZSH_VERSION-}" ]; then',
         "  whence compdef > /dev/null || { autoload -Uz compinit && compinit -u; }",
         "fi",
@@ -56,16 +56,16 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
         f'elif [ -n "${{BASH_VERSION-}}" ]; then eval {shlex.quote(_completion_of_grader("bash"))}; fi',
     ]
     if sourced:
-        # The one that a sourced ROS 2 may have comes first on PATH, and does not know --text and --output.
+        # A sourced ROS 2 may have an rqt_graph that comes first on PATH and does not know --text and --output.
         lines.append(f'rqt_graph() {{ {shlex.quote(str(Path(sys.prefix, "bin/rqt_graph")))} "$@"; }}')
     return "\n".join(lines) + "\n"
 
 
 def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> None:
-    """Replace this process by the user's shell, which sets up ROS 2 as in `wanted` after its start-up files."""
+    """Replace this process with the user's shell, which sets up ROS 2 as in `wanted` after its start-up files."""
     shell = env.get("SHELL") or "/bin/bash"
     argv, variables = [shell, "-i"], {}
-    # After the start-up files, because they may set PATH or source a ROS 2.
+    # Run our code after the start-up files, because they may set PATH or source a ROS 2.
     ours = f'eval "$({shlex.quote(str(Path(sys.prefix, "bin/grader")))} env --domain {wanted["ROS_DOMAIN_ID"]})"\n'
     if Path(shell).name == "bash":
         argv = [shell, "--rcfile", _start_up(f"[ -f ~/.bashrc ] && . ~/.bashrc\n{ours}", "bashrc"), "-i"]

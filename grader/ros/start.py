@@ -1,4 +1,4 @@
-"""The start of our commands: the real ones have precedence, and ROS 2 is in the environment."""
+"""How our commands start: the real commands take precedence, and ROS 2 is added to the environment."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _STARTED_AGAIN = "_GRADER_ROS2_STARTED_AGAIN"
 
 
 def hand_over(command: str, package: str) -> None:
-    """Replace this process by the real command if a sourced ROS 2 has this package, whatever PATH says; else return."""
+    """Replace this process with the real command if a sourced ROS 2 has this package, regardless of PATH."""
     ours = Path(sys.argv[0])
     for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
         theirs = Path(prefix, "bin", command)
@@ -27,7 +27,7 @@ def hand_over(command: str, package: str) -> None:
 
 
 def see_to_environment(needed: Collection[str]) -> None:
-    """Start this command again with ROS 2 in the environment, unless the packages are there already.
+    """Start this command again with ROS 2 in the environment, unless the needed packages can be found already.
 
     Raises:
         MachineError: there is no ROS 2.

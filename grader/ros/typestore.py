@@ -1,4 +1,4 @@
-"""The message types as rosbags knows them: those of ROS 2 Jazzy, and others from the .msg files as installed."""
+"""The message types for rosbags: those of ROS 2 Jazzy, and others from installed .msg files."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 
 def jazzy_types() -> Typestore:
-    """The types that ROS 2 Jazzy comes with; turtlesim's are not among them."""
+    """Return the types that ROS 2 Jazzy includes. The types of turtlesim are not among them."""
     return get_typestore(Stores.ROS2_JAZZY)
 
 
 def register(store: Typestore, name: str, prefixes: Sequence[Path]) -> None:
-    """Add a type to the store, with the types that it is made of, from the .msg files below the prefixes.
+    """Add a type and the types of its fields to the store, as defined by the .msg files under the prefixes.
 
-    The store stays as it is if there is no such file.
+    The store does not change if there is no such file.
     """
     if name in store.types:
         return

@@ -1,4 +1,4 @@
-"""The underlay: our turtlesim package, built once and kept, for a ROS 2 that has no turtlesim."""
+"""The underlay: our turtlesim package for a ROS 2 that has no turtlesim. It is built once and then kept."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ _LOG_LINES = 15
 
 
 def _say_nothing(_: str) -> None:
-    """Discard the message, since nobody reads it."""
+    """Discard the message, because nobody reads it."""
 
 
 def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _say_nothing) -> installation.Ros:
-    """Return this ROS 2 with the turtlesim interfaces in it, and build them first if necessary (see `ensure`).
+    """Return this ROS 2 with the turtlesim interfaces added. Build them first if necessary (see `ensure`).
 
     Raises:
         MachineError: they could not be built.
@@ -44,13 +44,13 @@ def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _say_not
 
 
 def ensure(ros: installation.Ros, tell: Callable[[str], None] = _say_nothing) -> Path | None:
-    """Return the prefix of our turtlesim, and build it first if necessary; None if this ROS 2 has its own.
+    """Return the prefix of our turtlesim, or None if this ROS 2 has its own. Build our turtlesim first if necessary.
 
-    A build takes about ten seconds; it passes its progress to `tell` line by line. If the build exists already, this
-    takes about a millisecond.
+    A build takes about ten seconds and passes its progress to `tell` line by line. If there is a build already, this
+    function takes about a millisecond.
 
     Raises:
-        MachineError: something to build with is missing, the build failed, or the cache cannot be written.
+        MachineError: a build tool is missing, the build failed, or the cache cannot be written.
     """
     if installation.has_turtlesim(ros):
         return None
@@ -76,7 +76,7 @@ def ensure(ros: installation.Ros, tell: Callable[[str], None] = _say_nothing) ->
 
 
 def _name(ros: installation.Ros, compiler: Path | None) -> str:
-    """Name the build after everything that it depends on, without starting a process."""
+    """Return a name for the build that depends on all its inputs. This does not start a process."""
     return f"turtlesim-{_key_of_sources(ros)}-{_key_of_compiler(compiler)}"
 
 
@@ -92,7 +92,8 @@ def _key_of_sources(ros: installation.Ros) -> str:
 
 
 def _key_of_compiler(compiler: Path | None) -> str:
-    # Asking the compiler for its version would take longer than all the rest. A new compiler has another time or size.
+    # Asking the compiler for its version would take longer than everything else. A new compiler has a different
+    # modification time or size.
     if compiler is None:
         return "none"
     binary = compiler.resolve()
@@ -106,7 +107,7 @@ def _compiler(search: str) -> Path | None:
 
 
 def _built_by_another_compiler(ros: installation.Ros) -> Path | None:
-    """Find a finished build whose compiler has been removed since then; the build still works."""
+    """Return a finished build whose compiler has since been removed. The build still works."""
     builds = xdg.cache().glob(f"turtlesim-{_key_of_sources(ros)}-*")
     return max(builds, key=lambda build: build.stat().st_mtime, default=None)
 
@@ -138,7 +139,7 @@ def _listed(needs: list[packages.Need]) -> str:
 
 @contextmanager
 def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
-    """Wait until no other process is building; the system frees the lock when its process ends."""
+    """Wait until no other process is building. The system releases the lock when the process that holds it exits."""
     xdg.cache().mkdir(parents=True, exist_ok=True)
     with (xdg.cache() / "turtlesim.lock").open("w") as lock:
         try:
@@ -150,7 +151,7 @@ def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
 
 
 def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> None:
-    # These are left from builds that were killed: only the holder of the lock builds.
+    # Any such folder is left over from a build that was killed, since only the process that holds the lock builds.
     for leftover in prefix.parent.glob(f"{_TEMPORARY}*"):
         shutil.rmtree(leftover, ignore_errors=True)
     tell("Building the turtlesim interfaces, once; this takes about ten seconds.")
@@ -172,7 +173,7 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
         ]
         _run(configure, env, tell)
         _run(["cmake", "--build", str(folder / "build"), "--parallel", str(os.cpu_count() or 1)], env, tell)
-        # Install with DESTDIR, so that all paths inside are the final ones.
+        # Install with DESTDIR, so that the installed files contain the final paths.
         _run(["cmake", "--install", str(folder / "build")], {**env, "DESTDIR": f"{folder}/staged"}, tell)
         # Compile the Python files here, since other users may not be allowed to write into the folder.
         compiling = interpreter(
@@ -188,7 +189,7 @@ def _run(command: list[str], env: dict[str, str], tell: Callable[[str], None]) -
     reported = 0
     with subprocess.Popen(
         command,
-        # CMake and make start Python themselves, so they run in a folder that has no modules of others.
+        # CMake and make start Python themselves, so they run in a folder without any foreign modules.
         cwd=env["HOME"],
         env=env,
         stdin=subprocess.DEVNULL,
@@ -224,7 +225,7 @@ def _percent(line: str) -> int | None:
 
 
 def _make_readable(folder: Path) -> None:
-    """Let every user read the files (a+rX), whatever the umask is: a trial may run as another user."""
+    """Let every user read the files (a+rX) regardless of the umask, because a trial may run as another user."""
     for path in [folder, *folder.rglob("*")]:
         if not path.is_symlink():
             mode = path.stat().st_mode

@@ -1,4 +1,4 @@
-"""Values of messages: fill a message with what a user typed as YAML, and get parts of a message by name."""
+"""Values of messages: fill a message with values that a user typed as YAML, and get parts of a message by name."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ Stamper = Callable[[Any], None]
 
 
 def load_type(name: str, kind: str, what: str = "message type", text: str = "") -> Any:  # noqa: ANN401
-    """Return the Python class of an interface, such as "geometry_msgs/msg/Twist"; the middle part is optional.
+    """Return the Python class of an interface such as "geometry_msgs/msg/Twist". The middle part is optional.
 
     Raises:
-        Ros2Error: it is not installed. The message uses `what` ("message type"), or is `text`.
+        Ros2Error: the interface is not installed. The message is `text`, or contains `what` if `text` is empty.
     """
     parts = name.split("/")
     package, last = parts[0], parts[-1]
@@ -37,10 +37,10 @@ def load_type(name: str, kind: str, what: str = "message type", text: str = "") 
 
 
 def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
-    """Return the values that a user typed, such as "{linear: {x: 2.0}}"; an empty string gives an empty dictionary.
+    """Return the values that a user typed, such as "{linear: {x: 2.0}}". An empty string means an empty dictionary.
 
     Raises:
-        Ros2Error: the string is not YAML, or it is not a dictionary although the caller needs one.
+        Ros2Error: the string is not valid YAML, or it is not a dictionary but `dictionary` is true.
     """
     try:
         values = yaml.safe_load(text)
@@ -64,7 +64,7 @@ def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
 
 
 class MisfitError(Ros2Error):
-    """The values do not fit the message: the error that Python would raise, with a hint."""
+    """The values do not fit the message. `cause` is the error that Python would raise, and `help` is a hint."""
 
     def __init__(self, cause: Exception, hint: str = "") -> None:
         self.cause = cause
@@ -73,9 +73,10 @@ class MisfitError(Ros2Error):
 
 
 def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:  # noqa: ANN401
-    """Set the fields of a message that `values` contains, and return the message; the other fields keep their values.
+    """Set the fields of a message that are in `values`, and return the message. Other fields keep their values.
 
-    With `stamps`, a header may be "auto" and a time may be "now": the functions that set them are added to this list.
+    With `stamps`, a header may be "auto" and a time may be "now". The functions that set these fields are added to the
+    list.
 
     Raises:
         MisfitError: there is no such field, or the value does not fit the field.
@@ -119,7 +120,7 @@ def _converted(value: Any, declared: str, current: Any, stamps: list[Stamper] | 
 
 
 def _scalar(value: Any, declared: str) -> Any:  # noqa: ANN401
-    """Return a value of a primitive type; YAML reads 1e-3 as a string and 2 as an integer, but both are numbers."""
+    """Return a value of a primitive type. YAML reads 1e-3 as a string and 2 as an integer; both are valid floats."""
     if isinstance(value, (dict, list)) or value is None:
         wrong = f"expected a single value, not {value!r}"
         raise TypeError(wrong)
@@ -143,7 +144,7 @@ def _scalar(value: Any, declared: str) -> Any:  # noqa: ANN401
 def field(value: Any, path: str, *, complete: bool = True) -> Any:  # noqa: ANN401
     """Return a part of a message, such as "linear.x" or "poses[0].position".
 
-    If the message is not `complete`, elements of arrays may be missing; then the result is None.
+    If the message is not `complete`, elements of arrays may be missing. In this case, the result is None.
 
     Raises:
         Ros2Error: there is no such field.
