@@ -1,4 +1,4 @@
-"""A node for one verb, and waiting until it has discovered the whole graph, with a deadline."""
+"""Create a node for one verb, and wait until it has discovered the whole graph, up to a deadline."""
 
 from __future__ import annotations
 
@@ -25,17 +25,18 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 QUIET_S = 0.2
-"""The graph has settled when nothing new has arrived for this long."""
+"""The graph has settled if nothing new has arrived for this long."""
 DEADLINE_S = 4.0
-"""How long to wait for participants whose ports are open but that send nothing, such as a stopped process. A node
-without our profile whose answer was lost announces itself 3 s later (leaseAnnouncement), and then sends its endpoints.
+"""How long to wait for participants that have open ports but send nothing, such as a stopped process. If a node does
+not use our profile and its answer is lost, it announces itself again after 3 s (leaseAnnouncement), and then sends its
+endpoints.
 """
 NOTHING_THERE_S = 0.5
-"""How long to listen if the number of participants is unknown: as long as the real `ros2` does."""
+"""How long to listen if the number of participants is unknown. The real `ros2` waits equally long."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
-"""The Fast DDS profile of the commands' nodes, for the loopback interface."""
+"""The Fast DDS profile for the nodes of commands on the loopback interface."""
 PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")
-"""The same for a node that runs for hours."""
+"""The same profile for a node that runs for hours."""
 _RANGE, _PROFILE = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"
 _POLL_S = 0.01
 _WAKE_S = 0.1
@@ -48,9 +49,9 @@ _UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
 @contextmanager
 def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bool = False) -> Iterator[Node]:
-    """Create a hidden node without services. It leaves the graph properly, so that others do not keep it in theirs.
+    """Create a hidden node without services, and remove it from the graph properly when the context exits.
 
-    A `patient` node announces itself less often: it runs for hours.
+    A `patient` node announces itself less often, because it runs for hours.
 
     Raises:
         Ros2Error: the node could not be created, for example because the domain id is wrong.
@@ -58,8 +59,8 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
     _check_domain()
     _leave_shared_memory_out(PATIENT_PROFILE if patient else LOOPBACK_PROFILE)
     _leave_generator_out()
-    # A look at the graph needs no log file. Python handles the signals, since rclpy's handlers would shut down in the
-    # middle of a verb.
+    # No log file is needed to look at the graph. Python handles the signals, since rclpy's handlers would shut down
+    # the context in the middle of a verb.
     arguments = ["--ros-args", "--disable-external-lib-logs"]
     try:
         rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
@@ -88,7 +89,7 @@ def cli_node(name: str | None = None, *, use_sim_time: bool = False, patient: bo
 
 
 def _leave_shared_memory_out(profile: Path) -> None:
-    """Set the profile's variables. loopback.xml says why these nodes avoid the shared memory that LOCALHOST adds."""
+    """Set the variables for the profile. loopback.xml explains why these nodes avoid the shared memory of LOCALHOST."""
     if os.environ.get(_RANGE) == "LOCALHOST" and os.environ.get(_PROFILE) == str(FASTDDS_PROFILE):
         os.environ.update({_RANGE: "SYSTEM_DEFAULT", _PROFILE: str(profile)})
 
@@ -99,9 +100,9 @@ def _this_machine_only() -> bool:
 
 
 def _leave_generator_out() -> None:
-    """Import rosidl_generator_py without its templates and parser: they take a seventh of a verb's start.
+    """Import rosidl_generator_py without its templates and parser, which take a seventh of a verb's start-up time.
 
-    Message modules need only one small function of it. The package itself omits the rest if `em` is not installed.
+    Message modules need only one small function from it. The package itself omits the rest if `em` is not installed.
     """
     if "em" not in sys.modules:
         sys.modules["em"] = None  # type: ignore[assignment]
@@ -110,7 +111,7 @@ def _leave_generator_out() -> None:
 
 
 def _check_domain() -> None:
-    """Raise Ros2Error for a wrong domain id; Fast DDS would end the process."""
+    """Raise Ros2Error if the domain id is invalid, because Fast DDS would terminate the process."""
     text = os.environ.get("ROS_DOMAIN_ID", "") or "0"
     if not text.isdecimal() or int(text) > HIGHEST_DOMAIN:
         message = f"ROS_DOMAIN_ID is '{text}'; a whole number from 0 to {HIGHEST_DOMAIN} was expected"
@@ -118,7 +119,7 @@ def _check_domain() -> None:
 
 
 class Settling:
-    """Waits until the graph that a node sees does not change any more, with a deadline."""
+    """Waits until the graph that a node sees no longer changes, up to a deadline."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -132,10 +133,10 @@ class Settling:
             self._seen, self._changed = graph, time.monotonic()
 
     def settle(self, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
-        """Wait until nothing new has arrived for 0.2 s and all participants of this machine have sent what they have.
+        """Wait until nothing new has arrived for 0.2 s and all participants on this machine have sent their data.
 
-        `enough` can end the wait earlier. `deadline_s` is the longest wait; None uses the default. Returns whether that
-        was so in time.
+        `enough` can end the wait earlier. `deadline_s` is the longest wait; None means the default. Returns False if
+        the deadline passes first.
         """
         begun = time.monotonic()
         most = deadline_s if deadline_s is not None else DEADLINE_S
@@ -152,18 +153,18 @@ class Settling:
 
 
 def settle(node: Node, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
-    """Wait until the graph that a new node sees has settled, or until `enough`; return whether it did in time."""
+    """Wait until the graph that a new node sees has settled or `enough` returns true; return False at the deadline."""
     return Settling(node).settle(enough, deadline_s)
 
 
 def published(node: Node, topic: str) -> bool:
-    """Return whether another node publishes on the topic; the node itself publishes on /rosout."""
+    """Return whether a node other than this one publishes on the topic. Every node publishes on /rosout."""
     own = node.get_name()
     return any(publisher.node_name != own for publisher in node.get_publishers_info_by_topic(topic))
 
 
 def spin_until(node: Node, done: Callable[[], bool], timeout_s: float | None = None) -> bool:
-    """Spin the node until `done` returns true or the time is up; return whether it is done."""
+    """Spin the node until `done` returns true or the timeout expires; return False on timeout."""
     end = None if timeout_s is None else time.monotonic() + timeout_s
     while not done():
         left = _WAKE_S if end is None else min(_WAKE_S, end - time.monotonic())
@@ -174,7 +175,7 @@ def spin_until(node: Node, done: Callable[[], bool], timeout_s: float | None = N
 
 
 def nap(duration_s: float) -> None:
-    """Sleep; a signal ends the sleep at once, unlike a wait inside rclpy."""
+    """Sleep. Unlike a wait inside rclpy, the sleep is interrupted by a signal at once."""
     if duration_s > 0:
         time.sleep(duration_s)
 
@@ -187,9 +188,9 @@ def _graph(node: Node) -> object:
 
 
 def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool:
-    """Return whether all participants of this machine were discovered, with the names of their nodes.
+    """Return whether all participants on this machine have been discovered, including the names of their nodes.
 
-    Participants of other machines cannot be counted; the wait for them is `named_s`, which the user chose.
+    Participants on other machines cannot be counted. The wait for them is `named_s`, which the user chose.
     """
     expected = _participants(node.context.get_domain_id())
     endpoints: list[Any] = []
@@ -205,9 +206,9 @@ def _complete(node: Node, waited_s: float, named_s: float | None = None) -> bool
 
 
 def _participants(domain: int) -> int | None:
-    """Count the DDS participants of this machine in a domain, by their open ports; None if they cannot be counted.
+    """Count the DDS participants on this machine in a domain by their open ports; None if they cannot be counted.
 
-    Ports by the DDSI-RTPS standard, 9.6.1.1: metatraffic unicast = 7400 + 250 * domain + 10 + 2 * participant.
+    Ports according to DDSI-RTPS, 9.6.1.1: metatraffic unicast = 7400 + 250 * domain + 10 + 2 * participant.
     """
     first = 7400 + 250 * domain
     ports: set[int] = set()

@@ -1,4 +1,4 @@
-"""What a node has discovered of the graph: the other nodes, and their publishers and subscriptions. Needs rclpy."""
+"""The part of the graph that a node has discovered: other nodes, their publishers and subscriptions. Needs rclpy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class End:
-    """A publisher or subscription, like `grader.trial.recording.Endpoint`, whose module would import numpy."""
+    """A publisher or subscription. It resembles `grader.trial.recording.Endpoint`, whose module would import numpy."""
 
     kind: str
     node: str
@@ -21,7 +21,7 @@ class End:
 
 @dataclass(frozen=True)
 class Observed:
-    """The full names of all other nodes, one entry per node, and their publishers and subscriptions; sorted."""
+    """The full names of all other nodes (one entry per node) and their publishers and subscriptions, all sorted."""
 
     nodes: tuple[str, ...]
     ends: tuple[End, ...]

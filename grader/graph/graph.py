@@ -1,4 +1,4 @@
-"""The ROS graph as a picture: which nodes and topics it shows, and how to write it as DOT or as text.
+"""The ROS graph as a picture: choose the nodes and topics to show, and write them as DOT or as text.
 
 Nodes are ellipses, topics are boxes, and arrows point in the direction of the messages. A graph comes from the live
 system (rqt_graph.py) or from a recording (`grader.trial.recording.Graph`).
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 DEBUG_TOPICS = frozenset({"/rosout", "/rosout_agg", "/parameter_events", "/clock", "/statistics", "/diagnostics"})
-"""Topics that nearly every node has, or that are for tools: rqt_graph calls them debug topics."""
+"""Topics that nearly every node has, or that are meant for tools. rqt_graph calls them debug topics."""
 
 DEBUG_NODES = ("/rqt_gui", "/rqt_graph", "/rviz", "/rosbag2_")
-"""The beginnings of the names of tools' nodes."""
+"""The prefixes of the names of nodes that belong to tools."""
 
 
 class Endpoint(Protocol):
@@ -43,14 +43,14 @@ class Show:
     debug: bool = False
     """Debug topics (/rosout, /parameter_events, /clock) and the nodes of tools."""
     hidden: bool = False
-    """Names with a part that begins with "_": the topics of actions, and nodes of tools."""
+    """Names with a part that begins with "_", such as the topics of actions and the nodes of tools."""
     dead_ends: bool = True
-    """Topics to which nobody subscribes, or on which nobody publishes."""
+    """Topics that have no subscribers or no publishers."""
 
 
 @dataclass(frozen=True)
 class Node:
-    """A node by its full name; `count` is above 1 if several nodes have the same name, which is a mistake."""
+    """A node, given by its full name. `count` is above 1 if several nodes have the same name, which is an error."""
 
     name: str
     count: int = 1
@@ -72,7 +72,7 @@ class Topic:
 
 @dataclass(frozen=True)
 class Picture:
-    """The nodes and topics to draw, sorted by name, so that equal graphs give equal pictures."""
+    """The nodes and topics to draw, sorted by name so that equal graphs produce equal pictures."""
 
     nodes: tuple[Node, ...]
     topics: tuple[Topic, ...]
@@ -132,14 +132,14 @@ _BOX = 'shape=box, fillcolor="#fff8e1", color="#ef6c00"'
 
 
 def to_dot(drawn: Picture) -> str:
-    """Return the graph in DOT, Graphviz's language; each node and topic has its own name there."""
+    """Return the graph in DOT, the language of Graphviz. Each node and each topic has a unique name there."""
     names = {node.name for node in drawn.nodes}
     lines = []
     for node in drawn.nodes:
         twice = f", label={_quoted(f'{node.name}{chr(10)}({node.count} nodes of this name)')}" if node.count > 1 else ""
         lines.append(f"{_quoted(node.name)} [{_ELLIPSE}{twice}];")
     for topic in drawn.topics:
-        # A topic may have the same name as a node; in DOT they would be one node.
+        # A topic may have the same name as a node. Without another key, DOT would treat them as one node.
         clash = f", label={_quoted(topic.name)}" if topic.name in names else ""
         key = _quoted(f"topic {topic.name}" if clash else topic.name)
         lines.append(f"{key} [{_BOX}{clash}];")
@@ -158,11 +158,11 @@ def _quoted(text: str) -> str:
 
 @dataclass(frozen=True)
 class _Strokes:
-    """The characters that draw the lines: into the topic's row from the left, out of it to the right."""
+    """The characters for the lines that lead from publishers to a topic, and from the topic to subscribers."""
 
     one: str
     into: tuple[str, str, str]
-    """For the first of several publishers, one in the middle, and the last."""
+    """The lines of the first, a middle and the last publisher, if there are several."""
     out: tuple[str, str, str]
 
 
@@ -171,7 +171,7 @@ _ASCII = _Strokes("--->", ("-+->", "-+  ", "-+  "), ("-+->", " +->", " +->"))
 
 
 def to_text(drawn: Picture, *, ascii_only: bool = False) -> str:
-    """Return the picture for a terminal: one line per topic, publishers on the left, subscribers on the right."""
+    """Return the picture for a terminal, with publishers on the left of each topic and subscribers on the right."""
     strokes = _ASCII if ascii_only else _UNICODE
     counts = {node.name: node.count for node in drawn.nodes}
     # Topics with messages come first.
@@ -200,7 +200,7 @@ def _rows(topic: Topic, counts: dict[str, int], strokes: _Strokes, left: int, mi
         box = f"[{topic.name}]" if row == 0 else ""
         enter = into[row] if row < len(into) else space
         leave = out[row] if row < len(out) else space
-        # The line to the right begins at the box's edge, so that it does not look cut off.
+        # The line to the right begins at the edge of the box, so that there is no gap.
         gap = strokes.one[0] if row == 0 and out else " "
         yield f"{publisher:>{left}} {enter} {f'{box} '.ljust(middle + 1, gap)}{leave} {subscriber}".rstrip()
 

@@ -1,7 +1,7 @@
-"""Draw DOT as a picture with Graphviz, always with the same font.
+"""Draw a graph in DOT with Graphviz, always with the same font.
 
-Graphviz runs in a process of its own, because fontconfig reads its settings from the environment and writes warnings to
-standard error. The caller must not be affected by either.
+Graphviz runs in a separate process, because fontconfig reads its settings from the environment and writes warnings to
+standard error. Neither must affect the caller.
 """
 
 from __future__ import annotations
@@ -46,13 +46,13 @@ def render(dot: str, kind: Format) -> bytes:
         )
         raise MachineError(message)
     if kind == "svg":
-        # A viewer without this font takes the next one: Verdana is as wide, most sans-serif fonts are narrower.
+        # A viewer without this font uses the next one. Verdana is equally wide, and most sans-serif fonts are narrower.
         return done.stdout.replace(b'font-family="DejaVu Sans"', b'font-family="DejaVu Sans,Verdana,sans-serif"')
     return done.stdout
 
 
 def _our_font(folder: Path) -> dict[str, str]:
-    """Let fontconfig see only matplotlib's DejaVu Sans, so that the widths are the same on every machine."""
+    """Limit fontconfig to the fonts of matplotlib, so that text has the same width on every machine."""
     spec = find_spec("matplotlib")
     if spec is None or spec.origin is None:
         return {}
@@ -66,7 +66,7 @@ def _our_font(folder: Path) -> dict[str, str]:
 
 
 def _main(kind: str) -> None:
-    """Read DOT from standard input, write the picture to standard output."""
+    """Read DOT from standard input, and write the picture to standard output."""
     import pygraphviz  # type: ignore[import-untyped]
 
     graph = pygraphviz.AGraph(string=sys.stdin.read())

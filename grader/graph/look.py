@@ -1,4 +1,4 @@
-"""A snapshot of the graph: nodes, topics, services and actions as plain data, without rclpy."""
+"""A snapshot of the graph: nodes, topics, services and actions as plain data. It does not need rclpy."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any
 from grader.graph.names import hidden
 
 Named = tuple[str, tuple[str, ...]]
-"""A name and its types; more than one type when nodes disagree."""
+"""A name and its types. There is more than one type if nodes disagree."""
 
 
 @dataclass(frozen=True)
 class NodeLook:
-    """A node by its full name, and what it offers and uses."""
+    """The full name of a node, and everything that it offers and uses."""
 
     name: str
     subscribers: tuple[Named, ...] = ()
@@ -31,17 +31,17 @@ class EndpointLook:
     topic: str
     publishes: bool
     node: str
-    """The name of its node without the namespace."""
+    """The name of its node, without the namespace."""
     reliability: str
-    """As in `--qos-reliability`: "reliable" or "best_effort"."""
+    """Either "reliable" or "best_effort", as in `--qos-reliability`."""
     durability: str
-    """As in `--qos-durability`: "volatile" or "transient_local"."""
+    """Either "volatile" or "transient_local", as in `--qos-durability`."""
     text: str
 
 
 @dataclass(frozen=True)
 class Look:
-    """The graph at one moment, everything sorted by name. Counts of services: how many clients and servers."""
+    """The graph at one moment, sorted by name. `service_counts` has the number of clients and servers per service."""
 
     nodes: tuple[NodeLook, ...] = ()
     topics: tuple[Named, ...] = ()
@@ -51,7 +51,7 @@ class Look:
     actions: tuple[Named, ...] = ()
 
     def node_names(self, *, all_of_them: bool = False) -> list[str]:
-        """The full names of all nodes, sorted; a name that several nodes have is there several times."""
+        """The full names of all nodes, sorted. If several nodes have the same name, it appears several times."""
         return [node.name for node in self.nodes if all_of_them or not _hidden_node(node.name)]
 
     def topic_names(self, *, all_of_them: bool = False) -> list[str]:
@@ -67,22 +67,22 @@ class Look:
         return [end for end in self.endpoints if end.topic == topic and end.publishes == publishes]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the look as data for JSON."""
+        """Return the look as data that can be written as JSON."""
         return asdict(self)
 
 
 def shown(found: tuple[Named, ...], *, all_of_them: bool) -> list[Named]:
-    """Return names and types; the hidden ones only with `all_of_them`."""
+    """Return names and types. Hidden names are included only with `all_of_them`."""
     return [(name, types) for name, types in found if all_of_them or not hidden(name)]
 
 
 def types_of(found: tuple[Named, ...], name: str) -> tuple[str, ...]:
-    """Return the types of a name; empty if there is no such name."""
+    """Return the types of a name, or an empty tuple if there is no such name."""
     return next((types for known, types in found if known == name), ())
 
 
 def from_dict(data: dict[str, Any]) -> Look:
-    """Return the look that `to_dict` wrote."""
+    """Return the look that `to_dict` converted to data."""
     return Look(
         nodes=tuple(
             NodeLook(node.pop("name"), **{key: _named(value) for key, value in node.items()}) for node in data["nodes"]

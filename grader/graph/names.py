@@ -1,4 +1,4 @@
-"""Names in the graph: which are hidden, which types they have, how to complete them."""
+"""Names in the graph: whether they are hidden, which types they have, and how to complete them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def hidden(name: str) -> bool:
-    """Whether a name is for tools only: a part of it begins with "_"."""
+    """Return whether a name is meant for tools only, which means that a part of it begins with "_"."""
     return any(part.startswith("_") for part in name.split("/"))
 
 
@@ -22,18 +22,18 @@ def absolute(name: str) -> str:
 
 
 def shown(found: Iterable[tuple[str, list[str]]], *, all_of_them: bool) -> list[tuple[str, list[str]]]:
-    """Return names and types, sorted; the hidden ones only with `all_of_them`."""
+    """Return names and types, sorted. Hidden names are included only with `all_of_them`."""
     return sorted((name, types) for name, types in found if all_of_them or not hidden(name))
 
 
 def nodes(node: Node, *, all_of_them: bool = False) -> list[str]:
-    """Return the full names of all nodes, sorted; a name that several nodes have is there several times."""
+    """Return the full names of all nodes, sorted. If several nodes have the same name, it appears several times."""
     found = [f"{namespace.rstrip('/')}/{name}" for name, namespace in node.get_node_names_and_namespaces()]
     return sorted(name for name in found if all_of_them or not hidden(name))
 
 
 def add_wait(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the real `ros2` for discovery; --no-daemon has no effect, since these verbs use no daemon."""
+    """Add the discovery options of the real `ros2`. --no-daemon has no effect, since these verbs use no daemon."""
     parser.add_argument("--no-daemon", action="store_true", help="as always here: there is no daemon")
     parser.add_argument("--spin-time", type=float, metavar="S", help="wait at most this long for the graph")
 

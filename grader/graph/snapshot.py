@@ -1,4 +1,4 @@
-"""Take a look of the graph that a node sees."""
+"""Take a snapshot of the graph that a node sees."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _named(found: Iterable[tuple[str, list[str]]]) -> tuple[Named, ...]:
 
 def _node(node: Node, name: str, namespace: str) -> NodeLook:
     full = f"{namespace.rstrip('/')}/{name}"
-    # It may have left in the meantime.
+    # The node may have disappeared in the meantime.
     with suppress(NodeNameNonExistentError):
         return NodeLook(
             full,
