@@ -1,4 +1,4 @@
-"""A program that `ros2 run` has started: it uses the terminal, and ends with the command."""
+"""Run a program for `ros2 run`. The program uses the same terminal, and it is terminated if the command exits."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _PASSED_ON = (signal.SIGTERM, signal.SIGHUP)
 
 
 def run_child(command: Sequence[str]) -> int:
-    """Run a program until it ends; return its exit code, which is less than 0 if a signal ended it.
+    """Run a program until it exits; return its exit code, which is negative if it was terminated by a signal.
 
-    The terminal sends Ctrl-C to the program itself; other signals that end a program are passed on to it.
+    The terminal sends Ctrl-C to the program directly. SIGTERM and SIGHUP are passed on to the program.
 
     Raises:
-        Ros2Error: it cannot be started.
+        Ros2Error: the program cannot be started.
     """
     library = ctypes.CDLL(None)
     ours = os.getpid()

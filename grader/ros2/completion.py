@@ -1,4 +1,4 @@
-"""Completers for the Tab key: names from the running graph, and of installed packages and types."""
+"""Completers for the Tab key: names in the running graph, and names of installed packages and types."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def completes(argument: argparse.Action, names: Callable[..., Iterable[str]]) -> None:
-    """Let Tab complete an argument; `names` is called with the keyword `parsed_args`, the words typed so far."""
+    """Let Tab complete an argument. `names` is called with the keyword `parsed_args`, the arguments typed so far."""
     argument.completer = lambda **words: list(names(**words))  # type: ignore[attr-defined]
 
 
@@ -45,17 +45,17 @@ def actions(**_: Any) -> list[str]:  # noqa: ANN401
 
 
 def topic_types(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """Return the type of the topic that the user typed if it is in the graph; else all message types."""
+    """Return the type of the topic that the user typed if it is in the graph, or else all message types."""
     return _types(_look().topics, parsed_args.topic_name) or index.all_interfaces("msg")
 
 
 def service_types(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """Return the type of the service that the user typed if it is in the graph; else all service types."""
+    """Return the type of the service that the user typed if it is in the graph, or else all service types."""
     return _types(_look().services, parsed_args.service_name) or index.all_interfaces("srv")
 
 
 def action_types(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    """Return the type of the action that the user typed if it is in the graph; else all action types."""
+    """Return the type of the action that the user typed if it is in the graph, or else all action types."""
     return _types(_look().actions, parsed_args.action_name) or index.all_interfaces("action")
 
 
@@ -85,9 +85,10 @@ def packages(**_: Any) -> list[str]:  # noqa: ANN401
 
 
 def prototype(type_argument: str, kind: str, part: str = "") -> Callable[..., list[str]]:
-    """Return a completer that offers all fields with their default values: "{linear: {x: 0.0, ...}, ...}".
+    """Return a completer that offers all fields with their default values, as in "{linear: {x: 0.0, ...}, ...}".
 
-    `type_argument` is the argument that holds the type, `part` is the part of the type to fill in: "Request" or "Goal".
+    `type_argument` is the name of the argument with the type. `part` is the part of the type to fill in, such as
+    "Request" or "Goal".
     """
 
     def offered(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401

@@ -1,4 +1,4 @@
-"""`ros2 doctor` and `ros2 wtf`: why nodes may not reach each other, and a report about the machine."""
+"""`ros2 doctor` and `ros2 wtf`: check why nodes may be unable to communicate, and report about the machine."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print what the checks found, or the reports."""
+    """Print the findings of the checks, or the reports."""
     from grader.graph.discovery import cli_node, settle
 
     with cli_node() as node:
@@ -89,7 +89,7 @@ def _check_topics(node: Node) -> Examination:
 
 
 def _pairs(node: Node) -> Iterator[tuple[str, Any, Any, Any, str]]:
-    """Yield topic, publisher, subscription, whether their QoS is compatible, and why not."""
+    """Yield topic, publisher, subscription, the compatibility of their QoS, and the reason if it is not compatible."""
     from rclpy.qos import qos_check_compatible
 
     for topic in _topics(node):
@@ -190,7 +190,7 @@ _REPORTS: dict[str, tuple[str, Callable[[Node], Iterator[tuple[str, object]]]]] 
     "ROS 2 INFORMATION": ("platform", _ros),
     "TOPIC LIST": ("topic", _topic_list),
 }
-"""The title of each report, its category, and the function that makes its lines."""
+"""The title of each report, its category, and the function that generates its lines."""
 
 
 def _print_reports(node: Node, reports: dict[str, tuple[str, Callable[[Node], Iterator[tuple[str, object]]]]]) -> None:

@@ -1,4 +1,4 @@
-"""The options for the format in which messages are printed."""
+"""The options for the output format of messages."""
 
 from __future__ import annotations
 
@@ -29,6 +29,6 @@ def add_form(parser: argparse.ArgumentParser) -> None:
 
 
 def form_of(args: argparse.Namespace) -> Form:
-    """Return the format that the options describe."""
+    """Return the format that the options select."""
     limit = None if args.full_length else args.truncate_length
     return Form(limit, arrays=not args.no_arr, strings=not args.no_str, flow=args.flow_style)

@@ -1,4 +1,4 @@
-"""The groups and verbs of `ros2`, each with its line of help; the verbs' modules are not imported."""
+"""The groups and verbs of `ros2`, each with one line of help. The modules of the verbs are not imported."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Group:
-    """A word after `ros2`.
+    """A command group, which is the word after `ros2`.
 
-    `verbs` maps the words that may follow it to their help. A group without verbs is a command by itself. `flags` maps
-    options that may come before the verb to their help. With `runs_itself`, the group also works without a verb.
+    `verbs` maps the words that may follow the group to their help. A group without verbs is itself a command. `flags`
+    maps options that may come before the verb to their help. With `runs_itself`, the group also works without a verb.
     """
 
     about: str

@@ -1,4 +1,4 @@
-"""How verbs look at the graph: with the daemon, or with a node of their own."""
+"""How verbs look at the graph: through the daemon, or with their own node."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 def look(args: argparse.Namespace) -> Look:
-    """Return the graph as it is now: from the daemon, or with `args.no_daemon` from a node of this process.
+    """Return the current graph, either from the daemon or from a node in this process.
 
-    If no daemon is running, this starts one for the next command.
+    If no daemon is running, start one for the next command. With `args.no_daemon`, never use or start the daemon.
 
     Raises:
         Ros2Error: the node could not be created.
@@ -24,7 +24,7 @@ def look(args: argparse.Namespace) -> Look:
         if answer is not None:
             return from_dict(answer)
         client.start_for_later()
-    # Import it only here, since rclpy takes long to import.
+    # Import these modules only here, since importing rclpy takes a long time.
     from grader.graph.discovery import cli_node, settle
     from grader.graph.snapshot import snapshot
 

@@ -1,6 +1,6 @@
-"""The command `ros2`: it runs the `ros2` of a sourced ROS 2 if there is one, or else sets up and runs a verb.
+"""The command `ros2`: run the `ros2` of a sourced ROS 2 if there is one, or else set up and run a verb.
 
-This module imports little: a verb imports what it needs of rclpy when it runs.
+This module imports little. A verb imports the parts of rclpy that it needs when it runs.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class _EndedError(KeyboardInterrupt):
-    """A signal asked the command to end."""
+    """A signal requested that the command exit."""
 
     def __init__(self, number: int) -> None:
         super().__init__()
@@ -31,12 +31,12 @@ class _EndedError(KeyboardInterrupt):
 
 
 def main() -> NoReturn:
-    """Run `ros2` and end the process with its exit code."""
+    """Run `ros2` and exit with its exit code."""
     code = run()
     with suppress(OSError):
         sys.stderr.flush()
-    # The verb has cleaned up: its node has left the graph. A normal exit of Python and rclpy would take as long as
-    # importing them.
+    # The verb has cleaned up, and its node has left the graph. A normal exit of Python and rclpy would take as long as
+    # their import.
     os._exit(code & 0xFF)
 
 
@@ -48,7 +48,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
     try:
         hand_over("ros2", "ros2cli")
         see_to_environment({"rclpy", "turtlesim"})
-        # A wrong value then gives an error with the field's name before the message is sent.
+        # With this setting, an invalid value causes an error that names the field before the message is sent.
         os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
         code = _run_verb(sys.argv[1:] if arguments is None else list(arguments))
         sys.stdout.flush()
@@ -59,10 +59,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
         return error.exit_code
     except KeyboardInterrupt as error:
         _forget_the_terminal()
-        # As in the real ros2: 2 after Ctrl-C, 15 after SIGTERM.
+        # The exit code is that of the real ros2: 2 after Ctrl-C, 15 after SIGTERM.
         return error.number if isinstance(error, _EndedError) else signal.SIGINT
     except BrokenPipeError:
-        # The reader of our output has ended, as in `ros2 topic echo | head`.
+        # The program that reads the output has exited, as in `ros2 topic echo | head`.
         _forget_the_terminal()
         return 0
     except Exception as error:
@@ -81,14 +81,14 @@ def _run_verb(words: list[str]) -> int:
         _complete()
     args = make_parser(words).parse_args(words)
     if not args.use_python_default_buffering and isinstance(sys.stdout, io.TextIOWrapper):
-        # As in the real ros2: output that is piped into another program arrives line by line.
+        # As with the real ros2, output that is piped into another program arrives line by line.
         sys.stdout.reconfigure(line_buffering=True)
     code: int = args.run(args)
     return code
 
 
 def _complete() -> NoReturn:
-    """Print the completions of the word before the cursor, and end."""
+    """Print the completions of the word before the cursor, and exit."""
     import argcomplete
     from argcomplete.lexers import split_line
 
@@ -98,18 +98,18 @@ def _complete() -> NoReturn:
 
 
 def _end(number: int, _: FrameType | None) -> None:
-    """End as after Ctrl-C, so that the node leaves the graph; a second signal ends the process at once."""
+    """Exit as after Ctrl-C, so that the node leaves the graph. A second signal terminates the process immediately."""
     signal.signal(number, signal.SIG_DFL)
     raise _EndedError(number)
 
 
 def _forget_the_terminal() -> None:
-    """Discard what is still in the buffer, since nobody reads it any more."""
+    """Discard the remaining output in the buffer if nobody reads it anymore."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         sys.stdout.flush()
     except OSError:
-        with suppress(OSError):  # nothing may be opened any more
+        with suppress(OSError):  # it may be impossible to open any file
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 

@@ -1,4 +1,4 @@
-"""Options that many verbs share, and the checks of their values."""
+"""Options that many verbs share, and functions that check their values."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def add_look(parser: argparse.ArgumentParser) -> None:
 
 
 def positive_int(text: str) -> int:
-    """Return a whole number of at least 1, for argparse."""
+    """Convert an argument to a positive integer, for argparse."""
     value = _whole(text)
     if value is None or value < 1:
         message = "value must be a positive integer"
@@ -29,7 +29,7 @@ def positive_int(text: str) -> int:
 
 
 def unsigned_int(text: str) -> int:
-    """Return a whole number of at least 0, for argparse."""
+    """Convert an argument to a non-negative integer, for argparse."""
     value = _whole(text)
     if value is None or value < 0:
         message = "value must be non-negative integer"
@@ -38,7 +38,7 @@ def unsigned_int(text: str) -> int:
 
 
 def positive_float(text: str) -> float:
-    """Return a number above 0, for argparse."""
+    """Convert an argument to a positive number, for argparse."""
     try:
         value = float(text)
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""The parsers of `ros2`: usage, help and errors in the format of the real one.
+"""The parsers of `ros2`, with usage, help and error messages in the format of the real command.
 
 Only the module of the verb on the command line is imported, and it imports rclpy only when it runs.
 """
@@ -17,31 +17,31 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 MODULES = {
-    # xml is a module of Python.
+    # xml is a package in Python's standard library.
     "pkg.xml": "pkg.manifest",
     "wtf": "doctor",
     **dict.fromkeys(("launch", "security", "doctor.hello", "wtf.hello"), "whole"),
     **dict.fromkeys(("component.load", "component.standalone", "component.unload"), "whole"),
 }
-"""Groups and verbs whose module has another name than they have."""
+"""The modules of groups and verbs whose names differ from the names of their modules."""
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
 
 class Parser(argparse.ArgumentParser):
-    """argparse's parser; if a choice is wrong, its error contains the most similar word."""
+    """An argparse parser that suggests the most similar word if a choice is invalid."""
 
     def error(self, message: str) -> NoReturn:
-        """Print what is wrong and end with exit code 2."""
+        """Print an error message and exit with code 2."""
         match = _CHOICE.search(message)
         choices = re.findall(r"[\w-]+", match[2]) if match else []
         super().error(did_you_mean(match[1], choices, message) if match else message)
 
 
 def make_parser(words: Sequence[str]) -> Parser:
-    """Return the parser for a command line; `words` are the words after `ros2`.
+    """Return the parser for a command line. `words` are the words after `ros2`.
 
-    It has all groups, the verbs of the group in `words`, and the arguments of the verb in `words`. The parsed arguments
-    have an attribute `run`: a function that takes them and returns the exit code.
+    The parser has all groups, the verbs of the group in `words`, and the arguments of the verb in `words`. The parsed
+    arguments have the attribute `run`, a function that takes the arguments and returns the exit code.
     """
     chosen = [word for word in words if not word.startswith("-")]
     group, verb = [*chosen[:2], None, None][:2]
@@ -67,13 +67,13 @@ def _add_words(
     chosen: str | None,
     add: Callable[[argparse.ArgumentParser, str], None],
 ) -> None:
-    """Add the words that may follow, and call `add` for the arguments of the chosen one."""
+    """Add the words that may follow, and call `add` to add the arguments of the chosen word."""
     width = max(map(len, about))
     words = parser.add_subparsers(
         title="Commands",
         description="".join(f"{name.ljust(width)}  {text}\n" for name, text in sorted(about.items())),
         metavar=f"Call `{parser.prog} <command> -h` for more detailed usage.",
-        # As in the real ros2; no option could have this name.
+        # The real ros2 uses the same name, which no option can have.
         dest=f" {kind}",
         parser_class=Parser,
     )
@@ -106,7 +106,7 @@ def _add_group(verb: str | None) -> Callable[[argparse.ArgumentParser, str], Non
 
 
 def _add_verb(parser: argparse.ArgumentParser, name: str) -> None:
-    """Add the arguments of a verb; its module has the functions `add(parser)` and `run(args)`."""
+    """Add the arguments of a verb. The module of the verb has the functions `add(parser)` and `run(args)`."""
     module = importlib.import_module(f"grader.ros2.{MODULES.get(name, name)}")
     module.add(parser)
     parser.set_defaults(run=module.run)

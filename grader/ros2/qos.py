@@ -1,4 +1,4 @@
-"""The QoS options of the verbs that publish and subscribe, and the profile that they describe."""
+"""The QoS options of the verbs that publish or subscribe, and the profile that these options describe."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PROFILES = (
     "action_status_default",
     "best_available",
 )
-"""The names of rclpy's preset profiles, copied so that `--help` need not import rclpy; a test compares them."""
+"""The names of rclpy's preset profiles, copied so that `--help` does not import rclpy. A test compares them."""
 POLICIES = {
     "history": ("system_default", "keep_last", "keep_all", "unknown"),
     "reliability": ("system_default", "reliable", "best_effort", "unknown", "best_available"),
@@ -29,7 +29,7 @@ POLICIES = {
 
 
 def add_qos(parser: argparse.ArgumentParser, default: str) -> None:
-    """Add the options; `default` is the preset profile without any option."""
+    """Add the options. `default` is the preset profile that is used if no option is given."""
     parser.add_argument(
         "--qos-profile", choices=PROFILES, default=default, help=f"preset profile to start from (default: {default})"
     )
@@ -42,7 +42,7 @@ def add_qos(parser: argparse.ArgumentParser, default: str) -> None:
 
 
 def is_chosen(args: argparse.Namespace) -> bool:
-    """Return whether the user set anything except a preset profile."""
+    """Return whether the user set any option other than the preset profile."""
     names = ("depth", *POLICIES, "liveliness_lease_duration_seconds")
     return any(getattr(args, f"qos_{name}") is not None for name in names)
 

@@ -1,4 +1,4 @@
-"""The verb `run`: start an executable of a package, and return its exit code."""
+"""The verb `run`: start an executable in a package, and return its exit code."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ def _executables(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noq
 
 
 def run(args: argparse.Namespace) -> int:
-    """Start the executable and wait for its end; return its exit code, less than 0 if a signal ended it.
+    """Start the executable and wait until it exits. Return its exit code, which is negative after a signal.
 
     Raises:
-        Ros2Error: there is no such package or executable, or it cannot be started.
+        Ros2Error: there is no such package or executable, or the executable cannot be started.
     """
     from grader.ros2.child import run_child
 
@@ -72,7 +72,7 @@ def _path(args: argparse.Namespace) -> Path:
 
 
 def _program(path: Path) -> list[str]:
-    """Return the command; setuptools quotes an interpreter with a space in its path, but Linux does not support it."""
+    """Return the command for a script. Setuptools quotes interpreters with spaces, which Linux does not support."""
     try:
         with path.open("rb") as file:
             quoted = _QUOTED.match(file.readline(4096).decode("utf-8", "replace"))

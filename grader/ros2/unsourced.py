@@ -1,4 +1,4 @@
-"""Help if `ros2` does not find a package that is on this machine: it is built but not sourced, or not built."""
+"""Hints for packages that `ros2` does not find because they have been built but not sourced, or not even built."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _DEEPEST = 4
-"""How many levels below src/ are searched for packages."""
+"""The number of folder levels below src/ that are searched for packages."""
 _MOST = 2000
-"""How many folders are searched at most."""
+"""The maximum number of folders that are searched."""
 
 
 def where_it_is(package: str) -> str:
-    """Return a sentence that says where the package is and what to type; empty if no workspace has it."""
+    """Return a hint that says where the package is and what to type, or "" if no workspace contains the package."""
     for workspace in _workspaces():
         for built in (workspace / "install" / package, workspace / "install"):
             if (built / "share" / package / "package.xml").is_file():
@@ -32,7 +32,7 @@ def where_it_is(package: str) -> str:
 
 
 def _workspaces() -> Iterator[Path]:
-    """Return folders that look like workspaces: this one, those above it, and that of the tutorials."""
+    """Yield folders that look like workspaces: the current folder, its parents, and the workspace of the tutorials."""
     cwd = Path.cwd()
     for folder in dict.fromkeys([cwd, *cwd.parents, Path.home() / "ros2_ws"]):
         if folder != folder.parent and any((folder / name).is_dir() for name in ("install", "src")):

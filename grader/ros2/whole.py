@@ -1,4 +1,4 @@
-"""Verbs of `ros2` that need a full ROS 2: each prints this, and what to use here."""
+"""Verbs of `ros2` that need a full ROS 2. Each of them prints a message that says so and suggests an alternative."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ INSTEAD = {
     "unload": "End a node with Ctrl-C in its terminal.",
     "standalone": "Start a node alone with: ros2 run PACKAGE EXECUTABLE",
 }
-"""What to do instead of each verb."""
+"""What to do instead of using each verb."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:

@@ -22,7 +22,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the names of the actions, sorted; return 0 even if there are none."""
+    """Print the sorted names of the actions. Return 0 even if there are none."""
     found = look(args).actions
     names = [name for name, types in found if args.action_type in types]
     print(len(names)) if args.count_actions else [print(name) for name in names]

@@ -22,7 +22,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the nodes; an action that nobody offers or uses has 0 of each."""
+    """Print the nodes. For an action that nobody offers or uses, both counts are 0."""
     from grader.graph.names import absolute
 
     graph = look(args)

@@ -1,4 +1,4 @@
-"""The verb `action send_goal`: send a goal, and wait for its result; Ctrl-C cancels it."""
+"""The verb `action send_goal`: send a goal and wait for its result. Ctrl-C cancels the goal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _CANCEL_S = 2.0
 _POLL_S = 0.02
 _STATUS = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
-"""The names of the statuses, by their numbers in action_msgs/msg/GoalStatus."""
+"""The names of the statuses, indexed by their numbers in action_msgs/msg/GoalStatus."""
 _WHOLE = Form(limit=None)
 
 
@@ -37,10 +37,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Send the goal; return 0 whatever its result is.
+    """Send the goal. Return 0 regardless of its result.
 
     Raises:
-        Ros2Error: the type is not installed, or the goal does not fit it.
+        Ros2Error: the type is not installed, or the goal does not match the type.
     """
     from rclpy.action import ActionClient, get_action_names_and_types
 

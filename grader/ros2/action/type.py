@@ -19,7 +19,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the type; several lines if the nodes disagree about it.
+    """Print the type. If the nodes disagree about it, print each type on a separate line.
 
     Raises:
         Ros2Error: there is no such action.

@@ -1,4 +1,4 @@
-"""The verb `bag convert`: write bags again with other topics, another storage or another compression."""
+"""The verb `bag convert`: rewrite bags with other topics, another storage format or another compression."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def _unreadable(file: Any) -> Ros2Error:  # noqa: ANN401
 
 
 def _typed(found: Iterator[tuple[str, int, bytes]], kinds: dict[str, str]) -> Iterator[tuple[int, str, str, bytes]]:
-    """Yield the messages with their types; the stamp comes first."""
+    """Yield stamp, topic, type and data of each message."""
     for topic, stamp, data in found:
         yield stamp, topic, kinds[topic], data
 
@@ -110,7 +110,7 @@ def _compression(options: dict[str, Any]) -> str:
 
 
 def _chosen(options: dict[str, Any], topic: str) -> bool:
-    """Return whether a new bag gets a topic; without any selection, it gets all."""
+    """Return whether a new bag gets a topic. Without any selection, it gets all topics."""
     topics, regex = absolute(options.get("topics") or []), options.get("regex") or ""
     if options.get("exclude_regex") and re.search(options["exclude_regex"], topic):
         return False

@@ -25,10 +25,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it.
+    """Print information about the bag.
 
     Raises:
-        Ros2Error: it is not a bag, or the bag is damaged.
+        Ros2Error: the path is not a bag, or the bag is damaged.
     """
     from grader.ros2.bag.reader import open_bag
 
@@ -54,7 +54,7 @@ def _files(path: Path) -> list[Path]:
 def _text(reader: Any, files: list[Path]) -> str:  # noqa: ANN401
     empty = not reader.message_count
     start = 0 if empty else reader.start_time
-    # The end of rosbags is one nanosecond after the last message.
+    # The end time that rosbags reports is one nanosecond after the last message.
     end = start if empty else reader.end_time - 1
     storage = "sqlite3" if files and ".db3" in files[0].suffixes else "mcap"
     topics = [

@@ -22,9 +22,10 @@ def available() -> bool:
 
 @contextmanager
 def pressed(*, enabled: bool) -> Iterator[Callable[[float], str]]:
-    """Yield a function that waits this many seconds for a key, and returns its name; empty if no key was pressed.
+    """Yield a function that waits up to the given number of seconds for a key and returns the name of the key.
 
-    Without a terminal, or if the keys are not `enabled`, the function only waits.
+    If no key is pressed, the function returns an empty string. Without a terminal, or if the keys are not `enabled`,
+    the function only waits.
     """
     if not enabled or not available():
 
@@ -39,7 +40,7 @@ def pressed(*, enabled: bool) -> Iterator[Callable[[float], str]]:
         def key(timeout_s: float) -> str:
             sent = read(max(0.0, timeout_s))
             if sent == b"":
-                # The terminal has gone; the process continues without it.
+                # The terminal has been closed. The process continues without it.
                 time.sleep(max(0.0, timeout_s))
             return _BYTES.get(sent or b"", "")
 

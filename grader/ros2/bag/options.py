@@ -26,14 +26,14 @@ def add_bag(parser: argparse.ArgumentParser) -> None:
 
 
 def add_log_level(parser: argparse.ArgumentParser) -> None:
-    """Add the option for which messages are printed."""
+    """Add the option that selects which messages are printed."""
     parser.add_argument(
         "--log-level", default="info", choices=LEVELS, help="print messages of this level and above (default: info)"
     )
 
 
 def existing_path(text: str) -> Path:
-    """Return an existing path, for argparse."""
+    """Convert an argument to an existing path, for argparse."""
     path = Path(text)
     if not path.exists():
         message = f"Bag path '{text}' does not exist!"
@@ -42,7 +42,7 @@ def existing_path(text: str) -> Path:
 
 
 def above_zero(text: str) -> float:
-    """Return a number above 0, for argparse."""
+    """Convert an argument to a number above 0, for argparse."""
     value = _number(text)
     if not 0 < value < float("inf"):
         message = f"{text} is not in the valid range (> 0.0)"
@@ -51,7 +51,7 @@ def above_zero(text: str) -> float:
 
 
 def not_negative(text: str) -> float:
-    """Return a number of at least 0, for argparse."""
+    """Convert an argument to a number that is not negative, for argparse."""
     value = _number(text)
     if not 0 <= value < float("inf"):
         message = f"Value {text} is less than zero."

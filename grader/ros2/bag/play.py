@@ -1,4 +1,4 @@
-"""The verb `bag play`: publish the messages of a bag at their times."""
+"""The verb `bag play`: publish the messages of a bag at the times at which they were recorded."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def run(args: argparse.Namespace) -> int:
     """Play the bag to its end, or until Ctrl-C.
 
     Raises:
-        Ros2Error: it is not a bag, the bag is damaged, or no topic of it can be published here.
+        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published here.
     """
     rules = remapping(args.remap)
     from grader.graph.discovery import cli_node

@@ -1,4 +1,4 @@
-"""The node that plays: it publishes recorded messages at the pace of the recording."""
+"""The node that plays a bag. It publishes the messages at the pace at which they were recorded."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from rosbags.rosbag2 import Reader
 
 _ACKNOWLEDGED_S = 2.0
-"""How long the node waits at the end, so that the last messages arrive."""
+"""How long the node waits at the end for the last messages to arrive."""
 _STEP_S = 0.1
 
 
 class Player:
-    """Plays a bag with the options of `bag play`; keys pause it, step through it and change its rate."""
+    """Plays a bag with the options of `bag play`. Keys pause the playback, step through it and change its rate."""
 
     def __init__(
         self,
@@ -48,7 +48,7 @@ class Player:
         self._clock = Clock(node, args.clock) if args.clock else None
 
     def run(self) -> None:
-        """Play the bag to its end, or for ever with --loop.
+        """Play the bag to its end, or forever with --loop.
 
         Raises:
             Ros2Error: the bag is damaged.
@@ -62,7 +62,7 @@ class Player:
                 self._log.info("Press CURSOR_RIGHT for Play Next Message")
                 self._log.info("Press CURSOR_UP for Increase Rate 10%")
                 self._log.info("Press CURSOR_DOWN for Decrease Rate 10%")
-            # The subscriptions that exist already should get the first message, too.
+            # Subscriptions that already exist should receive the first message, too.
             settle(self._node)
             self._log.info(f"Playback until timestamp: {self._until() or -1}")
             while True:
@@ -92,7 +92,7 @@ class Player:
         return made
 
     def _until(self) -> int | None:
-        """Return the stamp (ns) of the requested end; None if there is none."""
+        """Return the stamp (ns) at which to stop, or None if the options do not set one."""
         ends = []
         if self._args.playback_duration >= 0:
             ends.append(self._begin() + round(self._args.playback_duration * 1e9))
@@ -114,7 +114,7 @@ class Player:
             self._publishers[topic].publish(data)
 
     def _wait(self, key: Callable[[float], str], played: int, stamp: int) -> int:
-        """Let the recording's time pass from `played` to `stamp` (ns) at the rate; return `stamp`."""
+        """Wait while the time of the recording advances from `played` to `stamp` (ns); return `stamp`."""
         while played < stamp or self._paused:
             begun = time.monotonic()
             left_s = _STEP_S if self._paused else min(_STEP_S, (stamp - played) / 1e9 / self._rate)
@@ -128,7 +128,7 @@ class Player:
         return stamp
 
     def _press(self, name: str) -> bool:
-        """Handle a key; return whether to publish the next message at once."""
+        """Handle a key; return whether to publish the next message immediately."""
         if name == keys.SPACE:
             self._paused = not self._paused
             self._log.info("Pausing play." if self._paused else "Resuming play.")
@@ -154,7 +154,7 @@ class Clock:
         self._last = 0.0
 
     def publish(self, stamp_ns: int) -> None:
-        """Publish a time (ns), unless the last one was published less than a period ago."""
+        """Publish a time (ns), unless the previous one was published less than one period ago."""
         if time.monotonic() - self._last < self.period_s:
             return
         self._last = time.monotonic()

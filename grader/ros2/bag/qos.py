@@ -1,4 +1,4 @@
-"""QoS of recorded topics: the publishers' QoS as rosbags stores it, and suitable QoS for recording and playing."""
+"""QoS of recorded topics: the publishers' QoS in the format of rosbags, and suitable QoS for recording and playing."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 DEPTH = 1000
-"""The depth of the queue. Python is slower than C++, so it is larger than rosbag2's, which is 10."""
+"""The depth of the queue. It is larger than the depth in rosbag2 (10), because Python is slower than C++."""
 
 
 def offered(publishers: Sequence[Any]) -> list[Qos]:
-    """Return the QoS that the publishers of a topic offer; `publishers` are rclpy's TopicEndpointInfo."""
+    """Return the QoS profiles that the publishers (TopicEndpointInfo of rclpy) of a topic offer."""
     return list(dict.fromkeys(_stored(publisher.qos_profile) for publisher in publishers))
 
 
 def adapted(publishers: Sequence[Any]) -> QoSProfile:
-    """Return a profile that matches every publisher: it is as strict as the least strict of them."""
+    """Return a profile that matches every publisher, which is as strict as the least strict publisher."""
     profiles = [publisher.qos_profile for publisher in publishers]
     return _common(
         [profile.reliability == QoSReliabilityPolicy.RELIABLE for profile in profiles],
@@ -50,7 +50,7 @@ def _common(reliable: list[bool], kept: list[bool]) -> QoSProfile:
 
 def _stored(profile: QoSProfile) -> Qos:
     return Qos(
-        # The history setting of another process is unknown (DDS does not announce it).
+        # The history setting of another process is unknown, since DDS does not announce it.
         history=QosHistory.UNKNOWN,
         depth=0,
         reliability=QosReliability[profile.reliability.name],

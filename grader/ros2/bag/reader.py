@@ -1,4 +1,4 @@
-"""Read a bag with any storage, made by rosbag2 or by the course's `ros2 bag`."""
+"""Read a bag in any storage format, whether it was recorded by rosbag2 or by the course's `ros2 bag`."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 @contextmanager
 def open_bag(path: Path) -> Iterator[Reader]:
-    """Open a bag by its folder or by one of its files.
+    """Open a bag, given its folder or one of its files.
 
     Raises:
-        Ros2Error: it is not a bag, or it is damaged.
+        Ros2Error: the path is not a bag, or the bag is damaged.
     """
     if path.is_dir() and not (path / "metadata.yaml").exists():
         files = [file for ending in ("*.mcap", "*.db3") for file in path.glob(ending)]
@@ -30,7 +30,7 @@ def open_bag(path: Path) -> Iterator[Reader]:
     try:
         reader = Reader(path)
         reader.open()
-    except Exception as error:  # a damaged file can cause any error: a bad offset, string or checksum
+    except Exception as error:  # a damaged file can cause any error, such as a bad offset, string or checksum
         raise _damaged(path, error) from error
     try:
         yield reader
@@ -41,7 +41,7 @@ def open_bag(path: Path) -> Iterator[Reader]:
 def messages(
     reader: Reader, path: Path, topics: set[str], start: int | None = None
 ) -> Iterator[tuple[str, int, bytes]]:
-    """Yield topic, stamp (ns since the epoch) and data of the messages on `topics`, in order, starting at a stamp.
+    """Yield topic, stamp (ns since the epoch) and data of each message on `topics` in order, beginning at `start`.
 
     Raises:
         Ros2Error: the bag is damaged.

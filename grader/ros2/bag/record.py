@@ -1,4 +1,4 @@
-"""The verb `bag record`: write the messages on topics into a new bag."""
+"""The verb `bag record`: write the messages on topics to a new bag."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _SELECTS = ("all", "all_topics", "topic_types", "regex")
 _PROFILES = {"none": "none", "fastwrite": "none", "zstd_fast": "storage", "zstd_small": "storage"}
-"""The preset profiles of the MCAP storage, and what each compresses."""
+"""The preset profiles of the MCAP storage, and the compression mode of each."""
 NOT_HERE = (
     "services",
     "all_services",
@@ -29,7 +29,7 @@ NOT_HERE = (
     "qos_profile_overrides_path",
     "custom_data",
 )
-"""Options that are not supported here; docs/ros2-differences.md has the reasons."""
+"""Options that are not supported here. docs/ros2-differences.md explains why."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -143,7 +143,7 @@ def run(args: argparse.Namespace) -> int:
     """Record until Ctrl-C.
 
     Raises:
-        Ros2Error: no topic is selected, the folder exists already, or the disk is full.
+        Ros2Error: no topic is selected, the folder already exists, or the disk is full.
     """
     folder = Path(args.output or time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     args.topics = absolute(args.topics or args.topics_positional)
@@ -162,10 +162,10 @@ def run(args: argparse.Namespace) -> int:
 
 
 def wanted(args: argparse.Namespace) -> Callable[[str, str], bool]:
-    """Return whether the options select a topic with this type.
+    """Return a function that tells whether the options select a topic with a given type.
 
     Raises:
-        Ros2Error: a regular expression cannot be read.
+        Ros2Error: a regular expression is invalid.
     """
     chosen, excluded = _compiled(args.regex), _compiled(args.exclude_regex)
     others = absolute(args.exclude_topics)
@@ -189,7 +189,7 @@ def _compiled(pattern: str) -> re.Pattern[str] | None:
 
 
 def _validate(args: argparse.Namespace, folder: Path) -> None:
-    """Raise Ros2Error with the real message if options do not fit together."""
+    """Raise Ros2Error with the message of the real `ros2` if options cannot be combined."""
     selects = any(getattr(args, name) for name in _SELECTS)
     unknown = " ".join(f"--{name.replace('_', '-')}" for name in NOT_HERE if getattr(args, name) is not None)
     rules: dict[str, object] = {

@@ -1,4 +1,4 @@
-"""The node that records: it subscribes to topics when they appear, and writes the messages as they were sent."""
+"""The node that records a bag. It subscribes to topics when they appear, and writes the messages unchanged."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class Recorder:
-    """Records with the options of `bag record` until it is interrupted."""
+    """Records a bag with the options of `bag record` until it is interrupted."""
 
     def __init__(
         self, node: Node, writer: BagWriter, args: argparse.Namespace, wanted: Callable[[str, str], bool]
@@ -130,7 +130,7 @@ class Recorder:
         return write
 
     def _write(self, act: Callable[[], None]) -> None:
-        """Write a message, unless the disk was full before."""
+        """Write to the bag, unless an earlier write failed because the disk was full."""
         if self._full is not None:
             return
         try:
@@ -139,10 +139,10 @@ class Recorder:
             self._full = error
 
     def _drain(self) -> None:
-        """Write the messages that had arrived at the end but were not handled yet.
+        """Write the messages that arrived before the end but have not been handled yet.
 
-        They are taken from the subscriptions directly, since an executor handles what is ready in any order. At most as
-        many messages as the depth of the queue can wait.
+        They are taken directly from the subscriptions, since an executor handles ready callbacks in any order. The
+        number of waiting messages is limited by the depth of the queue.
         """
         for subscription in self._node.subscriptions:
             for _ in range(qos.DEPTH):
@@ -157,9 +157,9 @@ class Recorder:
 
 @contextmanager
 def _ending(end: Callable[[], None]) -> Iterator[None]:
-    """Let Ctrl-C and SIGTERM call `end` instead of raising an exception, which would cut a message in half.
+    """Let Ctrl-C and SIGTERM call `end` instead of raising an exception, which could truncate a message.
 
-    Later signals are ignored, so that the bag can be finished.
+    Later signals have no further effect, so that the bag can be completed.
     """
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda *_: end())

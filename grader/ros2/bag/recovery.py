@@ -1,4 +1,4 @@
-"""Recover a bag whose recording was killed: write everything that can still be read as a whole bag."""
+"""Recover a bag whose recorder was killed: write everything that can still be read to a complete bag."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Saved(NamedTuple):
-    """A message of a damaged file."""
+    """A message from a damaged file."""
 
     stamp_ns: int
     topic: str
@@ -32,12 +32,12 @@ class Saved(NamedTuple):
 
 
 def recover(folder: Path) -> None:
-    """Replace the files of a bag by a whole bag with all messages that can be read, in order.
+    """Replace the files of a bag with a complete bag that contains all readable messages in order.
 
-    The old files stay until the new ones are complete.
+    The old files are kept until the new ones are complete.
 
     Raises:
-        Ros2Error: there is no file of a bag, or none can be read.
+        Ros2Error: the folder has no files of a bag, or they cannot be read.
     """
     files = sorted(file for file in folder.iterdir() if file.suffix in (".mcap", ".db3"))
     if not files:
@@ -88,7 +88,7 @@ def _mcap(file: Path) -> Iterator[Saved]:
 def _sqlite(file: Path) -> Iterator[Saved]:
     query = "SELECT timestamp, name, type, data FROM messages JOIN topics ON topics.id = topic_id ORDER BY timestamp"
     try:
-        # Opening the database undoes an incomplete write.
+        # Opening the database rolls back an incomplete write.
         with closing(sqlite3.connect(file)) as database:
             yield from (Saved(*row) for row in database.execute(query))
     except sqlite3.Error as error:

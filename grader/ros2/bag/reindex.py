@@ -20,7 +20,7 @@ def run(args: argparse.Namespace) -> int:
     """Write the metadata again, and repair the end of an incomplete file.
 
     Raises:
-        Ros2Error: it is not the folder of a bag, or nothing of it can be read.
+        Ros2Error: the path is not the folder of a bag, or its files cannot be read.
     """
     if not args.bag_path.is_dir():
         message = "[ERROR] [ros2bag]: Must specify a bag directory"

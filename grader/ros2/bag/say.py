@@ -1,4 +1,4 @@
-"""Messages of the recorder and the player on standard error, in the format of rclcpp's logger."""
+"""Print messages of the recorder and the player on standard error, in the format of rclcpp's logger."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _COLOURS = {"WARN": "\033[33m", "ERROR": "\033[31m", "FATAL": "\033[31m"}
 
 @dataclass(frozen=True)
 class Logger:
-    """Prints messages of a level and those above it.
+    """Prints messages of a given level and above.
 
     Example:
         >>> Logger("rosbag2_recorder").info("Recording...")  # doctest: +SKIP
@@ -25,7 +25,7 @@ class Logger:
     level: str = "info"
 
     def info(self, text: str) -> None:
-        """Print a message of the level info."""
+        """Print an informational message."""
         self._say("INFO", text)
 
     def warn(self, text: str) -> None:
@@ -42,6 +42,6 @@ class Logger:
         seconds, nanoseconds = divmod(time.time_ns(), 10**9)
         line = f"[{level}] [{seconds}.{nanoseconds:09}] [{self.name}]: {text}"
         colour = _COLOURS.get(level, "") if sys.stderr.isatty() else ""
-        # Finish the bag even if nobody reads the messages any more.
+        # The bag must be completed even if nobody reads the messages anymore.
         with suppress(BrokenPipeError):
             print(f"{colour}{line}\033[0m" if colour else line, file=sys.stderr, flush=True)

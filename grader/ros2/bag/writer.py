@@ -1,4 +1,4 @@
-"""Write a bag as rosbag2 does, so that it can be read even if the writer was killed."""
+"""Write a bag as rosbag2 does, so that the bag can be recovered even if the writer was killed."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ _VERSION: Literal[9] = 9
 """The version of rosbag2's metadata that Jazzy reads and writes."""
 _INFORMATION = "rosbag2_bagfile_information"
 _KEEP_S = 1.0
-"""How often messages are written to the file: a killed recorder loses at most the messages of this time."""
+"""The interval at which messages are written to the file. A killed recorder loses at most this much of a recording."""
 _ENDINGS = {"mcap": ".mcap", "sqlite3": ".db3"}
 
 
 class BagWriter:
-    """A new bag as a context manager; leaving it writes the remaining messages and the metadata.
+    """A new bag as a context manager. On exit, it writes the remaining messages and the metadata.
 
     Args:
-        folder: The folder of the bag; it must not exist.
+        folder: The folder of the bag, which must not exist.
         storage: "mcap" or "sqlite3".
-        compression: "none", "file", "message" or "storage" (inside of the MCAP file).
+        compression: "none", "file", "message" or "storage" (inside the MCAP file).
 
     Raises:
         Ros2Error: the folder cannot be created.
@@ -64,7 +64,7 @@ class BagWriter:
         """Add a topic, so that its messages can be written.
 
         Raises:
-            Ros2Error: its type is not installed here.
+            Ros2Error: the type of the topic is not installed.
         """
         register(self._types, kind, index.prefixes())
         if kind not in self._types.types:
@@ -77,9 +77,9 @@ class BagWriter:
         """Write a message.
 
         Args:
-            topic: A topic that was added.
-            kind: Its type.
-            stamp_ns: When it arrived (ns since the epoch).
+            topic: A topic that has been added.
+            kind: The type of the topic.
+            stamp_ns: The time at which the message arrived (ns since the epoch).
             data: The message as it was sent (CDR).
 
         Raises:
@@ -88,7 +88,7 @@ class BagWriter:
         self._writer.write(self._connections[topic, kind], stamp_ns, data)
 
     def keep(self) -> None:
-        """Flush the messages to the file, at most once per second; then they are safe if this process is killed."""
+        """Flush the messages to the file, at most once per second, so that they survive if this process is killed."""
         if time.monotonic() - self._kept_at < _KEEP_S:
             return
         self._kept_at = time.monotonic()
@@ -118,7 +118,7 @@ class BagWriter:
 def _as_rosbag2_names_it(folder: Path, ending: str) -> None:
     """Name the file and the distribution as rosbag2 does: bag/bag_0.mcap, jazzy.
 
-    The metadata is replaced last; if it is missing, `ros2 bag reindex` writes it again.
+    The metadata is replaced last. If it is missing, `ros2 bag reindex` writes it again.
     """
     metadata = folder / "metadata.yaml"
     data = yaml.safe_load(metadata.read_text("utf-8"))

@@ -1,4 +1,4 @@
-"""The verb `component list`: the running containers. Only a full ROS 2 can list the components in them."""
+"""The verb `component list`: the running containers. Only a full ROS 2 can list their components."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print them.
+    """Print the containers.
 
     Raises:
         Ros2Error: there is no such container, or the user asked for its components.

@@ -19,7 +19,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print them.
+    """Print the components.
 
     Raises:
         Ros2Error: there is no such package.

@@ -1,4 +1,4 @@
-"""How commands start, ask and stop the daemon. Every command works without it."""
+"""Start, query and stop the daemon from a command. Every command also works without the daemon."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from grader.common.interpreter import interpreter
 from grader.ros2.daemon import place
 
 ANSWER_S = 8.0
-"""Longer than the daemon waits for nodes that exist but send nothing."""
+"""How long to wait for an answer. This is longer than the daemon waits for nodes that exist but send nothing."""
 _POLL_S = 0.02
 
 
 def ask(call: str) -> dict[str, Any] | None:
-    """Return the daemon's answer to "look", "ping" or "stop"; None if there is no daemon."""
+    """Return the daemon's answer to "look", "ping" or "stop", or None if there is no daemon."""
     folder = place.folder()
     if folder is None:
         return None
@@ -45,7 +45,7 @@ def is_running() -> bool:
 
 
 def start(*, debug: bool = False) -> None:
-    """Start a daemon; it ends at once if there is one already. With `debug` it logs to this terminal."""
+    """Start a daemon, which exits immediately if one is already running. With `debug`, it logs to this terminal."""
     target = None if debug else subprocess.DEVNULL
     server = interpreter("-m", "grader.ros2.daemon.server", *(["--debug"] if debug else []), searches=True)
     subprocess.Popen(
@@ -55,19 +55,19 @@ def start(*, debug: bool = False) -> None:
         stderr=target,
         env=server.env,
         cwd="/",
-        # Ctrl-C in this terminal must not end the daemon.
+        # Ctrl-C in this terminal must not stop the daemon.
         start_new_session=True,
     )
 
 
 def start_for_later() -> None:
-    """Start a daemon for the next command, unless GRADER_ROS2_DAEMON=0 forbids it."""
+    """Start a daemon for the next command, unless it is disabled by GRADER_ROS2_DAEMON=0."""
     if os.environ.get("GRADER_ROS2_DAEMON") != "0" and place.folder() is not None:
         start()
 
 
 def wait_until_ended(timeout_s: float) -> bool:
-    """Wait until the daemon's process has ended; return False if it has not."""
+    """Wait until the daemon's process has exited; return False if the timeout expires first."""
     folder = place.folder()
     if folder is None:
         return True

@@ -1,7 +1,7 @@
 """The address of the daemon for this user, this domain and this network.
 
-The socket is in a folder that nobody else may enter. Its name depends on everything that decides which graph a node
-sees.
+The socket is in a folder that nobody else can access. Its name depends on everything that determines which graph a
+node sees.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 PROTOCOL = 1
-"""A version in the name, so that another version of this code starts its own daemon."""
+"""A version number in the name of the socket, so that another version of this code starts its own daemon."""
 _DECIDE = (
     "FASTDDS_BUILTIN_TRANSPORTS",
     "FASTDDS_DEFAULT_PROFILES_FILE",
@@ -33,7 +33,7 @@ _DECIDE = (
     "ROS_SECURITY_KEYSTORE",
     "ROS_STATIC_PEERS",
 )
-"""The environment variables that decide which graph a node sees."""
+"""The environment variables that determine which graph a node sees."""
 
 
 def domain() -> str:
@@ -50,7 +50,7 @@ def name() -> str:
 
 
 def folder() -> Path | None:
-    """Return the folder of the socket, and create it if necessary; None if there cannot be a private one."""
+    """Return the folder of the socket, and create it if necessary. Return None if no private folder is possible."""
     runtime = os.environ.get("XDG_RUNTIME_DIR", "")
     for place in ([Path(runtime, "grader")] if runtime.startswith("/") else []) + [xdg.cache() / "daemon"]:
         try:
@@ -65,7 +65,7 @@ def folder() -> Path | None:
 
 @contextmanager
 def address(where: Path, which: str) -> Iterator[str]:
-    """Return a short path of the socket: an address has at most 108 bytes, and a home folder may have a long path."""
+    """Yield a short path to the socket. An address has at most 108 bytes, but the path of a home folder may be long."""
     descriptor = os.open(where, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
         yield f"/proc/self/fd/{descriptor}/{which}"
@@ -74,7 +74,7 @@ def address(where: Path, which: str) -> Iterator[str]:
 
 
 def lock(file: IO[str]) -> bool:
-    """Take the lock that a daemon holds as long as it runs; return whether it was free."""
+    """Try to acquire the lock that a daemon holds while it runs; return whether the lock was free."""
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

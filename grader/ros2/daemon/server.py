@@ -1,6 +1,6 @@
-"""The daemon's process: a node that watches the graph, and a socket where commands of the same user ask for it.
+"""The daemon's process: a node that watches the graph, and a socket on which the user's commands can query it.
 
-It ends after a long idle time, on request, and when its socket has been removed.
+The daemon exits after a long idle time, on request, or when its socket has been removed.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
 IDLE_S = float(os.environ.get("GRADER_ROS2_DAEMON_IDLE_S", "1800"))
 TICK_S = 1.0
 _REQUEST_S = 2.0
-"""How long to wait for the request of a connected client."""
+"""How long to wait for a connected client to send its request."""
 
 
 def main() -> int:
-    """Serve until the end; return 0, also if another daemon is running already."""
+    """Run the daemon; return 0, or 1 if there is no folder for the socket. Exit early if another daemon is running."""
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
         signal.signal(number, _end)
     folder = place.folder()
@@ -57,12 +57,12 @@ def _end(*_: int | FrameType | None) -> None:
 
 
 def _serve(folder: Path, name: str, debug: IO[str] | None) -> None:
-    # Import rclpy only now: a second daemon should notice early that it is not needed.
+    # Import rclpy only now, so that a second daemon finds out quickly that it is not needed.
     from grader.graph.discovery import Settling, cli_node
 
     file = folder / f"{name}.socket"
     with cli_node(f"_ros2cli_daemon_{place.domain()}_{uuid.uuid4().hex}", patient=True) as node:
-        # We hold the lock, so the process that left the file has ended.
+        # This process holds the lock, so the process that left the file behind has exited.
         file.unlink(missing_ok=True)
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as listening:
             before = os.umask(0o077)
@@ -93,7 +93,7 @@ def _answer_all(listening: socket.socket, node: Node, settling: Settling, wanted
     with selectors.DefaultSelector() as selector:
         selector.register(listening, selectors.EVENT_READ)
         while wanted() and time.monotonic() - used < IDLE_S:
-            # By looking now and then, the daemon knows how long nothing has changed, and can answer at once.
+            # The daemon looks regularly, so it knows how long the graph has not changed, and can answer immediately.
             settling.observe()
             if not selector.select(TICK_S):
                 continue

@@ -20,10 +20,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Start the daemon and wait until it answers.
+    """Start the daemon and wait until it responds.
 
     Raises:
-        Ros2Error: the daemon does not answer.
+        Ros2Error: the daemon does not respond.
     """
     from grader.ros2.daemon import client
 

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def add(_: argparse.ArgumentParser) -> None:
-    """Add no arguments: the verb has none."""
+    """Add no arguments, since the verb has none."""
 
 
 def run(_: argparse.Namespace) -> int:

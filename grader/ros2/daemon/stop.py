@@ -13,14 +13,14 @@ _ENDED_S = 10.0
 
 
 def add(_: argparse.ArgumentParser) -> None:
-    """Add no arguments: the verb has none."""
+    """Add no arguments, since the verb has none."""
 
 
 def run(_: argparse.Namespace) -> int:
-    """Stop the daemon and wait until it has ended.
+    """Stop the daemon and wait until it has exited.
 
     Raises:
-        Ros2Error: the daemon does not end.
+        Ros2Error: the daemon does not exit.
     """
     from grader.ros2.daemon import client
 

@@ -1,4 +1,4 @@
-"""The definition of an installed interface, with the definitions of its fields."""
+"""The definition of an installed interface, including the definitions of its fields."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 _FIELD = re.compile(r"\s*([A-Za-z][\w/]*)(<=\d+)?(\[[^\]]*\])?\s+[A-Za-z]")
 _PRIMITIVE = re.compile(r"bool|byte|char|float(32|64)|u?int(8|16|32|64)|w?string")
 _DEEPEST = 20
-"""The greatest depth of nested types: a damaged file could define a type that contains itself."""
+"""The maximum depth of nested types, because a damaged file could define a type that contains itself."""
 
 
 def lines(name: str, *, comments: bool = True, nested_comments: bool = False, depth: int = 0) -> Iterator[str]:
-    """Return the lines of an interface; without `comments`, also without empty lines.
+    """Yield the lines of an interface. Without `comments`, empty lines are omitted, too.
 
     Raises:
         Ros2Error: the interface is not installed.
@@ -39,7 +39,7 @@ def lines(name: str, *, comments: bool = True, nested_comments: bool = False, de
 
 
 def _strip_comment(line: str) -> str:
-    """Return the line as `--no-comments` prints it. Like the real `ros2`, it keeps a # with a space after it."""
+    """Return the line as `--no-comments` prints it. Like the real `ros2`, keep a # that is followed by a space."""
     before = _without_comment(line)
     behind = line[len(before) :]
     if not before.strip() or not behind:
@@ -48,7 +48,7 @@ def _strip_comment(line: str) -> str:
 
 
 def _type_of(line: str, package: str) -> str | None:
-    """Return the full name of a field's type; None for a primitive, a constant, or a line without a field."""
+    """Return the full name of a field's type, or None if it is primitive or the line does not define a field."""
     match = _FIELD.match(line)
     if match is None or _PRIMITIVE.fullmatch(match[1]):
         return None
@@ -57,7 +57,7 @@ def _type_of(line: str, package: str) -> str | None:
 
 
 def _without_comment(line: str) -> str:
-    """Return the line without its comment; a # inside a string's default value does not begin a comment."""
+    """Return the line without its comment. A # inside the default value of a string does not begin a comment."""
     quote = ""
     for place, char in enumerate(line):
         if quote:

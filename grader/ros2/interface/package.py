@@ -20,7 +20,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the interfaces, sorted; nothing for a package without interfaces."""
+    """Print the interfaces, sorted. For a package without interfaces, print nothing."""
     kinds = chosen(args) or index.KINDS
     for name in index.interfaces(args.package_name):
         if name.split("/")[1] in kinds:

@@ -17,7 +17,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the packages, sorted; if several kinds are given, the first one counts."""
+    """Print the packages, sorted. If several kinds are given, only the first of them has an effect."""
     kinds = chosen(args)[:1]
     for package in index.interface_packages():
         if not kinds or any(name.split("/")[1] in kinds for name in index.interfaces(package)):

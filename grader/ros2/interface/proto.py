@@ -1,4 +1,4 @@
-"""The verb `interface proto`: all fields of an interface with their default values, to fill in."""
+"""The verb `interface proto`: a template with all fields of an interface and their default values."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import argparse
 
 _PARTS = {"msg": "", "srv": "Request", "action": "Goal"}
-"""The part of each kind of interface that a user fills in."""
+"""For each kind of interface, the part that a user fills in."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class _FromInput(argparse.Action):
-    """An argparse action that stores the value, or the first line of standard input for "-"."""
+    """An argparse action that stores the value, or the first line of standard input if the value is "-"."""
 
     def __call__(
         self,

@@ -1,4 +1,4 @@
-"""Find nodes with a lifecycle, and call their services."""
+"""Find lifecycle nodes, and call their services."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ def add_node(parser: argparse.ArgumentParser, nargs: str | None = None, text: st
 
 
 def lifecycle_nodes(args: argparse.Namespace, *, hidden: bool) -> list[str]:
-    """Return the full names of the nodes with a lifecycle, sorted."""
+    """Return the full names of the lifecycle nodes, sorted."""
     graph = look(args)
     names = sorted(set(graph.node_names(all_of_them=hidden)))
     return [name for name in names if _GET_STATE in types_of(graph.services, f"{name}/get_state")]
 
 
 def chosen(args: argparse.Namespace) -> str:
-    """Return the full name of the node that the user named.
+    """Return the full name of the node that the user asked for.
 
     Raises:
-        Ros2Error: there is no node with this name that has a lifecycle.
+        Ros2Error: there is no lifecycle node with this name.
     """
     name = args.node_name if args.node_name.startswith("/") else f"/{args.node_name}"
     known = lifecycle_nodes(args, hidden=args.include_hidden_nodes)
@@ -51,10 +51,10 @@ def chosen(args: argparse.Namespace) -> str:
 
 
 def call(node: Node, kind: str, service: str, request: Any = None) -> Any:  # noqa: ANN401
-    """Call a service of the package lifecycle_msgs, and return the response.
+    """Call a service with a type from lifecycle_msgs, and return the response.
 
     Raises:
-        Ros2Error: the node does not answer.
+        Ros2Error: the node does not respond.
     """
     import lifecycle_msgs.srv
 

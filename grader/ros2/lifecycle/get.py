@@ -1,4 +1,4 @@
-"""The verb `lifecycle get`: the state of a node, or of all nodes with a lifecycle."""
+"""The verb `lifecycle get`: the state of a lifecycle node, or of all lifecycle nodes."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print it.
+    """Print the state.
 
     Raises:
-        Ros2Error: there is no such node, or it does not answer.
+        Ros2Error: there is no such node, or it does not respond.
     """
     from grader.graph.discovery import cli_node
 

@@ -17,10 +17,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print them.
+    """Print the transitions.
 
     Raises:
-        Ros2Error: there is no such node, or it does not answer.
+        Ros2Error: there is no such node, or it does not respond.
     """
     from grader.graph.discovery import cli_node
 

@@ -1,4 +1,4 @@
-"""The verb `lifecycle nodes`: the names of the nodes that have a lifecycle."""
+"""The verb `lifecycle nodes`: the names of the lifecycle nodes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print them, sorted."""
+    """Print the names of the nodes, sorted."""
     found = lifecycle_nodes(args, hidden=args.all)
     if args.count_nodes:
         print(len(found))

@@ -22,7 +22,7 @@ def run(args: argparse.Namespace) -> int:
     """Request the transition, and print whether it was successful.
 
     Raises:
-        Ros2Error: there is no such node, it does not answer, or it cannot make the transition now.
+        Ros2Error: there is no such node, it does not respond, or the transition is not available now.
     """
     from grader.graph.discovery import cli_node
 

@@ -1,4 +1,4 @@
-"""The group and the port that both verbs of `ros2 multicast` use."""
+"""The options for the multicast group and the port, which both verbs of `ros2 multicast` have."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The verb `multicast receive`: wait for one UDP multicast packet."""
+"""The verb `multicast receive`: wait for a UDP multicast packet."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the packet that arrives.
+    """Wait for a packet and print it.
 
     Raises:
         Ros2Error: the network does not allow listening.

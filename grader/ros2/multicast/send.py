@@ -1,4 +1,4 @@
-"""The verb `multicast send`: send one UDP multicast packet."""
+"""The verb `multicast send`: send a UDP multicast packet."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The parameters of another node, read and set with its services. Needs rclpy."""
+"""Read and set the parameters of another node through its services. This module needs rclpy."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 ANSWER_S = 5.0
-"""How long to wait for the answer of a busy node."""
+"""How long to wait for a response from a busy node."""
 _POLL_S = 0.02
 _TYPES = {
     ParameterType.PARAMETER_NOT_SET: ("not set", "Parameter not set."),
@@ -38,10 +38,10 @@ _TYPES = {
 
 
 class Parameters:
-    """The parameters of one node. Every method raises Ros2Error if the node does not answer."""
+    """The parameters of one node. Every method raises Ros2Error if the node does not respond."""
 
     def __init__(self, node: Node, node_name: str) -> None:
-        """Create the clients; `node_name` is the full name of the node that has the parameters."""
+        """Access the parameters of the node with the full name `node_name`, using clients of `node`."""
         self._node = node
         self.node_name = node_name
 
@@ -60,17 +60,17 @@ class Parameters:
             self._node.destroy_client(client)
 
     def names(self, prefixes: Sequence[str] = ()) -> list[str]:
-        """Return the names, sorted; with `prefixes`, only those below them."""
+        """Return the sorted names of the parameters, or only of those under `prefixes` if there are any."""
         answer = self._call(ListParameters, "list_parameters", ListParameters.Request(prefixes=list(prefixes)))
         return sorted(answer.result.names)
 
     def get(self, name: str) -> ParameterValue | None:
-        """Return one value; None if the node does not know the name."""
+        """Return the value of a parameter, or None if the node does not know the name."""
         found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=[name])).values
         return found[0] if found else None
 
     def all_values(self) -> dict[str, Any]:
-        """Return all values by name."""
+        """Return all values, with the names as keys."""
         names = self.names()
         found = self._call(GetParameters, "get_parameters", GetParameters.Request(names=names)).values
         return {name: parameter_value_to_python(value) for name, value in zip(names, found, strict=False)}
@@ -81,7 +81,7 @@ class Parameters:
         return list(self._call(SetParameters, "set_parameters", request).results)
 
     def describe(self, names: Sequence[str]) -> list[Any]:
-        """Return the descriptor of each parameter; an empty list if the node does not know one of them."""
+        """Return the descriptor of each parameter, or an empty list if the node does not know one of the names."""
         request = DescribeParameters.Request(names=list(names))
         return list(self._call(DescribeParameters, "describe_parameters", request).descriptors)
 
@@ -114,7 +114,7 @@ def _found(node: Node, args: argparse.Namespace) -> str:
 
 
 def with_parameters(node: Node, *, all_of_them: bool) -> list[str]:
-    """Return the names of the nodes that offer parameters, sorted."""
+    """Return the sorted names of the nodes that have parameters."""
     offered = {service for service, _ in node.get_service_names_and_types()}
     found = nodes(node, all_of_them=True)
     shown = [name for name in found if all_of_them or not hidden(name.rpartition("/")[2])]

@@ -20,7 +20,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the descriptions; return 0 even if the node does not know a parameter and so describes none."""
+    """Print the descriptions. Return 0 even if the node does not know a parameter and therefore describes none."""
     from grader.ros2.param.client import parameters_of
 
     with parameters_of(args) as parameters:

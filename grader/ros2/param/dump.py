@@ -26,7 +26,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def dumped(node_name: str, values: dict[str, Any]) -> str:
-    """Return the values as a parameter file: each dot in a name begins a new level."""
+    """Return the values in the format of a parameter file. Each dot in a name begins a new level."""
     import yaml
 
     tree: dict[str, Any] = {}

@@ -23,7 +23,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the value.
 
     Raises:
-        Ros2Error: the node does not have it.
+        Ros2Error: the node or the parameter does not exist.
     """
     from grader.ros2.param.client import parameters_of, told
 

@@ -1,4 +1,4 @@
-"""The verb `param list`: the names of the parameters of one node, or of all."""
+"""The verb `param list`: the names of the parameters of one node or of all nodes."""
 
 from __future__ import annotations
 

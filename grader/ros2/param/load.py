@@ -23,10 +23,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Set all parameters; return 0 even if the node refuses some.
+    """Set all parameters. Return 0 even if the node rejects some of them.
 
     Raises:
-        Ros2Error: the file cannot be read, or is not a parameter file.
+        Ros2Error: the file cannot be read, or it is not a parameter file.
     """
     from grader.ros2.param.client import parameters_of
 
@@ -45,7 +45,7 @@ def read(file: str, *, use_wildcard: bool) -> list[Any]:
     """Return the parameters (rcl_interfaces/msg/Parameter) in a file.
 
     Raises:
-        Ros2Error: it cannot be read, or is not a parameter file.
+        Ros2Error: the file cannot be read, or it is not a parameter file.
     """
     import yaml
     from rclpy.parameter import parameter_dict_from_yaml_file

@@ -21,7 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Set the parameter; return 0 even if the node refuses."""
+    """Set the parameter. Return 0 even if the node rejects the value."""
     from rcl_interfaces.msg import Parameter
 
     from grader.ros2.param.client import parameters_of
@@ -33,10 +33,10 @@ def run(args: argparse.Namespace) -> int:
 
 
 def value_of(text: str) -> Any:  # noqa: ANN401
-    """Return a ParameterValue from YAML.
+    """Convert a string in YAML to a ParameterValue.
 
     Raises:
-        Ros2Error: it is not YAML.
+        Ros2Error: the string is not valid YAML.
     """
     import yaml
     from rclpy.parameter import get_parameter_value
@@ -49,7 +49,7 @@ def value_of(text: str) -> Any:  # noqa: ANN401
 
 
 def report(parameters: Any, wanted: Any, done: str, failed: str) -> None:  # noqa: ANN401
-    """Set one parameter, and print `done`, or `failed` on standard error, with the node's reason."""
+    """Set one parameter. Print `done`, or `failed` on standard error, followed by the reason that the node gives."""
     result = parameters.set([wanted])[0]
     reason = f": {result.reason}" if result.reason else ""
     if result.successful:

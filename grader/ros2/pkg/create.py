@@ -1,4 +1,4 @@
-"""The verb `pkg create`: a new package, with the files that its build type needs."""
+"""The verb `pkg create`: create a package with the files that its build type requires."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
     """Create the package.
 
     Raises:
-        Ros2Error: the folder exists already or cannot be created, or the name is "test".
+        Ros2Error: the folder already exists or cannot be created, or a name is not allowed.
     """
     from grader.ros2.pkg import files, licenses
 
@@ -125,7 +125,7 @@ def _check(wanted: NewPackage) -> None:
 
 
 def _advice(wanted: NewPackage) -> list[str]:
-    """Return warnings about choices that cause problems later."""
+    """Return warnings about choices that will cause problems later."""
     advice = []
     names = (("package", wanted.name), ("node", wanted.node), ("library", wanted.library))
     odd = [f"{what} name '{value}'" for what, value in names if value is not None and not _PYTHON_NAME.fullmatch(value)]

@@ -1,4 +1,4 @@
-"""The verb `pkg executables`: the executables that `ros2 run` can start, of all packages or of one."""
+"""The verb `pkg executables`: the executables in all packages or in one package that `ros2 run` can start."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The files of a new package, made from templates/; each is reported on standard output."""
+"""Create the files of a new package from templates/, and report each file on standard output."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def write(wanted: NewPackage) -> None:
 
 
 class _Files:
-    """Creates folders and files below the package's folder, and prints their names."""
+    """Creates folders and files in the folder of the package, and prints their names."""
 
     def __init__(self, wanted: NewPackage) -> None:
         self._wanted = wanted
@@ -63,7 +63,7 @@ class _Files:
 
 
 def _macro(name: str) -> str:
-    """Return a name for a C++ macro."""
+    """Convert a name to the name of a C++ macro."""
     return "".join(char if char.isalnum() else "_" for char in name).upper()
 
 
@@ -110,7 +110,7 @@ def _write_cmake(wanted: NewPackage, made: _Files) -> None:
 
 
 def _cmake_lists(wanted: NewPackage) -> str:
-    """Return CMakeLists.txt, with its parts in the order that CMake needs."""
+    """Return the content of CMakeLists.txt, with its parts in the order that CMake requires."""
     ament = wanted.build_type == "ament_cmake"
     tools = (["ament_cmake", "ament_cmake_ros"] if wanted.library else ["ament_cmake"]) if ament else []
     filled = {

@@ -1,4 +1,4 @@
-"""The verb `pkg xml`: the manifest of a package, package.xml, or one of its tags."""
+"""The verb `pkg xml`: the manifest of a package (package.xml), or one of its tags."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The package that `pkg create` should create."""
+"""The package that `pkg create` is to create."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class NewPackage:
     name: str
     folder: Path
     shown: str
-    """The folder as it appears in messages: "./my_package"."""
+    """The folder as it appears in messages, for example "./my_package"."""
     build_type: str
     package_format: int
     description: str

@@ -1,4 +1,4 @@
-"""The verb `pkg prefix`: the folder into which a package is installed."""
+"""The verb `pkg prefix`: the folder in which a package is installed."""
 
 from __future__ import annotations
 

@@ -33,10 +33,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Call it once, or with --rate until Ctrl-C.
+    """Call the service once, or repeatedly until Ctrl-C if --rate is given.
 
     Raises:
-        Ros2Error: the type is not installed, or the request does not fit it.
+        Ros2Error: the type is not installed, or the request does not match the type.
     """
     from grader.graph.discovery import cli_node, nap, settle, spin_until
 
@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _say_why(node: Node, name: str, asked: str) -> None:
-    """Print what may be wrong if there is no such service: the type, or the name."""
+    """Print a hint if there is no such service, because its type or its name may be wrong."""
     found: dict[str, Any] = {name: types for name, types in node.get_service_names_and_types() if not hidden(name)}
     # Our own client also announces a type.
     others = [kind for kind in found.pop(name, []) if kind != asked]

@@ -1,4 +1,4 @@
-"""The verb `service echo`: print the requests and responses of a service with introspection switched on."""
+"""The verb `service echo`: print the requests and responses of a service for which introspection is enabled."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def run(args: argparse.Namespace) -> int:
     """Print the events until Ctrl-C.
 
     Raises:
-        Ros2Error: the type of the service cannot be found.
+        Ros2Error: the type of the service cannot be determined.
     """
     from rclpy.qos import QoSPresetProfiles
 
@@ -69,7 +69,7 @@ def _class(node: Node, name: str, args: argparse.Namespace) -> Any:  # noqa: ANN
 
 
 def _as_yaml(event: Any, form: Form) -> str:  # noqa: ANN401
-    """Return an event with the name of its kind instead of the number."""
+    """Return an event as YAML, with the name of the event type instead of its number."""
     shown = plain(event, form)
     shown["info"]["event_type"] = _EVENTS[shown["info"]["event_type"]]
     return f"{dumped(shown, form)}---"

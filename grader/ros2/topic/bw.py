@@ -20,7 +20,7 @@ PRINTED_EVERY_S = 1.0
 
 @dataclass(frozen=True)
 class Bandwidth:
-    """The mean of bytes per second over `messages` messages, and the sizes of the messages in bytes."""
+    """The average number of bytes per second over `messages` messages, and the sizes of the messages in bytes."""
 
     per_second: float
     messages: int
@@ -37,7 +37,7 @@ class Bandwidth:
         )
 
     def _amount(self, value: float) -> str:
-        """Return all four values in the unit that fits the first."""
+        """Return a value in the unit that is suitable for `per_second`, so that all values have the same unit."""
         if self.per_second < 1000:
             return f"{value:.0f} B"
         if self.per_second < 1_000_000:
@@ -46,7 +46,7 @@ class Bandwidth:
 
 
 def bandwidth(arrivals: Sequence[tuple[int, int]], now_ns: int) -> Bandwidth:
-    """Return the bandwidth of messages that arrived at these times (ns) with these sizes (bytes), until now."""
+    """Return the bandwidth from the first arrival until now. `arrivals` has the time (ns) and size of each message."""
     sizes = [size for _, size in arrivals]
     seconds = (now_ns - arrivals[0][0]) * 1e-9
     return Bandwidth(sum(sizes) / seconds, len(sizes), sum(sizes) / len(sizes), min(sizes), max(sizes))

@@ -1,4 +1,4 @@
-"""The verb `topic delay`: how old messages are when they arrive, by the time stamp in their header."""
+"""The verb `topic delay`: the age of messages when they arrive, according to the time stamp in their header."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PRINTED_EVERY_S = 1.0
 
 
 def told(delays_ns: Collection[int]) -> str:
-    """Return the statistics of at least one delay (ns) as text."""
+    """Return the statistics of the delays (ns) as text. There must be at least one delay."""
     mean = sum(delays_ns) / len(delays_ns)
     deviation = math.sqrt(math.fsum((delay - mean) ** 2 for delay in delays_ns) / len(delays_ns))
     return (
@@ -29,7 +29,7 @@ def told(delays_ns: Collection[int]) -> str:
 
 
 class Delays:
-    """The delays of the last messages, by a clock that may be simulated and may be set back."""
+    """The delays of the last messages, measured with a clock that may be simulated and may be set back."""
 
     def __init__(self, window: int) -> None:
         self._delays_ns: deque[int] = deque(maxlen=window)
@@ -51,7 +51,7 @@ class Delays:
         self._news = True
 
     def report(self) -> str | None:
-        """Return what to print after a second; None before the first message."""
+        """Return the text to print every second, or None if there are no delays yet."""
         if not self._delays_ns:
             return None
         news, self._news = self._news, False

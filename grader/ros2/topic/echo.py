@@ -1,4 +1,4 @@
-"""The verb `topic echo`: print what arrives on a topic."""
+"""The verb `topic echo`: print the messages that arrive on a topic."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print messages until Ctrl-C, or for as long as the options say.
+    """Print messages until Ctrl-C, or until a limit set by the options is reached.
 
     Raises:
-        Ros2Error: the topic's type cannot be found, or it has no such field.
+        Ros2Error: the type of the topic cannot be determined, or the type has no such field.
     """
     from grader.graph.discovery import cli_node, spin_until
     from grader.ros2.topic import ends
@@ -87,10 +87,12 @@ def _class(node: Node, topic: str, args: argparse.Namespace) -> Any:  # noqa: AN
 
 
 def matching(expression: str) -> Callable[[Any], bool]:
-    """Return a function that evaluates a Python expression of the message m.
+    """Return a function that evaluates a Python expression with the message as `m`.
+
+    The function raises Ros2Error if the expression fails for a message.
 
     Raises:
-        Ros2Error: it is not Python. The function raises Ros2Error if the expression fails for a message.
+        Ros2Error: the string is not a Python expression.
     """
     try:
         code = compile(expression, "<filter>", "eval")
@@ -109,7 +111,7 @@ def matching(expression: str) -> Callable[[Any], bool]:
 
 
 class Printer:
-    """Prints messages as the options say; `printed` counts them."""
+    """Prints messages in the way that the options describe. `printed` is the number of messages printed so far."""
 
     def __init__(self, args: argparse.Namespace) -> None:
         self.printed = 0
@@ -118,7 +120,7 @@ class Printer:
         self._wanted = matching(args.filter_expr) if args.filter_expr else None
 
     def show(self, message: Any, info: dict[str, Any]) -> None:  # noqa: ANN401
-        """Print a message; `info` is rclpy's information about its transport."""
+        """Print a message. `info` is the information that rclpy provides about its transport."""
         if self._args.once and self.printed:
             return
         parts = [values.field(message, field) for field in self._args.field or ()] or [message]
@@ -129,7 +131,7 @@ class Printer:
 
     def _text(self, parts: list[Any], info: dict[str, Any]) -> str:
         if not any(map(is_message, parts)) and not (self._args.csv and len(parts) > 1):
-            # The value as Python prints it; with --raw, the bytes of a message.
+            # Print the value as Python does. With --raw, it is the bytes of a message.
             before = f"---Got new message, message info:---\n{info}\n---Message data:---\n" if info else ""
             return before + "".join(f"{part}\n---\n" for part in parts)
         if self._args.csv:

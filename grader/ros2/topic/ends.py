@@ -1,4 +1,4 @@
-"""What a verb needs to subscribe to a topic: the full name, the type, and messages if there is no publisher."""
+"""Helpers for verbs that subscribe to a topic: find its full name and type, and warn if it has no publishers."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ def find(node: Node, topic: str, args: argparse.Namespace) -> None:
 
 
 def type_of(node: Node, topic: str, asked: str) -> Any | None:  # noqa: ANN401
-    """Return the class of a topic's messages; None if there is no such topic. `asked` is its name as the user wrote it.
+    """Return the class of a topic's messages, or None if there is no such topic. `asked` is the name that was typed.
 
     Raises:
-        Ros2Error: nodes disagree about its type, or the type is not installed.
+        Ros2Error: nodes disagree about the type of the topic, or the type is not installed.
     """
     types = types_of(tuple(node.get_topic_names_and_types()), topic)
     if not types:
@@ -62,13 +62,13 @@ def not_published(asked: str) -> None:
 
 
 def nearest_topic(node: Node, topic: str, text: str = "") -> str:
-    """Return `text` with the name of the most similar topic."""
+    """Return `text`, followed by a suggestion of the most similar topic if there is one."""
     known = [name for name, _ in node.get_topic_names_and_types() if name != topic]
     return did_you_mean(topic, known, text)
 
 
 def wait_for_type(node: Node, topic: str, asked: str) -> Any:  # noqa: ANN401
-    """Wait until somebody publishes or subscribes on a topic, and return the class of its messages."""
+    """Wait until the topic has a publisher or a subscription, and return the class of its messages."""
     import sys
 
     made = type_of(node, topic, asked)

@@ -1,4 +1,4 @@
-"""The verb `topic hz`: how often messages arrive."""
+"""The verb `topic hz`: the rate at which messages arrive."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PRINTED_EVERY_NS = 1_000_000_000
 
 @dataclass(frozen=True)
 class Rate:
-    """Statistics of the times between messages: the times in s, the rate in Hz, `window` is the number of times."""
+    """Statistics of the intervals between messages (s), and their rate (Hz). `window` is the number of intervals."""
 
     mean_hz: float
     min_s: float
@@ -36,7 +36,7 @@ class Rate:
 
 
 def rate(gaps_ns: Collection[int]) -> Rate:
-    """Return the statistics of at least one time between messages (ns). If all are zero, the rate is 0."""
+    """Return the statistics of one or more intervals between messages (ns). If all are zero, the rate is 0."""
     mean = sum(gaps_ns) / len(gaps_ns)
     deviation = math.sqrt(math.fsum((gap - mean) ** 2 for gap in gaps_ns) / len(gaps_ns))
     hertz = 1e9 / mean if mean > 0 else 0.0
@@ -44,7 +44,7 @@ def rate(gaps_ns: Collection[int]) -> Rate:
 
 
 class Arrivals:
-    """The times between the last messages, by a clock that may be simulated and may be set back."""
+    """The intervals between the last messages, measured with a clock that may be simulated and may be set back."""
 
     def __init__(self, window: int) -> None:
         self._gaps_ns: deque[int] = deque(maxlen=window)
@@ -54,7 +54,7 @@ class Arrivals:
     def add(self, now_ns: int) -> None:
         """Count a message that has arrived."""
         if now_ns == 0:
-            # Simulated time has not begun yet.
+            # Simulated time has not started yet.
             if self._gaps_ns:
                 print("time has reset, resetting counters", flush=True)
                 self._gaps_ns.clear()
@@ -74,7 +74,7 @@ class Arrivals:
         return self._last_ns >= self._told_ns + PRINTED_EVERY_NS
 
     def news(self) -> Rate:
-        """Return the rate if there are new messages; otherwise None."""
+        """Return the current rate, and note that it has been reported. Call it only if `have_news` returns true."""
         self._told_ns = self._last_ns
         return rate(self._gaps_ns)
 
@@ -125,7 +125,7 @@ def run(args: argparse.Namespace) -> int:
             if wanted is None or wanted(message):
                 arrivals.add(clock.now().nanoseconds)
 
-        # Without a filter, the content of a message does not matter, and decoding it would take time.
+        # Without a filter, the content of the messages is irrelevant, and decoding them would take time.
         node.create_subscription(made, topic, count, qos_profile_sensor_data, raw=wanted is None)
         while rclpy.ok():
             spin_until(node, arrivals.have_news)

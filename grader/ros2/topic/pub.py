@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 _TOLD_EVERY_S = 1.0
 _ACKNOWLEDGED_S = 1.0
-"""How long one wait for acknowledgements takes: Ctrl-C has no effect during the wait."""
+"""The maximum wait for acknowledgements. It is short, because Ctrl-C has no effect during the wait."""
 _POLL_S = 0.01
 
 
 def nonnegative_int(text: str) -> int:
-    """Return a whole number of at least 0, for argparse, whose error message contains this function's name."""
+    """Convert an argument to a non-negative integer. The error message of argparse contains this function's name."""
     value = int(text)
     if value < 0:
         raise ValueError
@@ -73,10 +73,10 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Publish until Ctrl-C, or as often as the options say.
+    """Publish until Ctrl-C, or as many times as the options specify.
 
     Raises:
-        Ros2Error: the type is not installed, a value does not fit, or the subscriptions do not appear.
+        Ros2Error: the type is not installed, a value does not match its field, or the subscriptions do not appear.
     """
     from grader.graph.discovery import cli_node, settle
 
@@ -97,7 +97,7 @@ def run(args: argparse.Namespace) -> int:
         except Exception as error:
             wrong = f"The topic '{args.topic_name}' cannot be published on: {str(error).splitlines()[0]}"
             raise Ros2Error(wrong) from error
-        # The subscriptions that exist already should get the first message, too.
+        # Subscriptions that already exist should receive the first message, too.
         settle(node, lambda: publisher.get_subscription_count() >= max(wanted, 1), args.spin_time)
         if wanted:
             _wait_for_subscriptions(node, publisher, topic, wanted, args.max_wait_time_secs)
@@ -114,7 +114,7 @@ def _publish(
     times: int,
     args: argparse.Namespace,
 ) -> None:
-    """Publish `times` messages (0: for ever), and wait until the last one can have arrived."""
+    """Publish `times` messages, or publish forever if it is 0. Then give the last message time to arrive."""
     from rclpy.duration import Duration
 
     from grader.graph.discovery import nap, spin_until
@@ -123,7 +123,7 @@ def _publish(
     sent = 0
     while not times or sent < times:
         left = begun + sent / args.rate - time.monotonic()
-        # Spin the node, so that its clock receives simulated time.
+        # Spin the node with simulated time, so that its clock is updated.
         spin_until(node, lambda: False, left) if args.use_sim_time else nap(left)
         now = node.get_clock().now().to_msg()
         for stamp in stamps:

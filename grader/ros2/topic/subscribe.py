@@ -1,4 +1,4 @@
-"""Subscribe like `topic echo`: with a QoS that matches every publisher, and with reports of lost messages."""
+"""Subscribe to a topic for `topic echo`, with a QoS that matches every publisher, and report lost messages."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def chosen_qos(node: Node, topic: str, args: argparse.Namespace) -> Any:  # noqa: ANN401
-    """Return the QoS of the options, or else one that is as strict as the least strict publisher."""
+    """Return the QoS that the options set, or else a QoS that is as strict as the least strict publisher."""
     profile = qos.profile(args)
     publishers = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
     if qos.is_chosen(args) or not publishers:
@@ -46,7 +46,7 @@ def subscribe(
     profile: Any,  # noqa: ANN401
     args: argparse.Namespace,
 ) -> None:
-    """Call `show` with each message and its information; report lost messages unless the options forbid it."""
+    """Call `show` with each message and its information. Report lost messages unless the options disable this."""
     lost = None if args.no_lost_messages else SubscriptionEventCallbacks(message_lost=_say_lost)
     try:
         node.create_subscription(kind, topic, show, profile, event_callbacks=lost, raw=args.raw)
