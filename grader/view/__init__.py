@@ -1,1 +1,1 @@
-"""The live view: what a simulator does, and the graph of what is running, in a browser or in the terminal."""
+"""The live view: a simulator and the graph of the running nodes, shown in a browser or in the terminal."""

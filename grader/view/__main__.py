@@ -1,4 +1,4 @@
-"""`python -m grader.view (page | terminal) --feed FD ...`: the process of a view, started by its simulator."""
+"""`python -m grader.view (page | terminal) --feed FD ...`: the process of a view, which a simulator starts."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from grader.errors import GraderError
 
 
 def main() -> int:
-    """Run the view until the simulator ends; return the exit code."""
-    # Ctrl-C ends the program without a traceback, even while ROS 2 is being imported.
+    """Run the view until the simulator exits; return the exit code."""
+    # Ctrl-C terminates the program without a traceback, even while ROS 2 is being imported.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     parser = argparse.ArgumentParser(prog="python -m grader.view", description="Started by turtlesim_node --view.")
     parser.add_argument("kind", choices=("page", "terminal"))

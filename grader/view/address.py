@@ -1,7 +1,7 @@
-"""The address of a view: always on this machine only, and if possible the same as the last time.
+"""The address of a view. It is reachable only from this machine, and it stays the same if possible.
 
-The port and the token are stored per user and kind of view, so that an open tab finds a simulator that is started
-again.
+The port and the token are stored for each user and kind of view, so that an open tab can connect to a simulator that
+is started again.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ _TOKEN_CHARS = 22
 
 @dataclass(frozen=True)
 class Address:
-    """A port of 127.0.0.1, and the token that a page must show to read and drive."""
+    """A port on 127.0.0.1, and the token that a page must send to be allowed to read and drive."""
 
     port: int
     token: str
 
     @property
     def url(self) -> str:
-        """The URL to open. A browser does not send the part after the #, so only the page's requests have the token."""
+        """The URL to open. Browsers do not send the part after the #, so only requests of the page have the token."""
         return f"http://{HOST}:{self.port}/#{self.token}"
 
 
 @dataclass(frozen=True)
 class Place:
-    """An address and its listening socket; `before`: it had a view before, so a tab may still be open."""
+    """An address and its listening socket. `before` is true if a view used it before, so a tab may still be open."""
 
     address: Address
     listening: socket.socket
@@ -49,7 +49,7 @@ class Place:
 
 
 def listen(kind: str, port: int | None = None) -> Place:
-    """Take `port`, or else the last port of this kind of view, or else any free port.
+    """Listen on `port`, or else on the last port of this kind of view, or else on any free port.
 
     Raises:
         UsageError: the port is not available.
@@ -58,7 +58,7 @@ def listen(kind: str, port: int | None = None) -> Place:
     token = kept.token if kept else secrets.token_urlsafe(_TOKEN_BYTES)
     listening = _bound(port) if port is not None else _free(kept.port if kept else 0)
     address = Address(listening.getsockname()[1], token)
-    # A second view takes another port, but it is not stored: the next view should use the port of the first one.
+    # If a second view uses another port, that port is not stored. The next view should use the port of the first one.
     if kept is None or port is not None:
         _remember(kind, address)
     return Place(address, listening, before=kept == address)
@@ -83,7 +83,7 @@ def _free(preferred: int) -> socket.socket:
 def _socket(port: int) -> socket.socket:
     with contextlib.ExitStack() as stack:
         made = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
-        # Old connections of the last view may still be closing; a port on which somebody listens is still refused.
+        # Connections of the last view may still be closing. A port on which another process listens is still refused.
         made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         made.bind((HOST, port))
         made.listen(128)
@@ -102,14 +102,14 @@ def _remembered(kind: str) -> Address | None:
         kept = Address(**json.loads(file.read_text("utf-8")))
     except (OSError, ValueError, TypeError):
         return None
-    # Ignore a file that others can read or write: its token is not secret.
+    # Ignore a file that other users can read or write, because its token is not secret.
     ours = stat.st_uid == os.getuid() and not stat.st_mode & 0o077
     whole = isinstance(kept.port, int) and isinstance(kept.token, str) and len(kept.token) >= _TOKEN_CHARS
     return kept if ours and whole else None
 
 
 def _remember(kind: str, address: Address) -> None:
-    """Store the address for the next time; do nothing if the home folder is not writable."""
+    """Store the address for the next view. Do nothing if the home folder is not writable."""
     file = _file(kind)
     new = file.with_suffix(f".{os.getpid()}")
     with contextlib.suppress(OSError):

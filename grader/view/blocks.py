@@ -1,4 +1,4 @@
-"""The canvas as characters: half blocks, each of which is two pixels high, so that a square stays a square."""
+"""The canvas as characters. Each character is a half block that shows two pixels, so that pixels are square."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ if TYPE_CHECKING:
     from grader.view.trail import Stroke
 
 FINER = 4
-"""The picture is drawn this many times larger and then scaled down, which makes the edges smooth."""
+"""The factor by which the picture is drawn larger before it is scaled down, which makes the edges smooth."""
 _TURTLE_PX = 11
-"""The smallest length of a turtle, in the terminal's pixels: its direction must be visible."""
+"""The minimum length of a turtle, in pixels of the terminal. It ensures that the turtle's direction is visible."""
 _SHELL, _SKIN, _EDGE = (47, 125, 50), (124, 197, 118), (255, 255, 255)
 
 Rgb = tuple[int, int, int]
 
 
 class Picture:
-    """A picture that grows with the trail; it is painted again only after a clear or a change of the size."""
+    """A picture that is extended with the trail. It is repainted only if the trail is cleared or the size changes."""
 
     def __init__(self, side: int) -> None:
-        """Create the picture; `side` is in pixels of the terminal: this many columns, and half as many rows."""
+        """Create the picture. `side` is in pixels of the terminal, which means `side` columns and half as many rows."""
         self.side = side
         self._trail = Image.new("RGBA", (side * FINER, side * FINER))
 
@@ -78,13 +78,13 @@ def _draw_turtle(draw: ImageDraw.ImageDraw, x: float, y: float, theta: float, si
 
 
 class Blocks:
-    """Return a picture for rich."""
+    """A picture that rich can print."""
 
     def __init__(self, picture: Image.Image) -> None:
         self._picture = picture
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Return rows of half blocks, with one segment per change of colour."""
+        """Yield rows of half blocks, with a new segment wherever the colours change."""
         width, height = self._picture.size
         pixels: list[Rgb] = list(self._picture.getdata())
         for row in range(0, height - 1, 2):

@@ -9,11 +9,11 @@ import subprocess
 from grader.common.interpreter import clean, interpreter
 
 _OPENED_S = 3.0
-"""A browser that has not failed after this time has opened the page."""
+"""If a browser has not failed after this time, it has opened the page."""
 
 
 def there_is_one() -> bool:
-    """Return whether a page can be shown: there is a screen, or a program of the user (as in a remote editor)."""
+    """Return whether a page can be shown on a screen, or by a program that BROWSER names (as in a remote editor)."""
     return bool(os.environ.get("BROWSER")) or _screen()
 
 
@@ -22,13 +22,13 @@ def _screen() -> bool:
 
 
 def open_page(url: str) -> bool:
-    """Open a page; return whether that worked. A browser that draws in this terminal is never used."""
+    """Open a page; return whether this was successful. Browsers that draw in the terminal are never used."""
     if not there_is_one():
         return False
     opener = shutil.which("xdg-open")
     if _screen() and opener is not None and not os.environ.get("BROWSER"):
         return _started([opener, url], clean(os.environ))
-    # Use a process of its own: some browsers return only when they are closed.
+    # Use a separate process, because some browsers return only when they are closed.
     return _started(*interpreter("-m", "webbrowser", url))
 
 

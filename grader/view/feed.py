@@ -1,7 +1,7 @@
-"""The messages between a simulator and its view: small JSON messages over a socket.
+"""The messages between a simulator and its view, which are small JSON messages over a socket.
 
-The simulator never waits for the view: what it cannot send now is sent with the next frame. If the trail has become too
-long in the meantime, a picture of it is sent.
+The simulator never waits for the view. If it cannot send something now, it sends it with a later frame. If the trail
+has become too long in the meantime, it sends a picture of the trail.
 """
 
 from __future__ import annotations
@@ -24,22 +24,24 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import Pen, Turtle
 
 EVERY_FRAMES = 2
-"""While something changes, a view gets every second frame (32 ms): 31 pictures per second."""
+"""While something changes, a view receives every second frame, which means 31 pictures per second."""
 TOLD_EVERY_S = 0.25
-"""The interval while nothing changes, so that a view updates the rates and knows that the simulator is running."""
+"""The interval between messages while nothing changes. They let a view update the rates and show that the simulator
+is running.
+"""
 MOST_LINES = 1500
-"""How many lines may wait to be sent; each has 60 bytes, so that a message fits into the buffer of a socket."""
+"""The maximum number of lines in a message. Each has 60 bytes, so a message fits into the buffer of a socket."""
 LARGEST = 1 << 20
-"""The largest size of a message in bytes; no message is larger."""
+"""The buffer size for receiving a message, in bytes. No message is larger."""
 LARGEST_PICTURE = 100_000
-"""The largest size of a picture in bytes: the message must fit into the buffer of a socket (212,992 by default)."""
+"""The maximum size of a picture in bytes. The message must fit into the buffer of a socket (212,992 by default)."""
 
 Line = tuple[float, float, float, float, int, int, int, int]
-"""A line from x, y to x, y (m), with its red, green, blue and its width in pixels."""
+"""A line: x and y of its start, x and y of its end (m), red, green, blue, and the width in pixels."""
 
 
 class WatchedCanvas(Canvas):
-    """A canvas that remembers what was drawn on it since the last message."""
+    """A canvas that records the lines that were drawn on it since the last message."""
 
     def clear(self) -> None:
         """Clear the trail."""
@@ -48,7 +50,7 @@ class WatchedCanvas(Canvas):
         self.cleared = True
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
-        """Draw a line, and remember it."""
+        """Draw a line, and record it."""
         super().line(x0, y0, x1, y1, pen)
         if all(map(math.isfinite, (x0, y0, x1, y1))):
             self.lines.append((x0, y0, x1, y1, *pen.color, pen.width))
@@ -56,7 +58,7 @@ class WatchedCanvas(Canvas):
 
 @dataclass
 class Received:
-    """The messages on a topic since the last message to the view: their number, the last one and its time (s)."""
+    """The commands received on a topic since the last message to the view: their count, and the last one's time (s)."""
 
     count: int = 0
     last_s: float = 0.0
@@ -69,7 +71,7 @@ class Feed:
 
     channel: socket.socket
     namespace: str = "/"
-    """The namespace of the node: turtle1's commands arrive on /turtle1/cmd_vel."""
+    """The namespace of the node. In the namespace "/", commands for turtle1 arrive on /turtle1/cmd_vel."""
     canvas: WatchedCanvas = field(default_factory=WatchedCanvas)
     received: dict[str, Received] = field(default_factory=dict)
     sent: dict[str, int] = field(default_factory=dict)
@@ -82,7 +84,7 @@ class Feed:
         self.channel.settimeout(0.0)
 
     def on_command(self, topic: str, _: bytes, twist: Any) -> None:  # noqa: ANN401 - a message of rclpy's
-        """Note a command as it arrives."""
+        """Record a command that has arrived."""
         received = self.received.setdefault(topic, Received())
         received.count += 1
         received.last_s = time.monotonic()
@@ -90,11 +92,11 @@ class Feed:
         received.twist = (linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
 
     def on_publish(self, topic: str, _: str, __: bytes) -> None:
-        """Count a message that is sent."""
+        """Count a message that the simulator publishes."""
         self.sent[topic] = self.sent.get(topic, 0) + 1
 
     def show(self, turtles: Mapping[str, Turtle], *, paused: bool) -> None:
-        """Send the state after a frame to the view, if it is time to."""
+        """Send the state after a frame to the view, if a message is due."""
         self._frames += 1
         if self._frames % EVERY_FRAMES:
             return
@@ -115,7 +117,7 @@ class Feed:
     def _tell(self, state: dict[str, object], now: float) -> None:
         canvas = self.canvas
         if len(canvas.lines) > MOST_LINES:
-            # The view is too slow: it gets a picture of the whole trail instead.
+            # The view is too slow. Send a picture of the whole trail instead.
             canvas.lines.clear()
             self._too_long = True
         message = {
@@ -130,17 +132,17 @@ class Feed:
         try:
             self.channel.send(json.dumps(message, separators=(",", ":")).encode())
         except (BlockingIOError, BrokenPipeError):
-            # Reading the view's requests shows whether it is gone.
+            # If the view has exited, reading its requests will detect it.
             return
         self._shown, self._told_s = state, now
         canvas.lines, canvas.cleared, self._too_long = [], False, False
         self.received, self.sent = {}, {}
 
     def requests(self) -> list[str]:
-        """Return the requests of the view: "pause", "resume", "clear", "reset".
+        """Return the requests of the view, such as "pause", "resume", "clear" and "reset".
 
         Raises:
-            ConnectionError: the view is gone.
+            ConnectionError: the view has exited.
         """
         wanted: list[str] = []
         while True:
@@ -155,18 +157,18 @@ class Feed:
 
 
 def _told(turtle: Turtle) -> tuple[object, ...]:
-    """x, y (m), theta (rad), linear (m/s), angular (rad/s), the pen: red, green, blue, width, down."""
+    """Return x, y (m), theta (rad), linear (m/s), angular (rad/s), and red, green, blue, width, down of the pen."""
     state, pen = turtle.state(), turtle.pen
     return (state.x, state.y, state.theta, state.linear, state.angular, *pen.color, pen.width, pen.down)
 
 
 def _picture(canvas: Canvas) -> str:
-    """Return the trail as PNG, transparent where nothing was drawn."""
+    """Return the trail as a PNG image that is transparent where nothing was drawn."""
     trail = canvas.trail()
     while True:
         file = io.BytesIO()
         trail.save(file, format="PNG")
         if file.tell() <= LARGEST_PICTURE:
             return base64.b64encode(file.getvalue()).decode()
-        # A noisy picture is too large, so it is sent less sharp.
+        # A picture with many details is too large, so reduce its resolution.
         trail = trail.resize((trail.width // 2, trail.height // 2))

@@ -1,4 +1,4 @@
-"""The graph for a page: Graphviz lays out the nodes, topics and arrows, so that it looks as in rqt_graph."""
+"""The graph for a page. Graphviz lays out the nodes, topics and arrows, so that the graph looks as in rqt_graph."""
 
 from __future__ import annotations
 
@@ -14,13 +14,14 @@ if TYPE_CHECKING:
     from grader.graph.graph import Picture
 
 _INCH = 72.0
-"""Points per inch: Graphviz gives sizes in inches and positions in points, with y upwards."""
+"""Points per inch. Graphviz gives sizes in inches and positions in points, with the y axis pointing upwards."""
 
 
 def laid_out(drawn: Picture) -> dict[str, Any]:
-    """Return width and height (points), nodes and topics with centre and size, arrows as points of Bezier curves.
+    """Return the size of the graph (points), its nodes and topics with centre and size, and its arrows.
 
-    An arrow's line is "M" x, y, then three points per piece; `tip` is the point of its head.
+    The points of an arrow are the start of a Bezier curve, followed by three points per piece. `tip` is the tip of its
+    head.
 
     Raises:
         MachineError: Graphviz cannot draw.

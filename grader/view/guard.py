@@ -1,7 +1,8 @@
-"""Decide which requests are allowed: only those of this machine's own page. Pure functions.
+"""Decide which requests are allowed, which are only those of this machine's own page.
 
-A page from another site in the same browser can send requests to 127.0.0.1, too. The browser reveals it: it sends where
-the page came from (Origin) and the name that it used for this machine (Host). And the page does not know the token.
+A page from another site in the same browser can also send requests to 127.0.0.1. It can be detected, because the
+browser sends the site that the page came from (Origin) and the name that it used for this machine (Host). In addition,
+the other page does not know the token.
 """
 
 from __future__ import annotations
@@ -14,11 +15,14 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 NAMES = ("127.0.0.1", "localhost")
-"""The names of this machine; any port is allowed, since ssh may forward another one."""
+"""The allowed names of this machine. Any port is allowed, since ssh may forward a different one."""
 
 
 def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:
-    """Return why a request is rejected; None if it is allowed. `live`: for the connection that reads and drives."""
+    """Return why a request is rejected, or None if it is allowed.
+
+    `live` means that the request is for the connection that reads and drives.
+    """
     host = headers.get("host", "")
     if host.rpartition(":")[0] not in NAMES and host not in NAMES:
         return f"This page is only served to {' and '.join(NAMES)}."
@@ -31,14 +35,14 @@ def refusal(headers: Mapping[str, str], *, live: bool) -> str | None:
 
 
 def admitted(token: str, shown: str) -> bool:
-    """Return whether the token is ours; the comparison takes equally long for every wrong token."""
+    """Return whether the token is correct. The comparison takes the same time for all wrong tokens of equal length."""
     return hmac.compare_digest(token.encode(), shown.encode())
 
 
 class Door:
-    """Lets in a page that knows the token, and a page with a code once.
+    """Admits a page that knows the token, and a page that knows a code that can be used only once.
 
-    The code is for the browser that this process starts: every user of the machine can read command lines.
+    The code is for the browser that this process starts, because every user of the machine can read command lines.
     """
 
     def __init__(self, token: str) -> None:
@@ -52,7 +56,7 @@ class Door:
         return made
 
     def opens(self, shown: str) -> bool:
-        """Return whether a page with this token or code may connect; a code works only once."""
+        """Return whether a page with this token or code may connect. A code is valid only once."""
         if shown in self._codes:
             self._codes.discard(shown)
             return True
@@ -67,7 +71,7 @@ POLICY = (
 
 
 def answer_headers(host: str) -> dict[str, str]:
-    """Return the headers of every answer: the page loads nothing from other sites, and no other site may load it."""
+    """Return the headers of every response. The page can load nothing from other sites, and they cannot load it."""
     return {
         "content-security-policy": POLICY.format(host=host),
         "x-content-type-options": "nosniff",

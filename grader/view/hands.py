@@ -1,4 +1,4 @@
-"""The input from a view: keys that drive while they are held, keys that turn, buttons for the simulator."""
+"""The input from a view: keys that drive while they are held, keys that turn, and buttons for the simulator."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ ARROWS = {
 
 
 def together(held: list[str]) -> Drive:
-    """Return the drive command of all held arrow keys together."""
+    """Return the drive command for all held arrow keys combined."""
     drives = [ARROWS[key] for key in dict.fromkeys(held) if key in ARROWS]
     return Drive(sum(drive.linear for drive in drives), sum(drive.angular for drive in drives))
 
 
 class Hands:
-    """Passes keys on to ROS and buttons to the simulator; `state` knows the turtles."""
+    """Passes keys on to ROS and buttons on to the simulator. `state` contains the turtles."""
 
     def __init__(self, ears: Ears, state: State, simulator: socket.socket | None) -> None:
         self._ears = ears
@@ -60,7 +60,7 @@ class Hands:
             self._ears.drive(topic, Drive(0.0, 0.0))
 
     def gone(self, page: object) -> None:
-        """Forget a closed page. After the last page that drove, the driving node leaves the graph."""
+        """Forget a closed page. When the last page that drove a turtle is closed, the driving node leaves the graph."""
         self.let_go(page)
         if page in self._drivers:
             self._drivers.discard(page)
@@ -68,26 +68,26 @@ class Hands:
                 self._ears.leave()
 
     def pressed(self, turtle: str, key: str) -> None:
-        """Turn to the direction of the key, seen from F, or stop turning."""
+        """Turn towards the key, as seen from the key F, or stop turning."""
         typed, _ = keys(key[:1])
         if typed:
             self.turn(turtle, typed[0])
 
     def turn(self, turtle: str, key: Key) -> None:
-        """Handle a key that acts once, not while it is held."""
+        """Handle a key that acts once when it is pressed, not while it is held."""
         topic = self._full(turtle)
         if topic is not None and isinstance(key, Turn | Cancel):
             self._ears.drive(topic, key)
 
     def request(self, what: str) -> None:
-        """Pause, resume, clear or reset."""
+        """Ask the simulator to pause, resume, clear or reset."""
         if what in BUTTONS and self._simulator is not None:
-            # A simulator that is ending does not read any more.
+            # A simulator that is exiting no longer reads requests.
             with suppress(OSError):
                 self._simulator.send(json.dumps(what).encode())
 
     def _full(self, turtle: str) -> str | None:
-        """Return the turtle's full name; None if there is no such turtle, since no page may invent topics."""
+        """Return the turtle's full name, or None if there is no such turtle, since pages must not create topics."""
         if turtle not in self._state.turtles:
             return None
         return f"{self._state.namespace.rstrip('/')}/{turtle}"

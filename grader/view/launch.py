@@ -1,4 +1,4 @@
-"""Start the view of a simulator in a process of its own, so that no page can delay the turtle."""
+"""Start the view of a simulator in a separate process, so that no page can delay the turtle."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ _SERVED_WITH = ("starlette", "uvicorn", "websockets")
 _WITHOUT_COLOURS = ("", "dumb", "unknown")
 """Values of TERM for terminals without colours."""
 _ENDS_S = 5.0
-"""How long a view may run after its simulator has ended; then it is killed."""
+"""How long a view may continue to run after its simulator has exited. Then it is killed."""
 
 
 class View:
-    """A running view. `paused`: somebody has stopped the turtles' time. `open`: the view is still running."""
+    """A running view. `paused` is true while a user has paused the simulator, and `open` while the view is running."""
 
     def __init__(self, kind: Kind, feed: Feed) -> None:
         self.kind = kind
@@ -74,11 +74,11 @@ def see_that_it_can_be_served() -> None:
 
 @contextmanager
 def view(kind: Kind, port: int | None = None) -> Iterator[View]:
-    """Start a view, and end it.
+    """Start a view, and stop it when the context exits.
 
     Raises:
         UsageError: the port is not available, or there is no terminal to draw in.
-        MachineError: a library that it needs is not installed.
+        MachineError: a library that the view needs is not installed.
     """
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with ours, theirs:
@@ -88,7 +88,7 @@ def view(kind: Kind, port: int | None = None) -> Iterator[View]:
             try:
                 yield View(kind, Feed(ours))
             finally:
-                # The view ends when this is closed, at the end of the simulator.
+                # The view exits when this socket is closed, which happens when the simulator exits.
                 ours.close()
                 try:
                     process.wait(_ENDS_S)
@@ -110,7 +110,7 @@ def _page(feed: socket.socket, port: int | None) -> Iterator[subprocess.Popen[by
             pass_fds=[feed.fileno(), listening.fileno()],
             env=start.env,
             stdin=subprocess.DEVNULL,
-            # Ctrl-C is meant for the simulator; the view ends with it.
+            # Ctrl-C is meant for the simulator. The view exits when the simulator exits.
             start_new_session=True,
         ) as process:
             listening.close()
@@ -120,7 +120,7 @@ def _page(feed: socket.socket, port: int | None) -> Iterator[subprocess.Popen[by
 
 @contextmanager
 def _terminal(feed: socket.socket) -> Iterator[subprocess.Popen[bytes]]:
-    """Give the terminal to the view, and send the simulator's output to the view, which shows it."""
+    """Let the view use the terminal, and redirect the simulator's output to the view, which shows it."""
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         message = (
             "--view terminal needs a terminal to draw in and to read keys from, but standard input or output is not a "
@@ -149,7 +149,7 @@ def _terminal(feed: socket.socket) -> Iterator[subprocess.Popen[bytes]]:
             os.close(was)
         os.close(writing)
         with suppress(termios.error):
-            # Always do this, even if the view has crashed.
+            # Restore the settings of the terminal even if the view has crashed.
             termios.tcsetattr(sys.stdin.fileno(), termios.TCSADRAIN, before)
 
 

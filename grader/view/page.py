@@ -1,4 +1,4 @@
-"""The process that serves the page: it reads from the simulator and from ROS, and handles the pages' requests."""
+"""The process that serves the page. It reads from the simulator and from ROS, and handles the requests of the pages."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
     from grader.view.system import System
 
 _RECONNECTS_S = 2.0
-"""How long a tab that is still open from the last time needs to connect again."""
+"""How long a tab that is still open from an earlier view needs to reconnect."""
 _TIMES = 20
 _SETTINGS: dict[str, Any] = {
     "log_level": "warning",
     "access_log": False,
     "ws": "websockets-sansio",
-    # Compression would only cost time within one machine.
+    # Compression would only waste time, since the page is on the same machine.
     "ws_per_message_deflate": False,
     "ws_max_size": 65536,
     "lifespan": "off",
@@ -63,9 +63,9 @@ class Page:
         self._ended = asyncio.Event()
 
     async def serve(self, place: Place) -> bool:
-        """Serve until the simulator ends, or until Ctrl-C; return whether the page could be opened in a browser.
+        """Serve until the simulator exits, or until Ctrl-C; return whether the page could be opened in a browser.
 
-        Without a simulator, it ends at once if the page cannot be opened.
+        Without a simulator, return immediately if the page cannot be opened.
         """
         loop = asyncio.get_running_loop()
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -97,7 +97,7 @@ class Page:
         return opened
 
     async def _open(self, place: Place, door: Door) -> bool:
-        """Open the page if there is a browser, unless a tab from the last time has connected again."""
+        """Open the page if there is a browser, unless a tab from an earlier view reconnects."""
         for _ in range(_TIMES if place.before else 0):
             if self._hub.pages:
                 return True
@@ -157,7 +157,7 @@ class Page:
 
 
 class _Server(uvicorn.Server):
-    """A uvicorn server that leaves the signals to its caller."""
+    """A uvicorn server that lets its caller handle the signals."""
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
@@ -166,6 +166,6 @@ class _Server(uvicorn.Server):
 
 
 def _in(loop: asyncio.AbstractEventLoop, call: Callable[[System], None], system: System) -> None:
-    # The loop may have ended already.
+    # The loop may have been closed already.
     with suppress(RuntimeError):
         loop.call_soon_threadsafe(call, system)

@@ -1,4 +1,4 @@
-"""Compute rates from counts of arrivals. Pure: the caller passes the time (s)."""
+"""Compute rates from counts of arrivals. The caller passes the time (s)."""
 
 from __future__ import annotations
 
@@ -6,28 +6,28 @@ from collections import deque
 from dataclasses import dataclass, field
 
 WINDOW_S = 5.0
-"""A rate covers the last seconds, or the last two arrivals if they are further apart."""
+"""A rate covers this many seconds, or the last two arrivals if they are further apart."""
 _LONGEST_S = 30.0
 _GAPS = 2.5
-"""After this many usual intervals without an arrival, the messages have stopped."""
+"""If nothing arrives for this many average intervals, the messages are considered to have stopped."""
 _AT_LEAST_S = 1.0
 
 
 @dataclass
 class Arrivals:
-    """Arrivals on one topic."""
+    """The arrivals of messages on one topic."""
 
     _seen: deque[tuple[float, int]] = field(default_factory=deque)
     """The time of the last arrival of each group, and the size of the group."""
 
     def add(self, when_s: float, count: int = 1) -> None:
-        """Note that `count` messages have arrived since the last call, the last of them at `when_s`."""
+        """Record that `count` messages have arrived since the last call, the last of them at `when_s`."""
         self._seen.append((when_s, count))
         while len(self._seen) > 2 and self._seen[1][0] < when_s - WINDOW_S:
             self._seen.popleft()
 
     def hertz(self, now_s: float) -> float | None:
-        """Return the mean rate; None if nothing arrives any more, or only one message has arrived."""
+        """Return the mean rate, or None if the messages have stopped or fewer than two groups have arrived."""
         if len(self._seen) < 2:
             return None
         (first_s, _), (last_s, _) = self._seen[0], self._seen[-1]

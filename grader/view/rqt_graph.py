@@ -1,4 +1,4 @@
-"""The command `rqt_graph`: the ROS graph live on a page, as a picture in a file, or as text without a browser."""
+"""The command `rqt_graph`: show the ROS graph live on a page, as a picture in a file, or as text."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _FORMATS = (".svg", ".png", ".dot")
 _OURS = ("-o", "--output", "--text", "--port", "--active", "--debug", "--hidden", "--all")
-"""What the rqt_graph of a sourced ROS 2, which opens a window, does not know."""
+"""Options that are unknown to the rqt_graph of a sourced ROS 2, which opens a window."""
 _NOTHING = (
     "No node is running (ROS_DOMAIN_ID is {domain}). Start one in another terminal, with the same domain id: "
     "ros2 run turtlesim turtlesim_node"
@@ -35,10 +35,13 @@ _MISSING = (
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; return 0 if the graph was drawn, 1 if no node runs, else see docs/design.md, decision 9."""
+    """Run the command; return 0 if the graph was drawn, or 1 if no node is running.
+
+    Decision 9 in docs/design.md explains the other exit codes.
+    """
     argv = list(sys.argv[1:] if arguments is None else arguments)
     for number in (signal.SIGTERM, signal.SIGHUP):
-        # End as after Ctrl-C, so that the node leaves the graph properly.
+        # Exit as after Ctrl-C, so that the node leaves the graph properly.
         if signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, signal.default_int_handler)
     try:
@@ -53,7 +56,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
-        # The reader of our output has ended, as in `rqt_graph | head`.
+        # The program that reads the output has exited, as in `rqt_graph | head`.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return 1
 
@@ -103,7 +106,7 @@ def _run(options: argparse.Namespace) -> int:
     show = Show(debug=options.debug or options.all, hidden=options.hidden or options.all, dead_ends=not options.active)
     if options.output is None and not options.text and _shown_live(show, options.port):
         return 0
-    # Import it here: the environment has rclpy only now.
+    # Import these modules here, because rclpy is in the environment only now.
     from grader.graph.discovery import cli_node, settle
     from grader.graph.endpoints import observe
 
@@ -111,7 +114,7 @@ def _run(options: argparse.Namespace) -> int:
         complete = settle(node)
         observed = observe(node)
     drawn = picture(observed.nodes, observed.ends, show)
-    # The daemon of the real ros2 is a node that is not shown.
+    # Check the drawn nodes, since the daemon of the real ros2 is a node that is not shown.
     if not drawn.nodes:
         print(_NOTHING.format(domain=os.environ.get("ROS_DOMAIN_ID", "0")), file=sys.stderr)
         return 1
@@ -137,7 +140,7 @@ def _write(file: Path, drawn: Picture) -> None:
 
 
 def _shown_live(show: Show, port: int | None) -> bool:
-    """Serve the graph on a page until Ctrl-C; return False at once if there is no browser to show it in."""
+    """Serve the graph on a page until Ctrl-C. Return False immediately if there is no browser to show it in."""
     from grader.view import browser
 
     if not browser.there_is_one():

@@ -1,4 +1,4 @@
-"""The content of the terminal: the canvas, beside it turtle, command and topics, below it the simulator's output."""
+"""The content of the terminal: the canvas with the turtle, command and topics beside it, and the output below it."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from grader.view.system import System
 
 BESIDE = 38
-"""Columns beside the canvas."""
+"""The number of columns beside the canvas."""
 _BELOW = 6
-"""Rows for the title, the simulator's output, and the keys."""
+"""The number of rows for the title, the simulator's output, and the keys."""
 _LEAST = 8
 _LASTS_S = 1.0
-"""turtlesim stops the turtle this long after the last command."""
+"""The time after the last command at which turtlesim stops the turtle."""
 _KEYS = "↑ ↓ ← → drive · E R T D G C V B turn, F stops · Space pause · X clear · Z reset · Tab turtle · Q quit"
 
 
@@ -46,11 +46,11 @@ class Shown(Protocol):
 
     @property
     def lines(self) -> Iterable[str]:
-        """The last line of the simulator's output."""
+        """The last lines of the simulator's output."""
 
     @property
     def chosen(self) -> str:
-        """The turtle that the keys drive."""
+        """The name of the turtle that the keys drive."""
 
     @property
     def picture(self) -> Picture:
@@ -58,20 +58,20 @@ class Shown(Protocol):
 
 
 def side_for(console: Console) -> int:
-    """Return the canvas's width in columns, an even number, as large as possible in the terminal."""
+    """Return the width of the canvas in columns, which is the largest even number that fits into the terminal."""
     width, height = console.size
     beside = BESIDE if width >= 2 * BESIDE else 0
     return max(min(width - beside, 2 * (height - _BELOW)), _LEAST) // 2 * 2
 
 
 class Screen:
-    """Return the whole screen for rich."""
+    """The whole screen, which rich can print."""
 
     def __init__(self, shown: Shown) -> None:
         self._shown = shown
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Return the parts, one below the other."""
+        """Yield the parts of the screen from top to bottom."""
         shown = self._shown
         canvas = Blocks(shown.picture.of(shown.state))
         yield self._title()

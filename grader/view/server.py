@@ -1,4 +1,4 @@
-"""The page's server: a few files, and one connection per page, for news to the page and input from it."""
+"""The server of the page. It serves a few files, and has a connection to each page for news and for input."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
 ASSETS = Path(__file__).parent / "assets"
 STYLE = Path(__file__).parents[1] / "report/assets/page.css"
-"""The style of the reports, which this page uses, too."""
+"""The style sheet of the reports, which this page also uses."""
 HOLD_S = 0.5
-"""A page sends its held keys again and again; after this long without a message, it holds none."""
+"""A page sends its held keys repeatedly. If no message arrives for this long, no key is considered to be held."""
 _LARGEST = 10_000
 
 
@@ -35,28 +35,28 @@ class Pressed(Protocol):
     """The receiver of a page's requests."""
 
     def held(self, page: object, turtle: str, keys: list[str]) -> None:
-        """Handle the keys that are held on this page now."""
+        """Handle the keys that are currently held on this page."""
 
     def pressed(self, turtle: str, key: str) -> None:
         """Handle a key that acts once."""
 
     def request(self, what: str) -> None:
-        """Handle a button."""
+        """Handle a click on a button."""
 
     def let_go(self, page: object) -> None:
-        """Handle that the page holds no key any more."""
+        """Handle the release of all keys on this page."""
 
     def gone(self, page: object) -> None:
-        """Handle that the page is closed."""
+        """Handle the closing of this page."""
 
 
 def application(hub: Hub, hands: Pressed, door: Door) -> ASGIApp:
-    """Return the server with its guard."""
+    """Return the application, protected by the guard."""
 
     def file(request: Request) -> Response:
         name = request.path_params.get("name", "index.html")
         path = STYLE if name == STYLE.name else ASSETS / name
-        # Only these files are served: a request never becomes a path.
+        # Only these files are served. No other path can be requested.
         if path != STYLE and path not in set(ASSETS.iterdir()):
             return PlainTextResponse("There is no such file.", 404)
         return FileResponse(path)
@@ -68,7 +68,7 @@ def application(hub: Hub, hands: Pressed, door: Door) -> ASGIApp:
             return
         await socket.accept()
         if shown != door.token:
-            # The page connected with a code: send it the token, so that it finds the next simulator, too.
+            # The page connected with a code. Send it the token, so that it can also connect to the next simulator.
             await socket.send_text(json.dumps({"kind": "token", "token": door.token}))
         await _Page(socket, hub, hands).run()
 
@@ -77,7 +77,7 @@ def application(hub: Hub, hands: Pressed, door: Door) -> ASGIApp:
 
 
 class _Guard:
-    """Rejects forbidden requests, and adds the policy to every answer."""
+    """Rejects forbidden requests, and adds the policy headers to every response."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app

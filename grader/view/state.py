@@ -1,4 +1,4 @@
-"""What a view knows about its simulator: built from the messages of feed.py, for pages and terminals."""
+"""What a view knows about its simulator, built from the messages of feed.py. Pages and terminals use it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Rgb = tuple[int, int, int]
 
 
 class Seen(NamedTuple):
-    """A turtle: m, m, rad, m/s, rad/s, and its pen."""
+    """The state of a turtle and its pen. The units are m, m, rad, m/s and rad/s."""
 
     x: float
     y: float
@@ -29,7 +29,7 @@ class Seen(NamedTuple):
 
 
 class Command(NamedTuple):
-    """The last command on a topic: its time (s, monotonic), linear x, y, z (m/s), angular x, y, z (rad/s)."""
+    """The last command on a topic: its time (s, monotonic), and linear (m/s) and angular (rad/s) x, y, z."""
 
     when_s: float
     twist: tuple[float, ...]
@@ -37,7 +37,7 @@ class Command(NamedTuple):
 
 @dataclass
 class State:
-    """The whole state; `now_s` is the time of the last message."""
+    """The whole state of a simulator. `now_s` is the time of the last message."""
 
     now_s: float = 0.0
     paused: bool = False
@@ -49,10 +49,10 @@ class State:
     """The lines that the last message added."""
     commands: dict[str, Command] = field(default_factory=dict)
     rates: dict[str, Arrivals] = field(default_factory=dict)
-    """The rates of the simulator's own topics, so that nobody has to subscribe to measure them."""
+    """The arrivals on the simulator's own topics, so that no subscription is needed to measure their rates."""
 
     def take(self, message: dict[str, Any]) -> dict[str, object]:
-        """Take a message of the simulator; return the news for a page that knows the state before it."""
+        """Apply a message from the simulator; return the news for a page that knows the previous state."""
         self.now_s = float(message["t"])
         self.paused = bool(message["paused"])
         self.namespace = str(message["namespace"])
@@ -94,7 +94,7 @@ class State:
 
 
 def _numbers(values: tuple[Any, ...]) -> list[object]:
-    """Round to four decimal places, which is enough to see; JSON has no infinity."""
+    """Round to four decimal places, which is precise enough for a view. Replace infinity, which JSON does not have."""
     return [_number(value) if isinstance(value, float) else value for value in values]
 
 

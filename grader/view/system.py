@@ -1,7 +1,7 @@
 """The whole ROS system for a view: the graph, the rates of topics, and the node that drives for the user.
 
 The listening node is hidden and offers nothing, so that it does not change what others see. It subscribes to a topic
-only while somebody looks, and only if the simulator does not know its rate.
+only while somebody is looking at the rates, and only if the simulator does not know the rate of the topic.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ if TYPE_CHECKING:
 
 LOOKED_EVERY_S = 0.4
 MOST_HZ = 500.0
-"""A topic with a higher rate is not measured, because counting would cost too much."""
+"""Topics with a higher rate are not measured, because counting their messages would be too expensive."""
 _SPARED_S = 10.0
 _LAST_WORD_S = 1.0
-"""How long to wait for the last command to arrive."""
+"""How long the driving node waits for its last command to arrive."""
 DRIVER = "view_keys"
 """The name of the driving node in the graph."""
 
@@ -46,16 +46,16 @@ _COUNTING = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 
 @dataclass(frozen=True)
 class System:
-    """The graph, and the rates (Hz) of the measured topics; None: no messages arrive."""
+    """The graph, and the rates (Hz) of the measured topics. The rate is None if no messages arrive."""
 
     observed: Observed
     rates: dict[str, float | None]
 
 
 class Ears:
-    """A thread that spins `node`. It calls `tell` with every look at the graph.
+    """A thread that spins `node`. It looks at the graph at regular intervals and passes the result to `tell`.
 
-    `known`: topics that are counted elsewhere. `looking`: returns whether anybody looks at the rates.
+    `known` returns the topics that are counted elsewhere. `looking` is true while somebody looks at the rates.
     """
 
     def __init__(
@@ -121,17 +121,17 @@ class Ears:
     # --- driving ------------------------------------------------------------------------------------------------
 
     def drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
-        """Do what a key of turtle_teleop_key does, for the turtle with this full name, such as "/turtle1"."""
+        """Do what a key of turtle_teleop_key does. `turtle` is the full name of the turtle, such as "/turtle1"."""
         self._leave_s = math.inf
         self._executor.create_task(self._drive, turtle, key)
 
     def leave(self) -> None:
-        """Stop driving: the node leaves the graph after its last command has arrived."""
+        """Stop driving. The driving node leaves the graph after its last command has had time to arrive."""
         self._leave_s = time.monotonic() + _LAST_WORD_S
 
     async def _drive(self, turtle: str, key: Drive | Turn | Cancel) -> None:
         if self._driver is None or self._driver[0] != turtle:
-            # Import it only here, since it needs turtlesim, and the graph may have no turtlesim.
+            # Import it only here, since it needs turtlesim, which may not be available in a view of the graph alone.
             from grader.turtlesim.programs.turtle_teleop_key import Teleop
 
             self._leave()
@@ -167,7 +167,7 @@ class _Counter:
         try:
             self._class = values.load_type(type_name, "msg", "message type")
         except Ros2Error:
-            # A type from a package that is not sourced here.
+            # The type is from a package that is not sourced here.
             self._class = None
 
     def _arrived(self, _: bytes) -> None:
@@ -175,7 +175,7 @@ class _Counter:
         self._arrivals.add(time.monotonic())
 
     def look(self, node: Node, now: float) -> None:
-        """Subscribe if it is time to, and pause during a flood of messages."""
+        """Subscribe if there is no subscription, but unsubscribe for a while if there are too many messages."""
         flood = self._count > MOST_HZ * max(now - self._looked_s, LOOKED_EVERY_S)
         self._count, self._looked_s = 0, now
         if flood:
@@ -186,7 +186,7 @@ class _Counter:
             self._subscription = node.create_subscription(self._class, self._topic, self._arrived, _COUNTING, raw=True)
 
     def hertz(self, now: float) -> float | None:
-        """Return the measured rate, at most MOST_HZ."""
+        """Return the measured rate, or MOST_HZ if the rate is too high to be measured."""
         return MOST_HZ if now < self._spared_until_s else self._arrivals.hertz(now)
 
     def close(self, node: Node) -> None:

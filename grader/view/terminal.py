@@ -1,6 +1,6 @@
-"""The view in a terminal: the turtle in half blocks, the topics beside it, and keys that drive.
+"""The view in a terminal: the turtle drawn with half blocks, the topics beside it, and keys that drive.
 
-A terminal does not report when a key is released. A held key repeats, so a key that stops repeating was released.
+A terminal does not report when a key is released. A held key repeats, so a key that stops repeating has been released.
 """
 
 from __future__ import annotations
@@ -33,32 +33,32 @@ if TYPE_CHECKING:
 
 FRAME_S = 0.066
 FIRST_HOLD_S = 0.6
-"""The time until a held key begins to repeat; half a second on most machines."""
+"""The time until a held key begins to repeat, which is half a second on most machines."""
 HOLD_S = 0.25
-"""The time between two repeats, with the slowest settings."""
+"""The time between two repeats of a key with the slowest settings."""
 _LINES = 3
 
 
 @dataclass
 class Held:
-    """The held arrow key, and until when (s) it is assumed to be held."""
+    """The held arrow key, and the time (s) until which it is assumed to be held."""
 
     key: str = ""
     until_s: float = 0.0
 
     def press(self, key: str, now: float) -> None:
-        """Handle an arrow key, for the first time or as a repeat."""
+        """Handle an arrow key that is pressed or repeated."""
         again = key == self.key and now < self.until_s
         self.key, self.until_s = key, now + (HOLD_S if again else FIRST_HOLD_S)
 
     def over(self, now: float) -> bool:
-        """Return whether the key has just been released."""
+        """Return whether the key is no longer assumed to be held."""
         return bool(self.key) and now >= self.until_s
 
 
 @dataclass(eq=False)
 class Terminal:
-    """The state of the loop below."""
+    """The state of the drawing loop."""
 
     feed: socket.socket
     said: int
@@ -73,7 +73,7 @@ class Terminal:
     _rest: str = ""
 
     def hear(self) -> bool:
-        """Take the messages of the simulator; return False if it has ended."""
+        """Read the messages from the simulator; return False if the simulator has exited."""
         while True:
             try:
                 data = self.feed.recv(LARGEST)
@@ -91,7 +91,7 @@ class Terminal:
             self.changed = True
 
     def read_lines(self) -> None:
-        """Take the output of the simulator."""
+        """Read the output of the simulator."""
         try:
             data = os.read(self.said, 65536)
         except BlockingIOError:
@@ -109,7 +109,7 @@ class Terminal:
 
 
 def watch(feed: socket.socket, said: int) -> int:
-    """Draw until the simulator ends, or until Q or Ctrl-C; return the exit code."""
+    """Draw until the simulator exits, or until Q or Ctrl-C is pressed; return the exit code."""
     console = Console(highlight=False, no_color=False)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     feed.settimeout(0.0)
@@ -157,7 +157,7 @@ def _loop(shown: Terminal, read: Callable[..., bytes | None], live: Live, hands:
 
 
 def _do(shown: Terminal, data: bytes, hands: Hands) -> bool:
-    """Handle the keys; return False if one of them ends the program."""
+    """Handle the keys; return False if one of them quits the program."""
     text = data.decode("latin-1")
     for char, what in ((" ", "resume" if shown.state.paused else "pause"), ("x", "clear"), ("z", "reset")):
         if char in text.lower():

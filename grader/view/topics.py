@@ -1,4 +1,4 @@
-"""The table of topics: types, publishers, subscribers, rates. Pure functions."""
+"""The table of topics with their types, publishers, subscribers and rates."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from grader.view.system import System
 
 VIEWS = "/_view_"
-"""The beginning of the names of nodes that only watch."""
+"""The prefix of the names of nodes that only watch."""
 
 
 def rows(system: System, state: State, show: Show) -> list[dict[str, object]]:
-    """Return one row per topic in the graph: its types, publishers, subscribers and rate (Hz, None: no messages).
+    """Return one row per topic in the graph: its types, publishers, subscribers and rate (Hz).
 
-    Tools with hidden names, such as `ros2 topic pub`, are listed too, since they may be why a topic has messages. Views
-    are not listed.
+    The rate is None if no messages arrive. Tools with hidden names, such as `ros2 topic pub`, are also listed, since
+    they may be the source of the messages on a topic. Views are not listed.
     """
     types: dict[str, list[str]] = {}
     ends: dict[tuple[str, str], list[str]] = {}

@@ -1,6 +1,7 @@
-"""The trail in a view: strokes that stay sharp at any size, and below them a picture of the older trail.
+"""The trail in a view: strokes that stay sharp at any size, and a picture of the older trail below them.
 
-The coordinates are tenths of the canvas's pixels, with y downwards, as whole numbers: short in JSON, and exact enough.
+The coordinates are whole numbers in tenths of the canvas's pixels, with the y axis pointing downwards. They are short
+in JSON and precise enough.
 """
 
 from __future__ import annotations
@@ -23,13 +24,13 @@ if TYPE_CHECKING:
 UNIT = 10
 """Units per pixel."""
 FAR = 20 * SIDE_PX * UNIT
-"""Points further outside are moved to here."""
+"""The limit of coordinates. Points that are further outside are moved to this limit."""
 MOST_POINTS = 20_000
-"""The largest number of points of all strokes; then the strokes become part of the picture."""
+"""The maximum number of points in all strokes. If there are more, the strokes are merged into the picture."""
 _SCALE = 3
 """How many pixels of the picture there are per pixel of the canvas."""
 _SLACK = 1.0
-"""How far (in units) a point may be from a line that is drawn without it."""
+"""The maximum distance (in units) of an omitted point from the line that replaces it."""
 _MOST_SKIPPED = 40
 
 Point = tuple[int, int]
@@ -37,14 +38,14 @@ Point = tuple[int, int]
 
 @dataclass
 class Stroke:
-    """A line with one pen (red, green, blue, width in px). `skipped`: the points omitted since the last but one."""
+    """A line with one pen (red, green, blue, width in px). `skipped` has the points omitted from the last segment."""
 
     pen: tuple[int, int, int, int]
     points: list[Point]
     skipped: list[Point] = field(default_factory=list)
 
     def add(self, point: Point) -> None:
-        """Continue to a point; a point on the line so far is omitted."""
+        """Continue the stroke to a point, and omit the last point if it is on the line to the new point."""
         if point == self.points[-1]:
             return
         if len(self.points) >= 2:
@@ -69,7 +70,7 @@ def _beside(point: Point, begin: Point, end: Point) -> float:
 
 
 class Trail:
-    """Everything that was drawn."""
+    """Everything that has been drawn."""
 
     def __init__(self) -> None:
         self.clear()
@@ -82,7 +83,7 @@ class Trail:
         self._points = 0
 
     def draw(self, lines: Iterable[Line]) -> list[Stroke]:
-        """Add lines, and return them as strokes: a line that begins at the end of a stroke continues this stroke."""
+        """Add lines, and return them as strokes. A line that begins at the end of a stroke continues that stroke."""
         new: dict[int, Stroke] = {}
         for x0, y0, x1, y1, red, green, blue, width in lines:
             pen = (red, green, blue, width)
@@ -98,14 +99,14 @@ class Trail:
             self._points += len(stroke.points) - before
             self._open[x1, y1, pen] = stroke
         if len(self._open) > 4 * len(new) + 256:
-            # Forget old ends that no line has continued.
+            # Forget old ends that have not been continued.
             self._open = dict(list(self._open.items())[-256:])
         if self._points > MOST_POINTS:
             self._flatten()
         return list(new.values())
 
     def take_picture(self, png: bytes) -> None:
-        """Start again with a picture of everything that was drawn."""
+        """Replace the trail with a picture of everything that was drawn."""
         self.clear()
         self.picture = png
 
@@ -115,7 +116,7 @@ class Trail:
         self.take_picture(file.getvalue())
 
     def painted(self, side: int, least: int = 1) -> Image.Image:
-        """Return the trail as an RGBA picture with this many pixels per side; strokes have at least this width."""
+        """Return the trail as an RGBA picture that is `side` pixels wide. Strokes are at least `least` pixels wide."""
         picture = Image.new("RGBA", (side, side), (0, 0, 0, 0))
         if self.picture:
             below = Image.open(io.BytesIO(self.picture)).convert("RGBA")
@@ -132,18 +133,18 @@ class Trail:
 
 
 def told(strokes: Iterable[Stroke]) -> list[list[int]]:
-    """Return strokes for a page: red, green, blue, width, then x, y of each point."""
+    """Convert strokes for a page: each is a list of red, green, blue, width, and x, y of each point."""
     return [[*stroke.pen, *(value for point in stroke.points for value in point)] for stroke in strokes]
 
 
 def place(x: float, y: float) -> Point:
-    """Return the position of a point (m) in the picture."""
+    """Convert the position of a point (m) to units of the trail."""
     column, row = x * PIXELS_PER_M * UNIT, (SIDE_M - y) * PIXELS_PER_M * UNIT
     return round(min(max(column, -FAR), FAR)), round(min(max(row, -FAR), FAR))
 
 
 def paint(picture: Image.Image, strokes: Sequence[Stroke], scale: float, least: int = 1) -> None:
-    """Paint strokes into a picture with `scale` pixels per pixel of the canvas; each has at least this width."""
+    """Paint strokes with a width of at least `least` into a picture with `scale` pixels per pixel of the canvas."""
     draw = ImageDraw.Draw(picture)
     for stroke in strokes:
         ink = (*stroke.pen[:3], 255)

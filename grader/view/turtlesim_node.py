@@ -1,6 +1,6 @@
-"""`python -m grader.view.turtlesim_node`: what `ros2 run turtlesim turtlesim_node` and `grader sim` run.
+"""The program that `ros2 run turtlesim turtlesim_node` and `grader sim` run, as `python -m grader.view.turtlesim_node`.
 
-The simulator itself does not import the view; this module adds it for `--view`.
+The simulator itself does not import the view. This module adds the view for `--view`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def open_view(kind: Kind, port: int | None) -> AbstractContextManager[View]:
-    """Start a view, and import it only now. Raises the same errors as `grader.view.launch.view`."""
+    """Import and start a view. This raises the same errors as `grader.view.launch.view`."""
     from grader.view.launch import view
 
     return view(kind, port)
@@ -24,7 +24,7 @@ def open_view(kind: Kind, port: int | None) -> AbstractContextManager[View]:
 
 def main() -> None:
     """Run turtlesim until Ctrl-C, and exit."""
-    # Ctrl-C ends the program without a traceback, even while ROS 2 is being imported.
+    # Ctrl-C terminates the program without a traceback, even while ROS 2 is being imported.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     from grader.turtlesim import standalone
 
