@@ -1,1 +1,1 @@
-"""Headless turtlesim: motion and pen trail as pure Python, and the rclpy node around them."""
+"""A headless turtlesim: the motion and the pen's trail in pure Python, and an rclpy node around them."""

@@ -1,6 +1,6 @@
-"""The canvas: 500 x 500 px on which the turtles' pens draw their trails.
+"""The canvas of 500 x 500 px on which the pens of the turtles draw their trails.
 
-Pixel (0, 0) is the upper left corner; a turtle at (x, y) m is at pixel (45 x, 499 - 45 y).
+Pixel (0, 0) is the upper left corner. A turtle at (x, y) m is at pixel (45 x, 499 - 45 y).
 """
 
 from __future__ import annotations
@@ -17,12 +17,13 @@ if TYPE_CHECKING:
 
 BACKGROUND: Rgb = (69, 86, 255)
 
-# Far enough outside to keep the direction of a line's visible part, near enough for Pillow's integers.
+# Coordinates are limited to this value. It is large enough to preserve the direction of the visible part of a line, and
+# small enough for Pillow's integers.
 _FAR_PX = 100_000.0
 
 
 class Canvas:
-    """The trail, and the background behind it; a new background colour does not repaint the trail."""
+    """The trail, and the background behind it. A new background colour does not affect the trail."""
 
     def __init__(self, background: Rgb = BACKGROUND) -> None:
         self.background = background
@@ -30,21 +31,21 @@ class Canvas:
 
     def clear(self) -> None:
         """Clear the trail."""
-        # Transparent at first. RGBA without blending: a new line replaces what is below it.
+        # The image is transparent at first. There is no blending, so a new line replaces what is below it.
         self._image = Image.new("RGBA", (SIDE_PX, SIDE_PX), (0, 0, 0, 0))
         self._draw = ImageDraw.Draw(self._image)
         self._pixels: Any = self._image.load()
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
-        """Draw a line between two points in m with round ends; draw nothing if a coordinate is not a number."""
+        """Draw a line with round ends between two points (m). Draw nothing if a coordinate is nan or infinite."""
         if not (math.isfinite(x0) and math.isfinite(y0) and math.isfinite(x1) and math.isfinite(y1)):
             return
         start, end = _pixel(x0, y0), _pixel(x1, y1)
         ink = (*pen.color, 255)
         if start != end:
             self._draw.line((start, end), ink, pen.width)
-        # The line of a frame is one or two pixels long. Pillow's short, wide lines leave gaps at their joints, which
-        # these dots fill.
+        # The line of one frame is one or two pixels long. Pillow's short, wide lines leave gaps at their joints. These
+        # dots fill the gaps.
         self._dot(start, ink, pen.width)
         self._dot(end, ink, pen.width)
 
@@ -56,24 +57,24 @@ class Canvas:
         self._draw.ellipse((left, top, left + width - 1, top + width - 1), ink)
 
     def color_at(self, x: float, y: float) -> Rgb:
-        """Return the colour under a point in m: that of the trail, or else of the background."""
+        """Return the colour at a point (m), which is that of the trail or else that of the background."""
         if not (0.0 <= x <= SIDE_M and 0.0 <= y <= SIDE_M):
             return self.background
         red, green, blue, drawn = self._pixels[_pixel(x, y)]
         return (red, green, blue) if drawn else self.background
 
     def trail(self) -> Image.Image:
-        """Return the trail as RGBA, transparent where nothing was drawn."""
+        """Return the trail as an RGBA image that is transparent where nothing was drawn."""
         return self._image
 
     def image(self) -> Image.Image:
-        """Return the picture as RGB."""
+        """Return the trail and the background as an RGB image."""
         picture = Image.new("RGB", self._image.size, self.background)
         picture.paste(self._image, mask=self._image)
         return picture
 
     def save(self, path: Path) -> None:
-        """Write the picture as PNG."""
+        """Write the picture to a PNG file."""
         self.image().save(path, format="PNG")
 
 

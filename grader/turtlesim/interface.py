@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import Rgb, State, Turtle
     from grader.turtlesim.world import World
 
-# Reliable and volatile by default.
+# The defaults are reliable and volatile.
 QOS = QoSProfile(depth=7)
 
 _FLOAT32_MAX = 3.4028234663852886e38
@@ -32,11 +32,12 @@ _FLOAT32_MAX = 3.4028234663852886e38
 
 @dataclass(frozen=True)
 class Hooks:
-    """Callbacks for what the simulator receives and sends. `data` is the serialized message (CDR).
+    """Callbacks for messages that the simulator receives and sends. `data` is the serialized message (CDR).
 
-    `on_command(topic, data, twist)`: a command has arrived; it has not moved the turtle yet. `on_publish(topic, type,
-    data)`: a pose or a colour is sent. `on_intervention(name)`: somebody called a service or an action ("spawn",
-    "rotate_absolute") or set a parameter ("set_background" if only the colours changed, else "set_parameters").
+    `on_command(topic, data, twist)` is called when a command has arrived, before it moves the turtle.
+    `on_publish(topic, type, data)` is called when a pose or a colour is published. `on_intervention(name)` is called
+    when somebody calls a service or an action ("spawn", "rotate_absolute") or sets a parameter ("set_background" if
+    only colours are set, or else "set_parameters").
     """
 
     on_command: Callable[[str, bytes, Any], object]
@@ -45,10 +46,10 @@ class Hooks:
 
 
 class TurtleInterface:
-    """The topics, services and action for the turtle called `name`; after a reset this is another turtle."""
+    """The topics, services and action of the turtle called `name`, which is a different turtle after a reset."""
 
     def __init__(self, node: Node, name: str, world: World, hooks: Hooks, pose_every: int = 1) -> None:
-        """Enter the ROS graph. If rclpy raises an error for an invalid name, nothing of the turtle stays there."""
+        """Add the turtle to the ROS graph. If rclpy raises an error for an invalid name, nothing remains there."""
         self.name = name
         self._world = world
         self._hooks = hooks
@@ -77,12 +78,12 @@ class TurtleInterface:
             self._parts = parts.pop_all()
 
     def destroy(self) -> None:
-        """Leave the ROS graph."""
+        """Remove the turtle from the ROS graph."""
         self._parts.close()
 
     @property
     def idle(self) -> bool:
-        """Return whether no client waits for the end of a rotation."""
+        """Return whether no client is waiting for a rotation to end."""
         return self._rotate.idle
 
     def before_frame(self) -> None:
@@ -99,7 +100,7 @@ class TurtleInterface:
             return
         if turtle.clamped_from is not None:
             x, y = turtle.clamped_from
-            # turtlesim counts y from the top in this line.
+            # In this message, turtlesim counts y from the top.
             self._log.warning(f"Oh no! I hit the wall! (Clamping from [x={x:f}, y={SIDE_M - y:f}])")
         self._publish(turtle)
 
@@ -146,7 +147,7 @@ class TurtleInterface:
             if request.off:
                 turtle.pen = replace(turtle.pen, down=False)
             else:
-                # A width of 0 gives a pen of one pixel; it does not keep the last width.
+                # A width of 0 means a pen of one pixel. It does not keep the last width.
                 turtle.pen = Pen((request.r, request.g, request.b), request.width or 1)
         return response
 
@@ -170,7 +171,7 @@ class TurtleInterface:
 
 
 class _Sender:
-    """A publisher that serializes its message only if it has changed: a turtle at rest always sends the same one."""
+    """A publisher that serializes its message only if it has changed. An idle turtle always sends the same message."""
 
     def __init__(self, node: Node, message_type: type, topic: str, parts: ExitStack) -> None:
         publisher = node.create_publisher(message_type, topic, QOS)
@@ -186,7 +187,7 @@ class _Sender:
 
 
 def _narrow(value: float) -> float:
-    """Return the value for a float32 field; a value beyond its range becomes infinity, as in C++."""
+    """Return the value for a float32 field. A value that is out of range becomes infinity, as in C++."""
     if abs(value) > _FLOAT32_MAX:
         return math.copysign(math.inf, value)
     return value

@@ -1,7 +1,7 @@
 """`python -m grader.turtlesim.live`: turtlesim in wall time, watched by another process.
 
-It writes the picture to standard output when it changes: four bytes for the length (big endian), then a PNG. A slow
-reader misses pictures, but never the last one. It ends when its standard input is closed.
+It writes the picture to standard output when the picture changes: four bytes for the length (big endian), and then a
+PNG. A slow reader misses some pictures, but never the last one. The program exits when its standard input is closed.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from grader.turtlesim.world import World
 
 EVERY = 12
-"""The number of frames from one picture to the next: 5 pictures per second."""
+"""The number of frames from one picture to the next, which gives 5 pictures per second."""
 SIZE_PX = 330
 TURTLE: tuple[int, int, int] = (124, 197, 118)
 
@@ -65,7 +65,7 @@ class _ShownNode(TurtlesimNode):
 
 
 class _Screen:
-    """Writes pictures in a thread of its own, so that a slow or missing reader never stops a turtle."""
+    """Writes pictures in a separate thread, so that a slow or missing reader never stops a turtle."""
 
     def __init__(self, world: World, stop: threading.Event) -> None:
         self._world = world

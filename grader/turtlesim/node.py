@@ -1,7 +1,7 @@
 """The node `turtlesim`: a headless turtlesim for ROS 2.
 
-The owner of the node spins it and calls `frame` once per frame with the time of its own clock. The owner is a trial, or
-standalone.py in wall time. The node uses no timer and no ROS clock.
+The owner of the node spins it and calls `frame` once per frame with the time of the owner's clock. The owner is a trial
+or, in wall time, standalone.py. The node uses no timer and no ROS clock.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import State
 
 MOST_TURTLES = 64
-"""The real turtlesim has no limit; ours needs one, so that endless spawning does not crash it."""
+"""The maximum number of turtles. The real turtlesim has no limit, but ours must not crash if spawning never stops."""
 
 _FRAMES_TO_LEAVE = 4
-"""How long the entities of a killed turtle stay, so that earlier requests are answered."""
+"""How long the entities of a killed turtle are kept, so that earlier requests are answered."""
 
 
 def _nobody(*_: object) -> None:
@@ -54,10 +54,10 @@ class TurtlesimNode(Node):
         canvas: Canvas | None = None,
         **node: Any,  # noqa: ANN401 - handed on to rclpy
     ) -> None:
-        """Create the node. turtle1 begins at `start` (m, m, rad), after a reset too; see `Hooks` for the `on_...`.
+        """Create the node. turtle1 begins at `start` (m, m, rad), also after a reset.
 
-        A pose is published every `pose_every` frames; turtlesim does it in each frame. `canvas` is what the turtles
-        draw on.
+        `Hooks` describes the callbacks. A pose is published every `pose_every` frames, whereas the real turtlesim
+        publishes one in each frame. `canvas` is what the turtles draw on.
         """
         self._pose_every = pose_every
         self._hooks = Hooks(on_command, on_publish, on_intervention)
@@ -66,8 +66,8 @@ class TurtlesimNode(Node):
         self.world = World(start or Start(), canvas)
         self._take_parameters(self._parameters_of_ours())
         self.add_post_set_parameters_callback(self._parameters_set)
-        # turtlesim subscribes to parameter events to repaint its window. There is no window here, but the node should
-        # look the same in the graph.
+        # The real turtlesim subscribes to parameter events to repaint its window. There is no window here, but the node
+        # should look the same in the graph.
         for _ in ("turtlesim", "the clock that rclcpp gives every node"):
             self.create_subscription(
                 ParameterEvent, "/parameter_events", lambda _: None, qos_profile_parameter_events, raw=True
@@ -96,18 +96,18 @@ class TurtlesimNode(Node):
             interface.after_frame()
 
     def turtle_state(self, name: str = "turtle1") -> State | None:
-        """Return a turtle as of the last frame; None if there is no turtle with that name."""
+        """Return the state of a turtle after the last frame, or None if there is no turtle with that name."""
         turtle = self.world.turtles.get(name)
         return turtle.state() if turtle is not None else None
 
     def save_image(self, path: Path) -> None:
-        """Write the canvas with the trails as PNG."""
+        """Write the canvas with the trails to a PNG file."""
         self.world.canvas.save(path)
 
     # --- turtles ----------------------------------------------------------------------------------------------
 
     def _show(self, name: str) -> None:
-        """Give a turtle its topics, services and action; it gets those of a killed turtle with the same name back."""
+        """Create the topics, services and action of a turtle, or reuse those of a killed turtle with the same name."""
         for waiting in self._leaving:
             if waiting[1].name == name:
                 self._leaving.remove(waiting)
@@ -116,7 +116,7 @@ class TurtlesimNode(Node):
         self._interfaces[name] = TurtleInterface(self, name, self.world, self._hooks, self._pose_every)
 
     def _hide(self, name: str) -> None:
-        # Remove it later: this runs in a callback, and the executor may hold other callbacks of the same turtle.
+        # Remove it later, since this runs in a callback, and the executor may hold other callbacks of the same turtle.
         self._leaving.append((self._frames + _FRAMES_TO_LEAVE, self._interfaces.pop(name)))
 
     def _tell_spawned(self, name: str) -> None:
@@ -137,7 +137,7 @@ class TurtlesimNode(Node):
         try:
             self._show(name)
         except Exception as error:
-            # The real turtlesim ends here with an exception. The first line says which characters are allowed.
+            # Here, the real turtlesim exits with an exception. Its first line says which characters are allowed.
             self.world.kill(name)
             self.get_logger().error(f"A turtle cannot be named [{name}]: {str(error).partition(chr(10))[0]}")
             return response
@@ -169,7 +169,7 @@ class TurtlesimNode(Node):
         return response
 
     def reset(self) -> None:
-        """Reset: only turtle1, at its start, and no trail."""
+        """Reset the simulator, so that there is only turtle1 at its start and no trail."""
         self.get_logger().info("Resetting turtlesim.")
         self.world.reset()
         for name in [name for name in self._interfaces if name != "turtle1"]:
@@ -181,7 +181,7 @@ class TurtlesimNode(Node):
     # --- parameters -------------------------------------------------------------------------------------------
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
-        """Set parameters as rclpy does, but reject them with turtlesim's messages."""
+        """Set parameters as rclpy does, but reject invalid ones with the messages of turtlesim."""
         return parameters.refusal(parameter_list) or super().set_parameters_atomically(parameter_list)
 
     def _parameters_of_ours(self) -> list[Parameter]:

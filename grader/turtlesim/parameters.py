@@ -1,4 +1,4 @@
-"""The parameters of the node turtlesim, with turtlesim's descriptions."""
+"""The parameters of the node turtlesim, with the descriptions of the real turtlesim."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 CHANNELS = ("background_r", "background_g", "background_b")
 HOLONOMIC = "holonomic"
 
-# rclcpp declares these for the publisher of /parameter_events, but rclpy does not; both use these values.
+# rclcpp declares these parameters for the publisher of /parameter_events, but rclpy does not. Both use these values.
 _EVENTS_QOS = {"depth": 1000, "durability": "volatile", "history": "keep_last", "reliability": "reliable"}
 
 
@@ -39,13 +39,13 @@ def declare(node: Node) -> None:
         node.declare_parameter(
             f"qos_overrides./parameter_events.publisher.{policy}", setting, descriptor, ignore_override=True
         )
-    # Every node has this parameter; rclcpp describes it in these words, rclpy in other words.
+    # Every node has this parameter. This is the description that rclcpp uses. rclpy uses a different one.
     every_nodes = node.describe_parameter("start_type_description_service")
     every_nodes.description = "Start the ~/get_type_description service for this node."
 
 
 def refusal(parameters: Iterable[Parameter]) -> SetParametersResult | None:
-    """Reject a colour out of range with turtlesim's message, which is that of rclcpp; rclpy has another one."""
+    """Reject a colour that is out of range with the message of rclcpp, as turtlesim does. rclpy has a different one."""
     for parameter in parameters:
         if parameter.name in CHANNELS and isinstance(parameter.value, int) and not 0 <= parameter.value <= 255:
             reason = f"Parameter {{{parameter.name}}} doesn't comply with integer range."

@@ -2,8 +2,8 @@
 
     python -m grader.turtlesim.replay NAME.inputs.csv NAME.poses.csv
 
-The files: `frame,input,a,b,c` and `frame,x,y,theta,linear_velocity,angular_velocity`. An input takes effect in the
-update that produces the pose of its frame, in the file's order.
+The columns of the files are `frame,input,a,b,c` and `frame,x,y,theta,linear_velocity,angular_velocity`. The inputs of a
+frame take effect in the order of the file, in the update that produces the pose of the frame.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _HAIR_S = 1e-6
 
 @dataclass(frozen=True)
 class Difference:
-    """The largest difference between a recorded value and ours, in the value's own unit (m, rad, m/s, rad/s)."""
+    """The largest difference between a recorded value and ours, in the unit of the value (m, rad, m/s, rad/s)."""
 
     size: float
     frame: int
@@ -39,19 +39,19 @@ class Difference:
 
 
 def replay(inputs: Path, poses: Path) -> Difference:
-    """Replay the inputs and compare every pose, as published (float32), with the recorded one."""
+    """Replay the inputs, and compare every pose as published (float32) with the recorded pose."""
     worst = Difference(0.0, 0, FIELDS[0])
     for (frame, recorded), (turtle, _) in zip(_poses(poses), _frames(inputs), strict=False):
         for field, theirs, ours in zip(FIELDS, recorded, _as_published(turtle.state()), strict=True):
             size = abs(theirs - ours)
-            # Not `size > worst.size`: nan must count as the largest difference.
+            # Do not use `size > worst.size`, because nan must count as the largest difference.
             if not size <= worst.size:
                 worst = Difference(size, frame, field)
     return worst
 
 
 def rotations(inputs: Path, frames: int) -> Iterator[Rotation]:
-    """Replay this many frames; yield the rotation after each frame that had one."""
+    """Replay the given number of frames, and yield the rotation after each frame that had one."""
     for _, rotation in itertools.islice(_frames(inputs), frames):
         if rotation is not None:
             yield rotation
@@ -66,7 +66,7 @@ class _Input:
 
 
 def _frames(inputs: Path) -> Iterator[tuple[Turtle, Rotation | None]]:
-    """Yield turtle1 after every frame, for ever, with the rotation at the start of the frame."""
+    """Yield turtle1 after every frame, together with the rotation at the start of the frame. This never ends."""
     world = World()
     turtle = world.turtles["turtle1"]
     by_frame = _inputs(inputs)
@@ -84,8 +84,8 @@ def _frames(inputs: Path) -> Iterator[tuple[Turtle, Rotation | None]]:
 def _frame_time(before_s: float, last_command_s: float | None, *, timed_out: bool) -> float:
     """Return the time of the next frame.
 
-    The frames of the recorded turtlesim followed its wall clock, so a time-out came 62 to 64 frames after the command.
-    The time is stretched here, so that our turtle times out in the same frame.
+    The frames of the recorded turtlesim followed the wall clock, so a time-out occurred 62 to 64 frames after the
+    command. Here, the time is stretched so that our turtle times out in the same frame.
     """
     now_s = before_s + FRAME_S
     if last_command_s is None:
@@ -93,7 +93,7 @@ def _frame_time(before_s: float, last_command_s: float | None, *, timed_out: boo
     deadline_s = last_command_s + TIME_OUT_S
     if timed_out:
         return max(now_s, deadline_s + _HAIR_S)
-    # Before the recorded time-out, the time stops at the deadline.
+    # Until the recorded time-out, the time does not advance beyond the deadline.
     return min(now_s, max(before_s, deadline_s - _HAIR_S)) if before_s <= deadline_s else now_s
 
 

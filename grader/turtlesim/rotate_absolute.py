@@ -1,4 +1,4 @@
-"""The action rotate_absolute of one turtle: it takes goals, sends feedback in each frame, and one result."""
+"""The action rotate_absolute of one turtle. It accepts goals, sends feedback in each frame, and sends a result."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
 
 class _DeferringActionServer(ActionServer):
-    """An action server whose goals are not executed in its callback: the turtle's frames execute them.
+    """An action server whose goals are executed by the turtle's frames instead of a callback.
 
-    rclpy would run a callback from the acceptance of a goal to its result. This callback would have to wait, and would
-    keep an executor busy. So a goal is marked as executing, and the callback runs when there is a result.
+    rclpy would run a callback from the acceptance of a goal to its result. This callback would have to wait, and it
+    would keep an executor busy. Therefore, a goal is only marked as executing, and the callback runs when there is a
+    result.
     """
 
     def notify_execute(
@@ -28,10 +29,10 @@ class _DeferringActionServer(ActionServer):
         goal_handle: ServerGoalHandle,
         execute_callback: Callable[[ServerGoalHandle], RotateAbsolute.Result] | None,
     ) -> None:
-        """Do nothing: the frames execute the goal."""
+        """Do nothing, because the frames execute the goal."""
 
     def give_result(self, goal_handle: ServerGoalHandle, result: RotateAbsolute.Result) -> None:
-        """Send the result of a goal that has ended to the clients that ask for it."""
+        """Send the result of a finished goal to the clients that request it."""
         super().notify_execute(goal_handle, lambda _: result)
 
 
@@ -41,7 +42,7 @@ class RotateAbsoluteServer:
     def __init__(
         self, node: Node, name: str, find_turtle: Callable[[], Turtle | None], on_goal: Callable[[], object]
     ) -> None:
-        """Create the server. `find_turtle` returns the current turtle (None if killed); `on_goal` runs per goal."""
+        """Create the server. `find_turtle` returns the turtle, or None if it was killed. `on_goal` runs per goal."""
         self._log = node.get_logger()
         self._find_turtle = find_turtle
         self._on_goal = on_goal

@@ -1,4 +1,4 @@
-"""turtlesim alone in wall time, until Ctrl-C: `grader sim` and the executable turtlesim_node run it."""
+"""Run turtlesim on its own in wall time, until Ctrl-C. `grader sim` and the executable turtlesim_node use this."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ if TYPE_CHECKING:
     OpenView = Callable[[Kind, int | None], AbstractContextManager["View"]]
 
 _MOST_AT_ONCE = 200
-"""How many callbacks are handled per frame at most: a flood of messages must not stop the turtle."""
+"""The maximum number of callbacks that are handled per frame, so that a flood of messages cannot stop the turtle."""
 _NO_WINDOW = (
     "This turtlesim has no window. To see the turtle, stop it with Ctrl-C and start it with --view (a page in the "
     "browser) or --view terminal."
 )
-"""Said at a terminal only: what other programs read is what the real turtlesim writes."""
+"""This is printed only on a terminal. Other programs can read only what the real turtlesim writes."""
 
 
 class Feed(Protocol):
-    """Callbacks for a view, and the canvas on which the turtles draw while it watches."""
+    """Callbacks for a view, and the canvas on which the turtles draw while the view is running."""
 
     namespace: str
 
@@ -51,15 +51,15 @@ class Feed(Protocol):
 
     @property
     def on_command(self) -> Callable[..., Any]:
-        """Called with each command that arrives."""
+        """The callback for each command that arrives."""
 
     @property
     def on_publish(self) -> Callable[..., Any]:
-        """Called with each message that the simulator publishes."""
+        """The callback for each message that the simulator publishes."""
 
 
 class View(Protocol):
-    """A running view of the simulator. `paused`: the turtles' time stands still. `open`: the view is still running."""
+    """A view of the simulator. `paused` is true while the turtles' time is stopped, and `open` while the view runs."""
 
     paused: bool
     open: bool
@@ -70,13 +70,13 @@ class View(Protocol):
         """The callbacks of the view."""
 
     def after_frame(self, node: TurtlesimNode) -> None:
-        """Show the world after a frame, and handle the requests of the view."""
+        """Show the state after a frame, and handle the requests of the view."""
 
 
 def main(open_view: OpenView, args: Sequence[str] | None = None) -> int:
-    """Run turtlesim; return the exit code: 0 after Ctrl-C, 2 for wrong arguments.
+    """Run turtlesim; return the exit code, which is 0 after Ctrl-C, or 2 for invalid arguments.
 
-    `open_view` starts the view for `--view`, on the given port; with None, it chooses a port.
+    `open_view` starts the view for `--view` on the given port. If the port is None, it chooses one.
     """
     arguments = list(sys.argv if args is None else ["turtlesim_node", *args])
     stop = threading.Event()
@@ -86,7 +86,7 @@ def main(open_view: OpenView, args: Sequence[str] | None = None) -> int:
         options = _options(remove_ros_args(arguments)[1:])
         with ExitStack() as stack:
             view = stack.enter_context(open_view(options.view, options.port)) if options.view else None
-            # rclpy's own handler would shut the context down in the middle of a frame.
+            # rclpy's own signal handler would shut down the context in the middle of a frame.
             rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
             stack.callback(rclpy.try_shutdown)
             node = _node(view)
@@ -116,9 +116,9 @@ def _node(view: View | None) -> TurtlesimNode:
 
 
 def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -> None:
-    """Compute a frame every 16 ms of CLOCK_MONOTONIC until `stop`. Late frames are caught up; none is skipped.
+    """Compute a frame every 16 ms of CLOCK_MONOTONIC until `stop` is set. Late frames are caught up, not skipped.
 
-    While the view pauses the simulator, the turtles' time stands still.
+    While the simulator is paused in the view, the turtles' time does not advance.
     """
     executor = SingleThreadedExecutor(context=node.context)
     executor.add_node(node)
@@ -128,7 +128,7 @@ def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -
         early_s = begun + ticks * FRAME_S - time.monotonic()
         if early_s > 0:
             time.sleep(early_s)
-        # Like turtlesim, handle what has arrived at the start of a frame.
+        # Like the real turtlesim, handle messages that have arrived at the start of a frame.
         _handle_what_arrived(executor)
         if view is None or not view.paused:
             node.frame(frames * FRAME_S)

@@ -1,7 +1,7 @@
-"""The motion of one turtle, frame by frame, as in turtlesim 1.8. It needs no ROS and no clock.
+"""The motion of one turtle, frame by frame, as in turtlesim 1.8. It needs neither ROS nor a clock.
 
-Positions in m from the lower left corner, angles in rad counter-clockwise from east, times in s on whatever clock the
-caller passes in. The state is kept in doubles; messages narrow it to float32.
+Positions are in m from the lower left corner, angles are in rad counter-clockwise from east, and times are in s on the
+caller's clock. The state is stored in doubles. Messages narrow it to float32.
 """
 
 from __future__ import annotations
@@ -11,32 +11,32 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple, Protocol
 
 FRAME_S = 0.016
-"""The time of one frame: turtlesim advances by this, even if a frame is late."""
+"""The duration of one frame. turtlesim advances by this time, even if a frame is late."""
 
 PIXELS_PER_M = 45
 SIDE_PX = 500
-# turtlesim keeps the canvas's size in 32-bit floats, which determines its walls and its start.
+# turtlesim stores the size of the canvas in 32-bit floats, which determines the position of the walls and the start.
 SIDE_M = 11.088889122009277
-"""The square canvas, m: float32 of (SIDE_PX - 1) / PIXELS_PER_M."""
+"""The length of a side of the canvas (m), which is (SIDE_PX - 1) / PIXELS_PER_M as a float32."""
 
 TIME_OUT_S = 1.0
 """A turtle stops when its last command is older than this."""
 
 ROTATE_SPEED = 1.0
-"""rotate_absolute turns at this angular speed, rad/s."""
+"""The angular speed of rotate_absolute (rad/s)."""
 ROTATE_TOLERANCE = 0.02
-"""rotate_absolute is done when less than this remains, rad."""
+"""rotate_absolute has succeeded when the remaining angle (rad) is smaller than this."""
 
 Rgb = tuple[int, int, int]
 
 
 def normalize(angle: float) -> float:
-    """Return the same direction in [-pi, pi); nan for nan and infinity."""
+    """Return the same direction as an angle in [-pi, pi), or nan for nan and infinity."""
     if -math.pi <= angle < math.pi:
         return angle
     if not math.isfinite(angle):
         return math.nan
-    # fmod is exact, so the result for a huge angle is in the interval (that of turtlesim's own formula is not).
+    # fmod is exact, so the result is in the interval even for a huge angle, unlike the result of turtlesim's formula.
     turned = math.fmod(angle + math.pi, math.tau)
     turned += math.pi if turned < 0.0 else -math.pi
     return turned if turned < math.pi else -math.pi
@@ -60,7 +60,7 @@ class Pen:
 
 
 class State(NamedTuple):
-    """A turtle after a frame: m, m, rad, m/s (never negative), rad/s; `wall` is true if a wall stopped it."""
+    """A turtle after a frame, in m, m, rad, m/s (never negative) and rad/s. `wall` is true if it has hit a wall."""
 
     x: float
     y: float
@@ -71,26 +71,26 @@ class State(NamedTuple):
 
 
 class Paper(Protocol):
-    """The canvas that a turtle draws on and looks at; coordinates are in m."""
+    """The canvas that a turtle draws on and whose colours it sees. Coordinates are in m."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
-        """Draw from (x0, y0) to (x1, y1)."""
+        """Draw a line from (x0, y0) to (x1, y1)."""
 
     def color_at(self, x: float, y: float) -> Rgb:
-        """Return the colour under (x, y)."""
+        """Return the colour at (x, y)."""
 
 
 @dataclass
 class Rotation:
-    """A goal of rotate_absolute; `theta`, `start`, `remaining` and `delta` in rad."""
+    """A goal of rotate_absolute. `theta`, `start`, `remaining` and `delta` are in rad."""
 
     theta: float
     start: float
     remaining: float = 0.0
     delta: float = 0.0
-    """The turn from the current direction back to the start; turtlesim's result has this sign."""
+    """The turn from the current direction back to the start. The result of turtlesim has this sign."""
     cancel: bool = False
-    """Set by the caller; the next frame handles it."""
+    """Whether the caller requests the cancellation of the goal. The next frame handles the request."""
     end: Literal["succeeded", "canceled", "aborted"] | None = None
 
 
@@ -106,31 +106,31 @@ class _Relative(NamedTuple):
 
 
 class Turtle:
-    """One turtle. Requests take effect in the next `update`, velocities immediately."""
+    """One turtle. Requests take effect in the next `update`, but velocities are set immediately."""
 
     def __init__(self, start: Start = Start()) -> None:  # noqa: B008 (a tuple cannot be changed)
         self.x, self.y, self.theta = start
         self.pen = Pen()
         self.color: Rgb = (0, 0, 0)
-        """What the colour sensor saw in the last frame."""
+        """The colour that the sensor saw in the last frame."""
         self.rotation: Rotation | None = None
         self.clamped_from: tuple[float, float] | None = None
-        """The position of the last frame if there were no wall."""
+        """The position that the turtle would have had in the last frame without a wall, or None if it hit no wall."""
         self.last_command_s: float | None = None
         self._command_is_new = False
         self._vx = self._vy = self._spin = 0.0
         self._teleports: list[_Absolute | _Relative] = []
 
     def state(self) -> State:
-        """Return the turtle as of the last frame."""
+        """Return the state of the turtle after the last frame."""
         speed = math.sqrt(self._vx * self._vx + self._vy * self._vy)
         return State(self.x, self.y, self.theta, speed, self._spin, self.clamped_from is not None)
 
     def command(self, linear_x: float, linear_y: float | None, angular_z: float) -> None:
-        """Take a velocity command (m/s, m/s, rad/s); it aborts a rotation.
+        """Set the velocities (m/s, m/s, rad/s), and abort the current rotation.
 
-        None for `linear_y` keeps the sideways velocity, as in a turtlesim that is not holonomic. A turtle that was
-        holonomic before then drifts until it gets a stop command or times out.
+        If `linear_y` is None, the sideways velocity does not change, as in a turtlesim that is not holonomic. A turtle
+        that was holonomic before then drifts until it times out.
         """
         self.abort_rotation()
         self._vx, self._spin = linear_x, angular_z
@@ -143,23 +143,23 @@ class Turtle:
         self._teleports.append(_Absolute(x, y, theta))
 
     def teleport_relative(self, linear: float, angular: float) -> None:
-        """Request a teleport: turn by `angular`, then move `linear` forwards."""
+        """Request a teleport: turn by `angular`, and then move forwards by `linear`."""
         self._teleports.append(_Relative(linear, angular))
 
     def rotate_to(self, theta: float) -> Rotation:
-        """Accept a goal of rotate_absolute; a current goal is aborted."""
+        """Accept a goal of rotate_absolute, and abort the current goal if there is one."""
         self.abort_rotation()
         self.rotation = Rotation(theta=theta, start=self.theta)
         return self.rotation
 
     def abort_rotation(self) -> None:
-        """End the current rotation, if any."""
+        """Abort the current rotation, if there is one."""
         if self.rotation is not None:
             self.rotation.end = "aborted"
             self.rotation = None
 
     def update(self, dt: float, now_s: float, paper: Paper) -> None:
-        """Advance by one frame of `dt` s at the time `now_s`."""
+        """Advance the turtle by one frame of `dt` (s) at the time `now_s` (s)."""
         self._take_new_command(now_s)
         if self._teleports:
             self._teleport(paper)
@@ -175,7 +175,7 @@ class Turtle:
             paper.line(x, y, self.x, self.y, self.pen)
 
     def _take_new_command(self, now_s: float) -> None:
-        # turtlesim runs its callbacks at the start of a frame, so the age of a command counts from there.
+        # turtlesim runs its callbacks at the start of a frame, so the age of a command is measured from there.
         if self._command_is_new:
             self.last_command_s = now_s
             self._command_is_new = False
@@ -184,7 +184,7 @@ class Turtle:
         for request in self._teleports:
             x, y = self.x, self.y
             if isinstance(request, _Absolute):
-                # At the upper edge, turtlesim clamps the position already here; the other sides are clamped later.
+                # turtlesim clamps the position at the upper edge already here. It clamps the other sides later.
                 self.x, self.y = request.x, min(request.y, SIDE_M)
                 self.theta = normalize(request.theta)
             else:
@@ -225,7 +225,7 @@ class Turtle:
         self.y += (sin * self._vx + cos * self._vy) * dt
 
     def _clamp(self) -> None:
-        # Written so that nan passes through to the pose, as in turtlesim.
+        # These comparisons let nan pass through to the pose, as in turtlesim.
         if self.x < 0.0 or self.x > SIDE_M or self.y < 0.0 or self.y > SIDE_M:
             self.clamped_from = (self.x, self.y)
             self.x = min(max(self.x, 0.0), SIDE_M)

@@ -1,4 +1,4 @@
-"""All turtles on one canvas, moved frame by frame. The caller passes the time; this module has no clock."""
+"""All turtles on one canvas, moved frame by frame. The caller passes the time, since this module has no clock."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class World:
         self.reset()
 
     def reset(self) -> None:
-        """Remove all turtles and the trail, and put turtle1 at its start; the parameters do not change."""
+        """Remove all turtles and the trail, and put turtle1 at its start. The parameters do not change."""
         for turtle in self.turtles.values():
             turtle.abort_rotation()
         self.turtles.clear()
@@ -28,16 +28,16 @@ class World:
         self.canvas.clear()
 
     def new_name(self) -> str:
-        """Return the next free turtleN. Between two resets, no number is used twice."""
+        """Return the next free name of the form turtleN. No number is used twice between two resets."""
         return next(name for number in self._numbers if (name := f"turtle{number}") not in self.turtles)
 
     def spawn(self, name: str, start: Start) -> str:
-        """Add a turtle; without a name, it is called turtleN. Return its name, or "" if the name is taken."""
+        """Add a turtle, which is called turtleN if `name` is empty. Return its name, or "" if the name is taken."""
         if name in self.turtles:
             return ""
         name = name or self.new_name()
         self.turtles[name] = Turtle(start)
-        # turtlesim moves its turtles in the order of their names, which decides whose line is on top.
+        # turtlesim moves its turtles in the order of their names, which determines whose line is on top.
         self.turtles = dict(sorted(self.turtles.items()))
         return name
 
@@ -50,7 +50,7 @@ class World:
         return True
 
     def command(self, name: str, linear_x: float, linear_y: float, angular_z: float) -> None:
-        """Give a turtle a velocity command (m/s, m/s, rad/s). `linear_y` has an effect only for holonomic turtles."""
+        """Give a turtle a velocity command (m/s, m/s, rad/s). `linear_y` only has an effect on holonomic turtles."""
         self.turtles[name].command(linear_x, linear_y if self.holonomic else None, angular_z)
 
     def step(self, now_s: float) -> None:

@@ -1,1 +1,1 @@
-"""The other executables of the package turtlesim: turtle_teleop_key, draw_square and mimic. Each is a node."""
+"""The other executables in the package turtlesim: turtle_teleop_key, draw_square and mimic. Each of them is a node."""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rclpy.task import Future
 
 _POSES_TO_SKIP = 3
-"""How long to wait after the reset: an older pose may arrive after the answer of the reset."""
+"""How many poses to skip after the reset, because an older pose may arrive after the response to the reset."""
 
 
 class DrawSquare(Node):

@@ -1,4 +1,4 @@
-"""The keys of turtle_teleop_key: translate the bytes from a terminal into commands. Pure functions."""
+"""The keys of turtle_teleop_key: translate the characters from a terminal into commands. Pure functions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Drive:
-    """Drive for a second: forwards or backwards (1, -1), to the left or right (1, -1), times the node's scale."""
+    """Drive for a second: forwards (1) or backwards (-1), to the left (1) or right (-1), times the node's scale."""
 
     linear: float
     angular: float
@@ -29,13 +29,13 @@ class Cancel:
 
 @dataclass(frozen=True)
 class Quit:
-    """End the program."""
+    """Quit the program."""
 
 
 Key = Drive | Turn | Cancel | Quit
 
 _ARROWS = {"A": Drive(1.0, 0.0), "B": Drive(-1.0, 0.0), "C": Drive(0.0, -1.0), "D": Drive(0.0, 1.0)}
-# The keys around F on the keyboard: the turtle turns to the direction in which the key is, seen from F.
+# The keys around F on the keyboard. The turtle turns in the direction of the key, as seen from F.
 _LETTERS: dict[str, Key] = {
     "g": Turn(0.0),
     "t": Turn(math.pi / 4),
@@ -47,17 +47,17 @@ _LETTERS: dict[str, Key] = {
     "b": Turn(-math.pi / 4),
     "f": Cancel(),
     "q": Quit(),
-    # Ctrl-D: the end of the input.
+    # Ctrl-D means the end of the input.
     "\x04": Quit(),
 }
-# An arrow key sends ESC [ A or, if a program left the keypad in its other mode, ESC O A; with Shift and the like there
-# are numbers inside.
+# An arrow key sends ESC [ A or, if a program left the keypad in application mode, ESC O A. With a modifier key such as
+# Shift, the sequence also contains numbers.
 _SEQUENCE = re.compile(r"\x1b(?:\[[0-9;]*([@-~])|O([@-~]))")
 _UNFINISHED = re.compile(r"\x1b(?:\[[0-9;]*|O)?\Z")
 
 
 def keys(text: str) -> tuple[list[Key], str]:
-    """Return the commands in order, and the start of a sequence that is not complete yet. Other keys are ignored."""
+    """Return the commands in order, and the beginning of a sequence that is still incomplete. Ignore other keys."""
     typed: list[Key] = []
     at = 0
     while at < len(text):

@@ -1,4 +1,4 @@
-"""mimic: drive one turtle as another one moves, from input/pose to output/cmd_vel (remap these topics)."""
+"""mimic: make one turtle imitate another one, from input/pose to output/cmd_vel (remap these topics)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Read keys from the terminal as they are pressed; the terminal's settings are always restored."""
+"""Read keys from the terminal as they are pressed. The settings of the terminal are always restored."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def is_terminal() -> bool:
 
 @contextmanager
 def keyboard() -> Iterator[Callable[..., bytes | None]]:
-    """Read standard input without echo and without waiting for Enter; Ctrl-C and Ctrl-Z work as usual.
+    """Read standard input without echo and without waiting for Enter. Ctrl-C and Ctrl-Z work as usual.
 
-    Yields a function that waits for keys, for at most the given seconds (None: for ever), and returns the bytes that
-    they send: empty if the terminal is gone, None if the time is up.
+    Yields a function that waits for keys and returns the bytes that they send. Its argument is the timeout in seconds,
+    or None to wait forever. The function returns b"" if the terminal has been closed, or None if the timeout expires.
     """
     number = sys.stdin.fileno()
     before = termios.tcgetattr(number)
@@ -40,15 +40,15 @@ def keyboard() -> Iterator[Callable[..., bytes | None]]:
     old = {name: signal.signal(name, handler) for name, handler in handlers.items()}
     woken, wake = os.pipe()
     os.set_blocking(wake, False)
-    # A signal may reach another thread, such as one of ROS 2; then this one would continue to wait, and Python would
-    # not handle it.
+    # A signal may be delivered to another thread, such as a thread of ROS 2. Without the pipe, this thread would then
+    # continue to wait, and Python would not handle the signal.
     old_wake = signal.set_wakeup_fd(wake, warn_on_full_buffer=False)
     try:
         tty.setcbreak(number)
         yield partial(_read, number, woken)
     finally:
-        # Discard the keys that were typed ahead: an arrow would call up the shell's last command. The terminal may be
-        # gone.
+        # Discard keys that have not been read yet, since an arrow key would recall the last command in the shell. The
+        # terminal may have been closed.
         with suppress(termios.error):
             termios.tcsetattr(number, termios.TCSAFLUSH, before)
         signal.set_wakeup_fd(old_wake)
@@ -77,6 +77,6 @@ def _end(number: int, _: FrameType | None) -> NoReturn:
 
 
 def _in_front(number: int) -> None:
-    """Set the terminal again: after Ctrl-Z and fg, it has the shell's settings."""
+    """Apply the settings of the terminal again, since it has the settings of the shell after Ctrl-Z and fg."""
     if os.tcgetpgrp(number) == os.getpgrp():
         tty.setcbreak(number)

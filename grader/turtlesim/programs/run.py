@@ -1,4 +1,4 @@
-"""Run one node in its own process until Ctrl-C."""
+"""Run a node in its own process until Ctrl-C."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def run(make: Callable[[], Node]) -> int:
     """Spin a node until Ctrl-C or SIGTERM, without a traceback; return the exit code."""
-    # Before this, Ctrl-C ends Python at once; rclpy passes a signal on to the previous handler.
+    # Before this call, Ctrl-C terminates Python immediately. rclpy passes a signal on to the previous handler.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     rclpy.init(args=sys.argv)
     node = make()

@@ -1,4 +1,4 @@
-"""Drive a square of 2 m side by side: compute the velocity from the turtle's pose. Pure functions."""
+"""Drive around a square with sides of 2 m: compute the velocity from the turtle's pose. Pure functions."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ SIDE_M = 2.0
 _FORWARD_M_S = 1.0
 _TURN_RAD_S = 0.4
 _NEAR_PER_S = 4.0
-"""The gain: the speed is the remaining distance (m, rad) times this (1/s), so a pose may be a few frames old."""
+"""The gain (1/s). The speed is the remaining distance (m, rad) times the gain, so a pose may be a few frames old."""
 _CLOSE_M = 0.002
 _CLOSE_RAD = 0.001
 
 
 @dataclass(frozen=True)
 class Leg:
-    """A side and the turn at its end. `x`, `y` (m) is the corner that it leads to, `theta` (rad) its direction."""
+    """A side and the turn at its end. `x`, `y` (m) is the corner at its end, and `theta` (rad) is its direction."""
 
     x: float
     y: float
@@ -30,9 +30,9 @@ def first(x: float, y: float, theta: float) -> Leg:
 
 
 def follow(leg: Leg, x: float, y: float, theta: float) -> tuple[Leg, float, float]:
-    """Return the leg for a turtle at this pose, and its linear (m/s) and angular velocity (rad/s).
+    """Return the current leg for a turtle at this pose, and its linear (m/s) and angular (rad/s) velocity.
 
-    The corners are computed from the first one, so that small errors do not add up.
+    All corners are computed from the first one, so that small errors do not accumulate.
     """
     if leg.turning:
         remaining = math.remainder(leg.theta + math.pi / 2 - theta, math.tau)

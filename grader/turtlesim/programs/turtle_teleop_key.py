@@ -1,4 +1,4 @@
-"""turtle_teleop_key: drive the turtle with the arrow keys, turn it with the keys around F."""
+"""turtle_teleop_key: drive the turtle with the arrow keys, and turn it with the keys around F."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ _NO_TERMINAL = (
     "or it was started in the background). Start it in a terminal of its own: ros2 run turtlesim turtle_teleop_key"
 )
 _DISCOVERY_S = 2.0
-"""How long the discovery of a running turtlesim takes at most."""
+"""The maximum time that the discovery of a running turtlesim takes."""
 
 
 class Teleop(Node):
-    """The node teleop_turtle; a view gives it another name and another turtle, and it prints nothing then."""
+    """The node teleop_turtle. A view uses it with another name and possibly another turtle, and without messages."""
 
     def __init__(
         self,
@@ -67,7 +67,7 @@ class Teleop(Node):
         self._publisher.publish(twist)
 
     async def turn(self, key: Turn) -> None:
-        """Send a goal; turtlesim gives up the one before."""
+        """Send a goal. turtlesim then aborts the previous goal."""
         if not self._see_that(self._rotate.server_is_ready, self._action):
             return
         goal = await self._rotate.send_goal_async(RotateAbsolute.Goal(theta=key.theta))
@@ -80,12 +80,12 @@ class Teleop(Node):
             await self._goal.cancel_goal_async()
 
     def destroy_node(self) -> None:
-        """Leave the graph; a remaining action client would keep the node in it."""
+        """Remove the node from the graph. If the action client remained, it would keep the node in the graph."""
         self._rotate.destroy()
         super().destroy_node()
 
     def _see_that(self, somebody: Callable[[], bool], name: str) -> bool:
-        """Return whether somebody listens; print a message if nobody does within the first two seconds."""
+        """Return whether somebody is listening. Print a message if nobody is after the first two seconds."""
         while not somebody() and time.monotonic() < self._begun + _DISCOVERY_S:
             time.sleep(0.01)
         there = somebody()
@@ -96,11 +96,11 @@ class Teleop(Node):
 
 
 def main() -> int:
-    """Run the node until Q or Ctrl-C; return the exit code: 0, or 1 without a terminal."""
+    """Run the node until Q or Ctrl-C; return the exit code, which is 0, or 1 without a terminal."""
     if not is_terminal():
         print(_NO_TERMINAL, file=sys.stderr)
         return 1
-    # A signal must end Python's wait for a key; rclpy would only end its own waits.
+    # A signal must interrupt Python's wait for a key. The signal handler of rclpy would interrupt only its own waits.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
     node = Teleop()
@@ -128,7 +128,7 @@ def _spin(executor: SingleThreadedExecutor) -> None:
 
 
 def _follow(read: Callable[[], bytes | None], node: Teleop, executor: SingleThreadedExecutor) -> None:
-    """Handle the keys until Q, or until the terminal is gone."""
+    """Handle the keys until Q is pressed or the terminal is closed."""
     rest = ""
     while data := read():
         typed, rest = keys(rest + data.decode("latin-1"))
