@@ -38,7 +38,7 @@ def packages() -> dict[str, Path]:
 
 
 def contents(kind: str) -> dict[str, list[str]]:
-    """Return the lines of each package's entry in a part of the index, such as "rclcpp_components", by package."""
+    """Return the lines of all entries in a part of the index, such as "rclcpp_components", sorted by package."""
     return {
         name: (prefix / _INDEX / kind / name).read_text("utf-8", "replace").splitlines()
         for name, prefix in _resources(kind).items()

@@ -154,13 +154,13 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
 def domain_of(uid: int) -> int:
     """Return a user's ROS domain id, from 1 to 101. Users whose user ids are close together never share a domain.
 
-    The domain 101 is the highest with ports below Linux's range of ephemeral ports. ROS 2 uses domain 0 by default.
+    Domain 101 is the highest domain with ports below Linux's range of ephemeral ports. The default in ROS 2 is 0.
     """
     return 1 + uid % 101
 
 
 def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int | None = None) -> dict[str, str]:
-    """Return the environment of a node that a user starts: the user's own, extended by what ROS 2 needs.
+    """Return the environment of a node that a user starts: the user's own environment and what ROS 2 needs.
 
     The user's own settings are kept, and workspaces that the user sourced are searched first. The domain is `domain`
     if it is not None, or else the domain that the user has set. If neither is given, each user gets a separate domain,
@@ -175,7 +175,8 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
     for name in _UNWATCHED:
         needed.pop(name, None)
     if " " in str(ros.python):
-        # A workspace's setup.bash starts this Python without quotes; it needs only the standard library.
+        # The setup.bash of a workspace does not quote the path of Python, so use the interpreter that the link points
+        # to. The script needs only the standard library.
         needed["COLCON_PYTHON_EXECUTABLE"] = str(ros.python.resolve())
     if "ROS_LOG_DIR" not in env and "ROS_HOME" not in env and not os.access(home, os.W_OK):
         needed["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir(), f"ros-log-{os.getuid()}"))

@@ -38,7 +38,7 @@ def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _say_not
     """Return this ROS 2 with the turtlesim interfaces added. Build them first if necessary (see `ensure`).
 
     Raises:
-        MachineError: they could not be built.
+        MachineError: the interfaces could not be built.
     """
     return replace(ros, underlay=ensure(ros, tell))
 
@@ -163,12 +163,12 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
         configure = [
             *("cmake", "-S", str(SOURCES), "-B", str(folder / "build")),
             *("-G", "Ninja" if shutil.which("ninja", path=env["PATH"]) else "Unix Makefiles"),
-            # Without optimization, the build takes half the time; a message takes a few microseconds more.
+            # Without optimization, the build takes half as long, but each message takes a few microseconds longer.
             *("-DCMAKE_BUILD_TYPE=None", "-DBUILD_TESTING=OFF"),
             f"-DPython3_EXECUTABLE={ros.python}",
             f"-DCMAKE_INSTALL_PREFIX={prefix}",
             # Keep the path of the temporary folder out of the result. A shell reads the flags, and the path may have
-            # spaces; CMake would strip quotes around the whole.
+            # spaces. CMake would strip quotes around the whole value.
             *(f"-DCMAKE_{language}_FLAGS=-ffile-prefix-map={no_trace}" for language in ("C", "CXX")),
         ]
         _run(configure, env, tell)
