@@ -32,7 +32,7 @@ not use our profile and its answer is lost, it announces itself again after 3 s 
 endpoints.
 """
 NOTHING_THERE_S = 0.5
-"""How long to listen if the number of participants is unknown. The real `ros2` waits equally long."""
+"""How long to listen if the number of participants is unknown. This is as long as the real `ros2` waits."""
 LOOPBACK_PROFILE = Path(__file__).with_name("loopback.xml")
 """The Fast DDS profile for the nodes of commands on the loopback interface."""
 PATIENT_PROFILE = LOOPBACK_PROFILE.with_name("loopback_patient.xml")

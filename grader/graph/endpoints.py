@@ -1,4 +1,4 @@
-"""The part of the graph that a node has discovered: other nodes, their publishers and subscriptions. Needs rclpy."""
+"""The part of the graph that a node has discovered: other nodes, publishers and subscriptions. It needs rclpy."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ DEBUG_NODES = ("/rqt_gui", "/rqt_graph", "/rviz", "/rosbag2_")
 
 
 class Endpoint(Protocol):
-    """A publisher or subscription; `grader.trial.recording.Endpoint` is one."""
+    """A publisher or subscription, such as `grader.trial.recording.Endpoint`."""
 
     @property
     def kind(self) -> str:
@@ -85,7 +85,7 @@ class Picture:
 
 
 def picture(nodes: Iterable[str], endpoints: Iterable[Endpoint], show: Show | None = None) -> Picture:
-    """Choose what to show of the nodes (full names, one entry per node) and their publishers and subscriptions."""
+    """Choose which nodes (full names, one entry per node), publishers and subscriptions to show."""
     chosen = show or Show()
     ends = list(endpoints)
     counts = Counter(nodes)

@@ -26,7 +26,7 @@ class NodeLook:
 
 @dataclass(frozen=True)
 class EndpointLook:
-    """A publisher or a subscription. `text` is how `topic info --verbose` prints it."""
+    """A publisher or a subscription. `text` is the output of `topic info --verbose` for it."""
 
     topic: str
     publishes: bool
