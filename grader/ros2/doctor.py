@@ -1,4 +1,4 @@
-"""`ros2 doctor` and `ros2 wtf`: check why nodes may be unable to communicate, and report about the machine."""
+"""`ros2 doctor` and `ros2 wtf`: check why nodes may be unable to communicate, or print reports about the machine."""
 
 from __future__ import annotations
 

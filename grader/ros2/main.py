@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class _EndedError(KeyboardInterrupt):
-    """A signal requested that the command exit."""
+    """The command was interrupted by a signal."""
 
     def __init__(self, number: int) -> None:
         super().__init__()

@@ -23,7 +23,7 @@ MODULES = {
     **dict.fromkeys(("launch", "security", "doctor.hello", "wtf.hello"), "whole"),
     **dict.fromkeys(("component.load", "component.standalone", "component.unload"), "whole"),
 }
-"""The modules of groups and verbs whose names differ from the names of their modules."""
+"""The modules of groups and verbs, where their names differ from those of the groups and verbs."""
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
 

@@ -18,7 +18,7 @@ INSTEAD = {
     "unload": "End a node with Ctrl-C in its terminal.",
     "standalone": "Start a node alone with: ros2 run PACKAGE EXECUTABLE",
 }
-"""What to do instead of using each verb."""
+"""For each verb, what to do instead."""
 
 
 def add(parser: argparse.ArgumentParser) -> None:

@@ -100,7 +100,7 @@ def wanted(args: argparse.Namespace, topic: str) -> bool:
 
 
 def remapping(rules: Iterable[str]) -> dict[str, str]:
-    """Return the new name of each topic in rules such as "/pose:=/old_pose".
+    """Return the new name of each topic, given rules such as "/pose:=/old_pose".
 
     Raises:
         Ros2Error: a rule does not have this form.

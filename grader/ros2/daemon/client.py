@@ -40,7 +40,7 @@ def ask(call: str) -> dict[str, Any] | None:
 
 
 def is_running() -> bool:
-    """Return whether a daemon answers."""
+    """Return whether a daemon responds."""
     return ask("ping") is not None
 
 

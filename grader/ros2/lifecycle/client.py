@@ -19,7 +19,7 @@ _GET_STATE = "lifecycle_msgs/srv/GetState"
 
 
 def add_node(parser: argparse.ArgumentParser, nargs: str | None = None, text: str = "name of the node") -> None:
-    """Add the arguments of a verb about one node."""
+    """Add the arguments of a verb that concerns one node."""
     add_look(parser)
     completes(
         parser.add_argument("node_name", nargs=nargs, help=text),

@@ -136,5 +136,5 @@ def told(value: ParameterValue, *, hide_type: bool) -> str:
 
 
 def not_set(name: str) -> Parameter:
-    """Return the value that deletes a parameter when it is set."""
+    """Return a Parameter that deletes the parameter with this name when it is set."""
     return Parameter(name=name, value=ParameterValue(type=ParameterType.PARAMETER_NOT_SET))

@@ -1,4 +1,4 @@
-"""The verb `service call`: call a service and print its answer."""
+"""The verb `service call`: call a service and print its response."""
 
 from __future__ import annotations
 
