@@ -9,7 +9,7 @@ import subprocess
 from grader.common.interpreter import clean, interpreter
 
 _OPENED_S = 3.0
-"""If a browser has not failed after this time, it has opened the page."""
+"""A browser that has not failed after this time is considered to have opened the page."""
 
 
 def there_is_one() -> bool:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import Pen, Turtle
 
 EVERY_FRAMES = 2
-"""While something changes, a view receives every second frame, which means 31 pictures per second."""
+"""While something changes, a view receives every second frame (32 ms), which means 31 pictures per second."""
 TOLD_EVERY_S = 0.25
 """The interval between messages while nothing changes. They let a view update the rates and show that the simulator
 is running.
@@ -139,7 +139,7 @@ class Feed:
         self.received, self.sent = {}, {}
 
     def requests(self) -> list[str]:
-        """Return the requests of the view, such as "pause", "resume", "clear" and "reset".
+        """Return the requests of the view, each of which is "pause", "resume", "clear" or "reset".
 
         Raises:
             ConnectionError: the view has exited.

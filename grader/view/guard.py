@@ -1,8 +1,8 @@
-"""Decide which requests are allowed, which are only those of this machine's own page.
+"""Decide whether a request is allowed. Only requests from this machine's own page are allowed.
 
-A page from another site in the same browser can also send requests to 127.0.0.1. It can be detected, because the
-browser sends the site that the page came from (Origin) and the name that it used for this machine (Host). In addition,
-the other page does not know the token.
+A page from another site in the same browser can also send requests to 127.0.0.1. Such a page can be detected,
+because the browser sends the site that the page came from (Origin) and the name that it used for this machine (Host).
+In addition, such a page does not know the token.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ class Hub:
         self._written: tuple[int, str] = (-1, "")
         self._pages: set[asyncio.Event] = set()
         self.wholes = 0
-        """How often a page got the whole state."""
+        """The number of times that a page got the whole state."""
 
     @property
     def pages(self) -> int:

@@ -28,7 +28,7 @@ FAR = 20 * SIDE_PX * UNIT
 MOST_POINTS = 20_000
 """The maximum number of points in all strokes. If there are more, the strokes are merged into the picture."""
 _SCALE = 3
-"""How many pixels of the picture there are per pixel of the canvas."""
+"""The number of pixels in the picture per pixel of the canvas."""
 _SLACK = 1.0
 """The maximum distance (in units) of an omitted point from the line that replaces it."""
 _MOST_SKIPPED = 40
