@@ -45,7 +45,7 @@ def declare(node: Node) -> None:
 
 
 def refusal(parameters: Iterable[Parameter]) -> SetParametersResult | None:
-    """Reject a colour that is out of range with the message of rclcpp, as turtlesim does. rclpy has a different one."""
+    """Reject a colour that is out of range, using rclcpp's message like turtlesim. rclpy's message is different."""
     for parameter in parameters:
         if parameter.name in CHANNELS and isinstance(parameter.value, int) and not 0 <= parameter.value <= 255:
             reason = f"Parameter {{{parameter.name}}} doesn't comply with integer range."

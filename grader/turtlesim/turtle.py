@@ -60,7 +60,7 @@ class Pen:
 
 
 class State(NamedTuple):
-    """A turtle after a frame, in m, m, rad, m/s (never negative) and rad/s. `wall` is true if it has hit a wall."""
+    """A turtle after a frame, in m, m, rad, m/s (never negative) and rad/s. `wall` is true if a wall stopped it."""
 
     x: float
     y: float
@@ -184,7 +184,7 @@ class Turtle:
         for request in self._teleports:
             x, y = self.x, self.y
             if isinstance(request, _Absolute):
-                # turtlesim clamps the position at the upper edge already here. It clamps the other sides later.
+                # turtlesim clamps the position at the upper edge here, but at the other sides only later.
                 self.x, self.y = request.x, min(request.y, SIDE_M)
                 self.theta = normalize(request.theta)
             else:

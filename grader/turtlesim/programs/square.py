@@ -16,7 +16,7 @@ _CLOSE_RAD = 0.001
 
 @dataclass(frozen=True)
 class Leg:
-    """A side and the turn at its end. `x`, `y` (m) is the corner at its end, and `theta` (rad) is its direction."""
+    """A side and the turn at its end. `x`, `y` (m) is the corner at the end, and `theta` (rad) is the direction."""
 
     x: float
     y: float

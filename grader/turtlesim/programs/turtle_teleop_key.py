@@ -40,7 +40,7 @@ _DISCOVERY_S = 2.0
 
 
 class Teleop(Node):
-    """The node teleop_turtle. A view uses it with another name and possibly another turtle, and without messages."""
+    """The node teleop_turtle. A view gives it another name, chooses the turtle, and suppresses its messages."""
 
     def __init__(
         self,
