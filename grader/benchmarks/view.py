@@ -121,7 +121,7 @@ def _opened(browser: Browser, url: str) -> Page:
 
 @contextmanager
 def _listening(url: str) -> Iterator[None]:
-    """Connect to the server like one more tab, without using the processor time of a browser."""
+    """Connect to the server as a browser tab does, but without the processor time that a browser takes."""
     host, _, token = url.removeprefix("http://").partition("/#")
     with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as link:
         reading = threading.Thread(target=lambda: [None for _ in link], daemon=True)

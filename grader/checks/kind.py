@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NoParams:
-    """The parameters of a kind without parameters."""
+    """An empty set of parameters, for kinds that take none."""
 
 
 P = TypeVar("P")

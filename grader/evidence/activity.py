@@ -43,8 +43,8 @@ def spun(recording: Recording) -> bool:
 def commands(recording: Recording) -> tuple[Command, ...]:
     """Return the commands that arrived before SIGINT, in the order of arrival.
 
-    If all of them arrived in the first moment, return none. Commands that are published before discovery is over are
-    usually lost. Whether they arrive depends on the machine, and a report must not depend on that.
+    If all of them arrived at the very start, return an empty tuple. Commands that are published before discovery is
+    over are usually lost. Whether they arrive depends on the machine, and a report must not depend on that.
     """
     until = end_s(recording)
     found = tuple(command for command in recording.commands if command.t_s < until)

@@ -50,7 +50,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Evidence:
-    """A submission and what was observed of it. `build` is None if the submission was not built.
+    """A submission and what was observed about it. `build` is None if the submission was not built.
 
     A check sees the evidence from the viewpoint of one of the exercise's trials. `trial` is that trial, and `recording`
     is its recording. The source files are parsed on first use, from `submission.files`.
@@ -65,7 +65,7 @@ class Evidence:
     tries: Tries = field(default_factory=Tries)
     """The results of trying to fix the causes."""
     trial_id: str = ""
-    """The id of the trial from whose viewpoint the evidence is seen; empty for the first trial of the exercise."""
+    """The id of the trial that the evidence is presented for; empty for the first trial of the exercise."""
 
     def __getstate__(self) -> dict[str, Any]:
         """Return only the fields. What was parsed on first use is not sent to another process."""
@@ -73,7 +73,7 @@ class Evidence:
 
     @property
     def trial(self) -> TrialSpec:
-        """The trial from whose viewpoint the evidence is seen."""
+        """The trial that the evidence is presented for."""
         return self.exercise.trial(self.trial_id) if self.trial_id else self.exercise.trials[0]
 
     @property

@@ -120,7 +120,7 @@ def _end(evidence: Evidence) -> str:
 
 
 def _rows(evidence: Evidence) -> list[tuple[str, ...]]:
-    """Return each command as strings: time, time since the command before, linear.x, angular.z."""
+    """Return each command as strings: time, time since the previous command, linear.x, angular.z."""
     rows: list[tuple[str, ...]] = []
     before: float | None = None
     for command in evidence.commands[:MOST_ROWS]:

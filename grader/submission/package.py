@@ -30,8 +30,8 @@ class Submission:
     """A package. `package_dir` is its folder, and `files` maps POSIX paths relative to that folder to bytes.
 
     `files` leaves out build/, install/, log/, hidden folders, virtual environments, caches and everything that is not a
-    regular file in the folder. `rejected` names the files that are a fault of the submission, with the reason, such as
-    a symlink to a place outside the package. A link to another file of the package has the content of that file. Every
+    regular file in the folder. `rejected` names the files that make the submission invalid, each with the reason, for
+    example a symlink that points outside the package. A link to another file of the package has the content of that file. Every
     path in `files` is printable.
     """
 

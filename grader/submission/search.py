@@ -100,7 +100,7 @@ def _visit_below(search: _Search, folder: int, entry: Entry, path: str, depth: i
 
 
 def _is_folder_behind(name: str, folder: int) -> bool:
-    """Return whether the link leads to a folder, for use in a message. Nothing behind the link is read."""
+    """Return whether the link leads to a folder, for use in a message. The link is not followed."""
     try:
         return stat.S_ISDIR(os.stat(name, dir_fd=folder).st_mode)
     except OSError:
