@@ -22,8 +22,8 @@ CLASS = 40
 HONEST = (
     "solution",
     "unusual/301-functions-and-a-closure",
-    "unusual/302-callback-groups",
     "unusual/303-inheritance-and-relative-imports",
+    "unusual/302-callback-groups",
     "mistakes/306-missing-depend",
     "mistakes/323-other-topic",
     "mistakes/329-one-hertz",
