@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import argparse
 import heapq
-import re
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.ros.failure import Ros2Error
-from grader.ros2.bag.options import STORAGES, absolute
+from grader.ros2.bag.options import STORAGES, absolute, contains
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -112,10 +111,8 @@ def _compression(options: dict[str, Any]) -> str:
 def _chosen(options: dict[str, Any], topic: str) -> bool:
     """Return whether a new bag gets a topic. Without any selection, it gets all topics."""
     topics, regex = absolute(options.get("topics") or []), options.get("regex") or ""
-    if options.get("exclude_regex") and re.search(options["exclude_regex"], topic):
-        return False
-    if topic in absolute(options.get("exclude_topics") or []):
+    if topic in absolute(options.get("exclude_topics") or []) or contains(topic, options.get("exclude_regex") or ""):
         return False
     if options.get("all") or options.get("all_topics") or not (topics or regex):
         return True
-    return topic in topics or bool(regex and re.search(regex, topic))
+    return topic in topics or contains(topic, regex)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from grader.ros.failure import Ros2Error
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -70,3 +73,16 @@ def _number(text: str) -> float:
 def absolute(names: Iterable[str]) -> list[str]:
     """Return the names of topics with a slash at the beginning."""
     return [name if name.startswith("/") else f"/{name}" for name in names]
+
+
+def contains(topic: str, pattern: str) -> bool:
+    """Return whether a topic contains a regular expression. An empty one is in no topic.
+
+    Raises:
+        Ros2Error: it is not a regular expression.
+    """
+    try:
+        return bool(pattern and re.search(pattern, topic))
+    except (re.error, TypeError) as error:
+        message = f"[ERROR] [ros2bag]: The regular expression '{pattern}' cannot be read: {error}"
+        raise Ros2Error(message) from error

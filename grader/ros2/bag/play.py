@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import re
 from typing import TYPE_CHECKING
 
 from grader.ros.failure import Ros2Error
-from grader.ros2.bag.options import above_zero, absolute, add_bag, add_log_level, not_negative
+from grader.ros2.bag.options import above_zero, absolute, add_bag, add_log_level, contains, not_negative
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -92,10 +91,10 @@ def run(args: argparse.Namespace) -> int:
 def wanted(args: argparse.Namespace, topic: str) -> bool:
     """Return whether the options select a topic of the bag."""
     excluded = absolute(args.exclude_topics) + (["/clock"] if args.clock else [])
-    if topic in excluded or (args.exclude_regex and re.search(args.exclude_regex, topic)):
+    if topic in excluded or contains(topic, args.exclude_regex):
         return False
     if args.topics or args.regex:
-        return topic in absolute(args.topics) or bool(args.regex and re.search(args.regex, topic))
+        return topic in absolute(args.topics) or contains(topic, args.regex)
     return True
 
 

@@ -69,8 +69,7 @@ class Player:
                 if self._args.delay:
                     self._log.info(f"Sleep {round(self._args.delay * 1e9)} ns")
                     time.sleep(self._args.delay)
-                self._play(key)
-                if not self._args.loop or not self._publishers:
+                if not self._play(key) or not self._args.loop:
                     break
         for publisher in self._publishers.values():
             publisher.wait_for_all_acked(Duration(seconds=_ACKNOWLEDGED_S))
@@ -103,15 +102,18 @@ class Player:
     def _begin(self) -> int:
         return int(self._reader.start_time) + round(float(self._args.start_offset) * 1e9)
 
-    def _play(self, key: Callable[[float], str]) -> None:
-        """Publish all messages once, starting at the offset."""
+    def _play(self, key: Callable[[float], str]) -> bool:
+        """Publish all messages once, starting at the offset; return whether there were any."""
+        any_of_them = False
         played, until = self._begin(), self._until()
         found = messages(self._reader, self._args.bag_path, set(self._publishers), self._begin())
         for topic, stamp, data in found:
             if until is not None and stamp > until:
-                return
+                break
             played = self._wait(key, played, stamp)
             self._publishers[topic].publish(data)
+            any_of_them = True
+        return any_of_them
 
     def _wait(self, key: Callable[[float], str], played: int, stamp: int) -> int:
         """Wait while the time of the recording advances from `played` to `stamp` (ns); return `stamp`."""

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import re
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.ros.failure import Ros2Error
-from grader.ros2.bag.options import STORAGES, absolute, add_log_level
+from grader.ros2.bag.options import STORAGES, absolute, add_log_level, contains
 from grader.ros2.completion import completes, message_types, topics
 
 if TYPE_CHECKING:
@@ -167,25 +166,18 @@ def wanted(args: argparse.Namespace) -> Callable[[str, str], bool]:
     Raises:
         Ros2Error: a regular expression is invalid.
     """
-    chosen, excluded = _compiled(args.regex), _compiled(args.exclude_regex)
+    for pattern in (args.regex, args.exclude_regex):
+        contains("", pattern)
     others = absolute(args.exclude_topics)
 
     def holds(topic: str, kind: str) -> bool:
-        if topic in others or kind in args.exclude_topic_types or (excluded and excluded.search(topic)):
+        if topic in others or kind in args.exclude_topic_types or contains(topic, args.exclude_regex):
             return False
         if args.all or args.all_topics or topic in args.topics or kind in args.topic_types:
             return True
-        return bool(chosen and chosen.search(topic))
+        return contains(topic, args.regex)
 
     return holds
-
-
-def _compiled(pattern: str) -> re.Pattern[str] | None:
-    try:
-        return re.compile(pattern) if pattern else None
-    except re.error as error:
-        message = f"[ERROR] [ros2bag]: The regular expression '{pattern}' cannot be read: {error}"
-        raise Ros2Error(message) from error
 
 
 def _validate(args: argparse.Namespace, folder: Path) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import heapq
-import shutil
 import sqlite3
 import tempfile
 from contextlib import closing
@@ -55,10 +54,16 @@ def recover(folder: Path) -> None:
                     writer.add_topic(saved.topic, saved.type)
                     known.add((saved.topic, saved.type))
                 writer.write(saved.topic, saved.type, saved.stamp_ns, saved.data)
-        for file in (*files, *folder.glob("*.db3-journal")):
-            file.unlink()
-        for new in sorted(made.iterdir(), reverse=True):
-            shutil.move(new, folder / new.name)
+        # The new data come first, so that nothing is lost if this is killed. The metadata come last: a bag without them
+        # can be reindexed again.
+        data = [path for path in made.iterdir() if path.name != "metadata.yaml"]
+        for path in data:
+            path.replace(folder / path.name)
+        kept = {path.name for path in data}
+        for old in (*files, *folder.glob("*.db3-journal")):
+            if old.name not in kept:
+                old.unlink()
+        (made / "metadata.yaml").replace(folder / "metadata.yaml")
     log.info("Reindexing complete.")
 
 

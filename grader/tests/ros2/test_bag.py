@@ -154,6 +154,17 @@ def test_space_pauses_and_the_right_arrow_steps(quiet: World) -> None:
     player.expect(pexpect.EOF)
 
 
+def test_a_loop_over_nothing_ends_and_a_wrong_regular_expression_is_told(quiet: World) -> None:
+    record(quiet, count=2).stop()
+    # Beyond the end there is nothing to repeat.
+    assert quiet.run("ros2 bag play bag --loop --start-offset 1000").code == 0
+    quiet.home.joinpath("options.yaml").write_text("output_bags:\n- {uri: new, regex: '('}\n")
+    for command in ("play bag --regex '('", "play bag -x '('", "convert -i bag -o options.yaml"):
+        refused = quiet.run(f"ros2 bag {command}")
+        assert refused.code == 1
+        assert "The regular expression '(' cannot be read" in refused.stderr
+
+
 @pytest.mark.parametrize(
     ("command", "text", "code"),
     [
