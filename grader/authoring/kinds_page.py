@@ -17,6 +17,7 @@ from grader.checks.exercises import load_exercise
 from grader.checks.kinds import KINDS
 from grader.errors import MachineError, UsageError
 from grader.exercise.model import catalogue, course_folder
+from grader.exercise.own_numbers import Own
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -142,6 +143,10 @@ def _toml(value: Param) -> str:
     if isinstance(value, str):
         # A JSON string is also a valid TOML string.
         return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, Own):
+        return f'{{ own = "{value.name}" }}'
+    if isinstance(value, tuple) and value and isinstance(value[0], tuple):
+        return f"{{ {', '.join(f'{name} = {_toml(each)}' for name, each in value)} }}"
     if isinstance(value, tuple):
         return f"[{', '.join(map(_toml, value))}]"
     return str(value)

@@ -11,13 +11,14 @@ import math
 from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from grader.checks.outcome import Finding
+from grader.checks.own_values import with_own_values
 from grader.common.words import a_list
 from grader.exercise.kind_spec import Allowed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from grader.checks.outcome import Finding
     from grader.checks.requested import Requested
     from grader.evidence.evidence import Evidence
     from grader.evidence.stage import Stage
@@ -66,21 +67,30 @@ class Kind(Generic[P]):
 
     def judge(self, evidence: Evidence, values: Mapping[str, Param]) -> Finding:
         """Run the check with these parameter values (read from exercise.toml, with defaults filled in)."""
-        return self.check(evidence, self.params(**values))
+        params = self._params(evidence, values)
+        return params if isinstance(params, Finding) else self.check(evidence, params)
 
     def judge_early(self, evidence: Evidence, values: Mapping[str, Param]) -> Finding | None:
         """Return the finding that is certain before any code of the submission runs, or None."""
         if self.stage == "source":
             return self.judge(evidence, values)
-        return self.early(evidence, self.params(**values)) if self.early is not None else None
+        params = self._params(evidence, values)
+        return None if self.early is None or isinstance(params, Finding) else self.early(evidence, params)
 
     def request(self, evidence: Evidence, values: Mapping[str, Param]) -> Requested | None:
         """Return what a check with these parameter values requests, for a drawing, or None."""
-        return self.requested(evidence, self.params(**values)) if self.requested is not None else None
+        params = self._params(evidence, values)
+        return None if self.requested is None or isinstance(params, Finding) else self.requested(evidence, params)
 
-    def radius(self, values: Mapping[str, Param]) -> float | None:
+    def radius(self, evidence: Evidence, values: Mapping[str, Param]) -> float | None:
         """Return the radius (m) of the circle that a random start position must leave room for, or None."""
-        return self.radius_m(self.params(**values)) if self.radius_m is not None else None
+        params = self._params(evidence, values)
+        return None if self.radius_m is None or isinstance(params, Finding) else self.radius_m(params)
+
+    def _params(self, evidence: Evidence, values: Mapping[str, Param]) -> P | Finding:
+        """Return the parameters with the student's own values, or a failed finding if these cannot be read."""
+        filled = with_own_values(evidence, values)
+        return filled if isinstance(filled, Finding) else self.params(**filled)
 
 
 def number(

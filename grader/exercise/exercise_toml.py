@@ -4,6 +4,8 @@ The keys of the format with `schema = 2`:
 
 - `[exercise]` has id, title, package (without a package, students submit only answers.toml) and starting_point_fails
   (the ids of the checks that exercises/ must fail, for `grader validate`).
+- `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one of
+  each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
 - `[[trial]]` has id, executable, node, duration_s, start, rename and pose_every. `[[trial.drive]]` has from_s,
   linear_x_m_s and angular_z_rad_s (one number, or two between which a number is drawn).
 - `[[check]]` has id, kind, points, needs (ids), title, trial (the default is the first one), hidden, and the parameters
@@ -20,7 +22,9 @@ from typing import TYPE_CHECKING, Any
 
 from grader.common.words import nearest, shorten
 from grader.errors import UsageError
+from grader.exercise.kind_spec import Allowed
 from grader.exercise.model import CheckSpec, Drive, Exercise, Hint, Scenario, TrialSpec
+from grader.exercise.own_numbers import NumbersSpec, Own
 from grader.exercise.presets import expand, problem_of
 from grader.exercise.tables import Table, read_toml, shown
 
@@ -44,6 +48,11 @@ REMAP = re.compile(r"(/\w+)+:=(/\w+)+")
 MAX_DURATION_S = 600.0
 MAX_SPEED = 10.0
 """The maximum speed (m/s, rad/s)."""
+
+FIELD = Allowed(
+    "a number, a string, true or false", lambda value: value if isinstance(value, str | int | float) else None, ""
+)
+"""What one field of a parameter that is a table may be."""
 
 
 def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
@@ -85,22 +94,33 @@ def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) 
     head = top.table("exercise")
     # An exercise that only needs answers.toml has no package, and its trials have no node.
     package = head.string("package", ROS_NAME, NAME, default=None if "package" in head.values else "")
+    id_ = head.string("id", ID, "small letters, digits and single dashes, as in 03-circle-publisher")
+    numbers = _numbers(top.table("numbers"), id_) if "numbers" in top.values else None
     trials = _trials(top, package)
-    checks = _checks(top, tuple(trial.id for trial in trials), kinds)
+    checks = _checks(top, tuple(trial.id for trial in trials), kinds, numbers)
     exercise = Exercise(
-        id=head.string("id", ID, "small letters, digits and single dashes, as in 03-circle-publisher"),
+        id=id_,
         title=head.string("title"),
         package=package,
         trials=trials,
         checks=checks,
         hints=tuple(_hint(table, checks) for table in top.tables("hint")),
         unsolved=head.strings("starting_point_fails"),
+        numbers=numbers,
         folder=folder,
         digest=digest,
     )
     for table in (head, top):
         table.finish()
     return exercise
+
+
+def _numbers(table: Table, step: str) -> NumbersSpec:
+    file = table.string("file", re.compile(r"\w+\.toml"), "the name of a TOML file")
+    options = {name: table.options(name) for name in table.values if name != "file"}
+    if not options:
+        table.problem("there is no list of values.")
+    return NumbersSpec(step, file, options)
 
 
 def _trials(top: Table, package: str) -> tuple[TrialSpec, ...]:
@@ -172,11 +192,13 @@ def _must_be_check(table: Table, key: str, name: str, ids: list[str]) -> None:
         table.problem(f'"{key}" names "{shorten(name)}", which is no check.{hint} Allowed: {", ".join(ids)}.')
 
 
-def _checks(top: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) -> tuple[CheckSpec, ...]:
+def _checks(
+    top: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec], numbers: NumbersSpec | None
+) -> tuple[CheckSpec, ...]:
     tables = _without_presets(top.tables("check"), trials)
     if "check" not in top.values:
         top.problem("there is no [[check]], so nothing would be judged.")
-    specs = tuple(_check(table, trials, kinds) for table in tables)
+    specs = tuple(_check(table, trials, kinds, numbers) for table in tables)
     ids = [spec.id for spec in specs]
     for table, spec in zip(tables, specs, strict=True):
         if spec.id and ids.count(spec.id) > 1:
@@ -198,7 +220,9 @@ def _without_presets(tables: list[Table], trials: tuple[str, ...]) -> list[Table
     return [table for table in tables if "preset" not in table.values]
 
 
-def _check(table: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec]) -> CheckSpec:
+def _check(
+    table: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec], numbers: NumbersSpec | None
+) -> CheckSpec:
     id_ = table.string("id", ID, "small letters, digits and single dashes, as in circle-radius")
     if id_:
         table.place += f" ({id_})"
@@ -224,13 +248,25 @@ def _check(table: Table, trials: tuple[str, ...], kinds: Mapping[str, KindSpec])
             if key not in params:
                 table.problem(f'the key "{key}" is missing; the kind "{name}" needs it: {allowed.words}.')
             continue
-        value = allowed.accept(table.values[key])
+        value = _param(table.values[key], allowed, numbers)
         if value is None:
             table.problem(f'"{key}" is {shown(table.values[key])}; it must be {allowed.words}.')
         else:
             params[key] = value
     table.finish(also=kind.parameters())
     return CheckSpec(id_, name, title, points, needs, hidden, params, trial)
+
+
+def _param(value: object, allowed: Allowed, numbers: NumbersSpec | None) -> Param | None:
+    """Return the value of a parameter, or None if it is not allowed. Every possible own value must be allowed."""
+    if isinstance(value, dict) and "own" in value:
+        options = numbers.options.get(value["own"], ()) if numbers is not None and len(value) == 1 else ()
+        fits = bool(options) and all(allowed.accept(option) is not None for option in options)
+        return Own(value["own"]) if fits else None
+    if isinstance(value, dict):
+        fields = {key: _param(each, FIELD, numbers) for key, each in value.items()}
+        return None if None in fields.values() else allowed.accept(fields)
+    return allowed.accept(value)
 
 
 def _circle(specs: tuple[CheckSpec, ...]) -> list[str]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
+
+from grader.exercise.own_numbers import Own
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-Param = str | float | int | bool | tuple[str, ...]
-"""The possible types of a check's parameter."""
+Param = str | float | int | bool | Own | tuple[Any, ...]
+"""The possible types of a check's parameter. A tuple holds strings, or the name and value of each field."""
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from grader.exercise.kind_spec import Param
+    from grader.exercise.own_numbers import NumbersSpec
 
 FILE_NAME = "exercise.toml"
 
@@ -99,6 +100,8 @@ class Exercise:
     folder: Path
     digest: str = ""
     """The SHA-256 hash of exercise.toml, which contains everything that the exercise requires."""
+    numbers: NumbersSpec | None = None
+    """The values that differ from student to student."""
     unsolved: tuple[str, ...] = ()
     """The checks that the starting point must fail (for `grader validate`). Checks that depend on them are skipped."""
 

@@ -1,7 +1,8 @@
-"""Own numbers: the circle that a student drives in step 07, derived from the student's id.
+"""Own numbers: the values of an exercise that differ from student to student, derived from the student's id.
 
-`grader start` writes them to my_numbers.toml in the package. They depend only on the id, so a check can detect numbers
-that were changed.
+The table `[numbers]` in exercise.toml lists the possible values. `grader start` writes the student's own ones to a TOML
+file in the package. They depend only on the id, so a check can detect numbers that were changed. A parameter of a check
+that is `{ own = "radius_m" }` gets the student's own value.
 """
 
 from __future__ import annotations
@@ -10,26 +11,41 @@ import hashlib
 import sys
 import unicodedata
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
 
-FILE = "my_numbers.toml"
-RADII_M = (0.8, 1.0, 1.2, 1.4, 1.6, 1.8)
-RATES_HZ = (2.0, 2.5, 4.0, 5.0)
-DIRECTIONS = ("counter-clockwise", "clockwise")
+Value = str | float | int
+
+
+@dataclass(frozen=True)
+class Own:
+    """Stands for the student's own value with this name."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class NumbersSpec:
+    """The table `[numbers]` of the exercise `step`: the file in the package, and the possible values of each name."""
+
+    step: str
+    file: str
+    options: Mapping[str, tuple[Value, ...]]
 
 
 @dataclass(frozen=True)
 class OwnNumbers:
-    """A circle with the radius `radius_m` (m), driven in this direction with `rate_hz` commands per second."""
+    """The values of one student, by their names, which contain their units."""
 
     student: str
-    radius_m: float
-    direction: str
-    rate_hz: float
+    values: Mapping[str, Value]
 
 
 def normal_id(student: str) -> str:
@@ -42,45 +58,45 @@ def normal_id(student: str) -> str:
     return " ".join(folded.split())
 
 
-def draw_numbers(student: str) -> OwnNumbers:
+def draw_numbers(spec: NumbersSpec, student: str) -> OwnNumbers:
     """Return the numbers of a student. They are the same on every machine and for every spelling (see `normal_id`)."""
-    drawn = hashlib.sha256(f"07-challenges {normal_id(student)}".encode("utf-8", "surrogatepass")).digest()
-    return OwnNumbers(
-        student,
-        RADII_M[drawn[0] % len(RADII_M)],
-        DIRECTIONS[drawn[1] % len(DIRECTIONS)],
-        RATES_HZ[drawn[2] % len(RATES_HZ)],
-    )
+    drawn = hashlib.sha256(f"{spec.step} {normal_id(student)}".encode("utf-8", "surrogatepass")).digest()
+    values = {
+        name: options[byte % len(options)] for byte, (name, options) in zip(drawn, spec.options.items(), strict=False)
+    }
+    return OwnNumbers(student, values)
 
 
 def to_toml(numbers: OwnNumbers) -> str:
-    """Return the text of my_numbers.toml. The id can be any string."""
+    """Return the text of the file. The id can be any string."""
     escaped = "".join(
         char if char.isprintable() and char not in '"\\' else f"\\U{ord(char):08X}" for char in numbers.student
     )
-    return (
-        "# The numbers of your own circle. They come from your id: leave this file as it is, "
-        "and write them into your node.\n"
-        f'student = "{escaped}"\n'
-        f"radius_m = {numbers.radius_m}\n"
-        f'direction = "{numbers.direction}"\n'
-        f"rate_hz = {numbers.rate_hz}\n"
-    )
+    lines = [
+        "# Your own numbers. They come from your id: leave this file as it is, and write them into your node.",
+        f'student = "{escaped}"',
+        *(
+            f'{name} = "{value}"' if isinstance(value, str) else f"{name} = {value}"
+            for name, value in numbers.values.items()
+        ),
+    ]
+    return "\n".join(lines) + "\n"
 
 
-def from_toml(data: bytes) -> OwnNumbers:
-    """Return the numbers in a my_numbers.toml. Raises ValueError with the reason if the file is wrong."""
+def from_toml(spec: NumbersSpec, data: bytes) -> OwnNumbers:
+    """Return the numbers in the file. Raises ValueError with the reason if the file is wrong."""
     try:
         table = tomllib.loads(data.decode("utf-8-sig"))
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         message = f"it cannot be read ({error})"
         raise ValueError(message) from error
-    student, direction = table.get("student"), table.get("direction")
-    radius, rate = table.get("radius_m"), table.get("rate_hz")
-    if not (isinstance(student, str) and isinstance(direction, str)):
-        message = "student or direction is missing, or not a string"
+    student = table.get("student")
+    if not isinstance(student, str):
+        message = "student is missing, or not a string"
         raise ValueError(message)  # noqa: TRY004
-    if not (isinstance(radius, int | float) and isinstance(rate, int | float)):
-        message = "radius_m or rate_hz is missing, or not a number"
-        raise ValueError(message)  # noqa: TRY004
-    return OwnNumbers(student, float(radius), direction, float(rate))
+    for name, options in spec.options.items():
+        value = table.get(name)
+        if isinstance(value, str) != isinstance(options[0], str) or not isinstance(value, str | int | float):
+            message = f"{name} is missing, or not a {'string' if isinstance(options[0], str) else 'number'}"
+            raise ValueError(message)
+    return OwnNumbers(student, {name: table[name] for name in spec.options})

@@ -102,6 +102,17 @@ class Table:
 
         return tuple(self._get(key, "a list of strings", good, default=[]))
 
+    def options(self, key: str) -> tuple[Any, ...]:
+        """Return a list of at least two different values: all strings, or all numbers."""
+
+        def good(value: object) -> bool:
+            if not isinstance(value, list) or len(value) != len(set(map(repr, value))) or len(value) < 2:
+                return False
+            numbers = all(isinstance(each, int | float) and not isinstance(each, bool) for each in value)
+            return numbers or all(isinstance(each, str) for each in value)
+
+        return tuple(self._get(key, "a list of at least two different numbers or strings", good, default=["", ""]))
+
     def table(self, key: str) -> Table:
         """Return the table `[key]`, which is required."""
         value = self._get(key, f"a table [{key}]", lambda value: isinstance(value, dict), default=None)

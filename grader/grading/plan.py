@@ -28,7 +28,7 @@ def plan_of(evidence: Evidence, clock: ClockName, *, choice: ClockChoice, seed: 
     """Return the plan of this trial. `seed` is the seed from the user, and `choice` is the value of `--clock`."""
     scenario = evidence.trial.scenario
     checks = [check for check in evidence.exercise.checks if check.trial == evidence.trial.id]
-    radii = [KINDS[check.kind].radius(check.params) for check in checks]
+    radii = [KINDS[check.kind].radius(evidence, check.params) for check in checks]
     radius = max((each for each in radii if each is not None), default=USUAL_RADIUS_M)
     start = start_pose(DEFAULT_SEED if seed is None and scenario.anywhere else seed, radius)
     return Plan(

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from grader.errors import MachineError, UsageError
-from grader.exercise import own_numbers
 from grader.exercise.model import course_folder
 from grader.exercise.own_numbers import draw_numbers, to_toml
 from grader.submission import tree
@@ -85,7 +84,9 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
     folder = work_folder(exercise, workspace)
     try:
         kept = _put_aside(folder, workspace) if fresh and folder.exists() else None
-        added, present = add_missing(source, folder, {own_numbers.FILE: to_toml(draw_numbers(student)).encode()})
+        own = exercise.numbers
+        numbers = {own.file: to_toml(draw_numbers(own, student)).encode()} if own is not None else {}
+        added, present = add_missing(source, folder, numbers)
         lacking = {path: _lacking(source / path, folder / path) for path in present if path in _PACKAGE_FILES}
     except (FileExistsError, NotADirectoryError) as error:
         message = f"{error.filename} is a file, but a folder is needed. Name another workspace with --workspace."

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from grader.errors import UsageError
-from grader.exercise import own_numbers
 from grader.exercise.own_numbers import draw_numbers, to_toml
 from grader.learner import progress, workspace
 from grader.submission.package import ANSWERS
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.exercise.model import Exercise
+    from grader.exercise.own_numbers import NumbersSpec
 
 MAGICS = ("node", "package", "answers")
 KEPT = ".kept"
@@ -122,18 +122,18 @@ def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str
     if not alone and not target.exists() and own.is_dir():
         written = workspace.add_missing(own, target, {})[0]
     written += workspace.add_missing(source, target, {})[0]
-    if not alone and (source / own_numbers.FILE).is_file():
-        written += _own_numbers(source, target)
+    if not alone and exercise.numbers is not None:
+        written += _own_numbers(exercise.numbers, source, target)
     return tuple(f"{exercise.package}/{path}" for path in dict.fromkeys(written))
 
 
-def _own_numbers(source: Path, target: Path) -> tuple[str, ...]:
+def _own_numbers(spec: NumbersSpec, source: Path, target: Path) -> tuple[str, ...]:
     """Draw the student's own numbers if the file still has those of the starting point."""
-    file = target / own_numbers.FILE
-    if file.read_bytes() != (source / own_numbers.FILE).read_bytes():
+    file = target / spec.file
+    if file.read_bytes() != (source / spec.file).read_bytes():
         return ()
-    file.write_text(to_toml(draw_numbers(_student())), encoding="utf-8")
-    return (own_numbers.FILE,)
+    file.write_text(to_toml(draw_numbers(spec, _student())), encoding="utf-8")
+    return (spec.file,)
 
 
 def _student() -> str:

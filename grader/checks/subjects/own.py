@@ -1,4 +1,4 @@
-"""Checks of the circle with a student's own numbers, from my_numbers.toml in the package."""
+"""Checks of a student's own numbers, from a file in the package, and of a circle that is driven with them."""
 
 from __future__ import annotations
 
@@ -8,15 +8,17 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.kind import Kind, NoParams, number
 from grader.checks.outcome import Finding, failed, passed
+from grader.checks.own_values import drawn_numbers, numbers_spec, read_numbers
 from grader.checks.subjects.path import CircleParams, circle, requested_circle
 from grader.checks.subjects.rate import Rate, rate
 from grader.common.words import shorten
-from grader.exercise.own_numbers import FILE, OwnNumbers, draw_numbers, from_toml, normal_id
+from grader.exercise.own_numbers import draw_numbers, normal_id
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
     from grader.checks.requested import Requested
     from grader.evidence.evidence import Evidence
+    from grader.exercise.own_numbers import OwnNumbers
 
 EARLY, LATE = 0.8, 1.3
 """The shortest and the longest allowed interval, as a share of the period."""
@@ -24,40 +26,28 @@ EARLY, LATE = 0.8, 1.3
 
 def own_numbers(evidence: Evidence, _: NoParams) -> Finding:
     """The numbers exist, belong to the student named in the file, and that student submitted them."""
-    found = _read(evidence)
+    found = read_numbers(evidence)
     if isinstance(found, Finding):
         return found
-    by = evidence.submission.student
+    spec, by = numbers_spec(evidence), evidence.submission.student
     if by is not None and normal_id(found.student) != normal_id(by):
         observed = (
-            f'The numbers in {FILE} were drawn for "{shorten(found.student)}", but "{shorten(by)}" submitted them.'
+            f'The numbers in {spec.file} were drawn for "{shorten(found.student)}", but "{shorten(by)}" submitted them.'
         )
-        expected = "Every student drives their own circle."
-        cause = f"`grader start 07 --student {shorten(by)} --fresh` draws yours and keeps a copy of your work."
-        return failed(observed, expected, Cause("numbers-of-another", cause, Where(FILE)))
-    wanted = draw_numbers(found.student)
+        expected = "Every student has their own numbers."
+        step = spec.step[:2]
+        cause = f"`grader start {step} --student {shorten(by)} --fresh` draws yours and keeps a copy of your work."
+        return failed(observed, expected, Cause("numbers-of-another", cause, Where(spec.file)))
+    wanted = draw_numbers(spec, found.student)
     if found != wanted:
-        observed = f"The numbers in {FILE} are not the ones that were drawn for this student."
-        expected = f"Radius {wanted.radius_m} m, {wanted.direction}, {wanted.rate_hz} Hz."
+        observed = f"The numbers in {spec.file} are not the ones that were drawn for this student."
         cause = "Do not change the file. Use its numbers in your node."
-        return failed(observed, expected, Cause("numbers-changed", cause, Where(FILE)))
-    return passed(f"Radius {found.radius_m} m, {found.direction}, {found.rate_hz} commands per second.")
+        return failed(observed, f"{_shown(wanted)}.", Cause("numbers-changed", cause, Where(spec.file)))
+    return passed(f"{_shown(found)}.")
 
 
-def _read(evidence: Evidence) -> OwnNumbers | Finding:
-    data = evidence.submission.files.get(FILE)
-    expected = f"{FILE} is next to package.xml, as `grader start` wrote it."
-    if data is None:
-        return failed(f"There is no {FILE}.", expected, Cause("no-numbers"))
-    try:
-        return from_toml(data)
-    except ValueError as error:
-        return failed(f"{FILE}: {error}.", expected, Cause("numbers-unreadable", where=Where(FILE)))
-
-
-def _drawn(evidence: Evidence) -> OwnNumbers | Finding:
-    found = _read(evidence)
-    return found if isinstance(found, Finding) else draw_numbers(found.student)
+def _shown(numbers: OwnNumbers) -> str:
+    return ", ".join(f"{name} = {value}" for name, value in numbers.values.items())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,16 +70,16 @@ def own_circle(evidence: Evidence, params: OwnCircle) -> Finding:
 
 def own_circle_params(evidence: Evidence, params: OwnCircle) -> CircleParams | Finding:
     """Return the circle that this student must drive, or a failed finding if the numbers cannot be read."""
-    own = _drawn(evidence)
+    own = drawn_numbers(evidence)
     if isinstance(own, Finding):
         return own
     return CircleParams(
-        radius_m=own.radius_m,
+        radius_m=float(own.values["radius_m"]),
         radius_tolerance_m=params.radius_tolerance_m,
         centre_tolerance_m=params.centre_tolerance_m,
         residual_m=params.residual_m,
         turns=params.turns,
-        direction=own.direction,
+        direction=str(own.values["direction"]),
     )
 
 
@@ -102,14 +92,15 @@ class OwnRate:
 
 def own_rate(evidence: Evidence, params: OwnRate) -> Finding:
     """The commands arrive at the student's own rate."""
-    own = _drawn(evidence)
+    own = drawn_numbers(evidence)
     if isinstance(own, Finding):
         return own
+    rate_hz = float(own.values["rate_hz"])
     wanted = Rate(
-        rate_hz=own.rate_hz,
+        rate_hz=rate_hz,
         tolerance_percent=params.tolerance_percent,
-        min_interval_s=EARLY / own.rate_hz,
-        max_interval_s=LATE / own.rate_hz,
+        min_interval_s=EARLY / rate_hz,
+        max_interval_s=LATE / rate_hz,
         first_within_s=3.0,
     )
     return rate(evidence, wanted)
@@ -127,7 +118,7 @@ NUMBERS = Kind(
     "The numbers are your own",
     NoParams,
     own_numbers,
-    about="`my_numbers.toml` holds the numbers that are drawn from the id of the student who submitted it.",
+    about="The file of `[numbers]` holds the numbers that are drawn from the id of the student who submitted it.",
 )
 CIRCLE = Kind(
     "own_circle",

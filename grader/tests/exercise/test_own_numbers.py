@@ -1,23 +1,40 @@
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.exercise.own_numbers import DIRECTIONS, RADII_M, RATES_HZ, draw_numbers, from_toml, normal_id, to_toml
+from grader.checks.kinds import KINDS
+from grader.errors import UsageError
+from grader.exercise.exercise_toml import parse_tables
+from grader.exercise.model import Exercise, course_folder
+from grader.exercise.own_numbers import NumbersSpec, draw_numbers, from_toml, normal_id, to_toml
+from grader.tests.checks.made import every, evidence, recording, submission
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+SPEC = NumbersSpec(
+    "07-challenges",
+    "my_numbers.toml",
+    {"radius_m": (0.8, 1.0, 1.2), "direction": ("clockwise", "counter-clockwise"), "red": (0, 200, 255)},
+)
 
 
 def test_the_same_student_gets_the_same_numbers() -> None:
-    assert draw_numbers("ada") == draw_numbers("ada")
+    assert draw_numbers(SPEC, "ada") == draw_numbers(SPEC, "ada")
 
 
 def test_students_get_different_numbers() -> None:
-    drawn = [draw_numbers(f"student {number}") for number in range(200)]
-    assert {each.radius_m for each in drawn} == set(RADII_M)
-    assert {each.rate_hz for each in drawn} == set(RATES_HZ)
-    assert {each.direction for each in drawn} == set(DIRECTIONS)
+    drawn = [draw_numbers(SPEC, f"student {number}") for number in range(200)]
+    for name, options in SPEC.options.items():
+        assert {each.values[name] for each in drawn} == set(options)
 
 
 SPELLINGS = [
@@ -32,7 +49,7 @@ SPELLINGS = [
 
 @pytest.mark.parametrize("spelling", SPELLINGS)
 def test_every_spelling_of_an_id_draws_the_same_numbers(spelling: str) -> None:
-    numbers, wanted = draw_numbers(spelling), draw_numbers(SPELLINGS[0])
+    numbers, wanted = draw_numbers(SPEC, spelling), draw_numbers(SPEC, SPELLINGS[0])
     assert replace(numbers, student="") == replace(wanted, student="")
 
 
@@ -40,7 +57,7 @@ def test_every_spelling_of_an_id_draws_the_same_numbers(spelling: str) -> None:
 def test_ids_that_count_as_one_draw_the_same_numbers(one: str, other: str) -> None:
     for spelling in (one.upper(), one.swapcase(), f" {one} ", other):
         if normal_id(spelling) == normal_id(one):
-            assert replace(draw_numbers(spelling), student="") == replace(draw_numbers(one), student="")
+            assert replace(draw_numbers(SPEC, spelling), student="") == replace(draw_numbers(SPEC, one), student="")
 
 
 @given(st.text())
@@ -49,18 +66,52 @@ def test_any_id_survives_the_file(student: str) -> None:
         student.encode()
     except UnicodeEncodeError:
         return  # (no file can hold it, nor can a terminal give it)
-    numbers = draw_numbers(student)
-    assert from_toml(to_toml(numbers).encode()) == numbers
+    numbers = draw_numbers(SPEC, student)
+    assert from_toml(SPEC, to_toml(numbers).encode()) == numbers
 
 
 @pytest.mark.parametrize(
     ("text", "why"),
     [
         ("radius_m = ", "cannot be read"),
-        ("radius_m = 1.0", "student or direction"),
+        ("radius_m = 1.0", "student"),
         ('student = "a"\ndirection = "b"', "radius_m"),
+        ('student = "a"\nradius_m = 1.0\ndirection = 3', "direction is missing, or not a string"),
     ],
 )
 def test_a_broken_file_says_what_is_wrong(text: str, why: str) -> None:
     with pytest.raises(ValueError, match=why):
-        from_toml(text.encode())
+        from_toml(SPEC, text.encode())
+
+
+def parsed(numbers: dict[str, object], **check: object) -> Exercise:
+    course = tomllib.loads((course_folder() / "03-circle-publisher" / "exercise.toml").read_text("utf-8"))
+    circle = next(each for each in course["check"] if each.get("kind") == "circle")
+    tables = {**course, "hint": [], "numbers": numbers, "check": [{**circle, "needs": [], **check}]}
+    del tables["exercise"]["starting_point_fails"]
+    return parse_tables(tables, "exercise.toml", Path(), "", KINDS)
+
+
+def test_a_parameter_of_a_check_may_be_the_students_own_value() -> None:
+    exercise = parsed({"file": "mine.toml", "radius_m": [1.0, 3.0]}, radius_m={"own": "radius_m"})
+    assert exercise.numbers is not None
+    file = to_toml(draw_numbers(exercise.numbers, "ada")).encode()
+    given = evidence(package=submission({"mine.toml": file}), exercise=exercise)
+    kind, params = KINDS["circle"], exercise.checks[0].params
+    assert kind.radius(given, params) == draw_numbers(exercise.numbers, "ada").values["radius_m"]
+    missing = kind.judge(evidence(recording(every(0.5, 1.0, 1.0)), exercise=exercise), params)
+    assert missing.diagnosis == "no-numbers"
+
+
+@pytest.mark.parametrize(
+    ("numbers", "own"),
+    [
+        ({"file": "mine.toml", "radius_m": [1.0, 3.0]}, "diameter_m"),
+        ({"file": "mine.toml", "radius_m": [0.0, 3.0]}, "radius_m"),
+        ({"file": "mine.toml", "radius_m": ["small", "large"]}, "radius_m"),
+        ({"file": "mine.toml", "radius_m": [1.0]}, "radius_m"),
+    ],
+)
+def test_every_own_value_must_fit_the_parameter(numbers: dict[str, object], own: str) -> None:
+    with pytest.raises(UsageError, match="radius_m"):
+        parsed(numbers, radius_m={"own": own})

@@ -63,11 +63,13 @@ class Learner:
         for file in sorted((solution / exercise.package).rglob("*") if exercise.package else solution.rglob("*")):
             place = mine / file.relative_to(solution / exercise.package)
             # The learner keeps their own numbers.
-            if file.is_file() and place.name != "my_numbers.toml":
+            own = exercise.numbers
+            if file.is_file() and not (own is not None and place.name == own.file):
                 place.parent.mkdir(parents=True, exist_ok=True)
                 text = file.read_text(encoding="utf-8")
                 if place.name == "own_circle.py":
-                    text = with_numbers(text, from_toml((mine / "my_numbers.toml").read_bytes()))
+                    assert own is not None
+                    text = with_numbers(text, from_toml(own, (mine / own.file).read_bytes()))
                 fresh = place.with_name(f".{place.name}.new")
                 fresh.write_text(text, encoding="utf-8")
                 fresh.replace(place)
@@ -75,8 +77,12 @@ class Learner:
 
 def with_numbers(text: str, own: OwnNumbers) -> str:
     """Return our circle with the learner's numbers, at 1 rad/s."""
-    turn = 1.0 if own.direction == "counter-clockwise" else -1.0
-    for old, new in (("1.0 / 4.0", f"1.0 / {own.rate_hz}"), ("0.8", str(own.radius_m)), ("-1.0", str(turn))):
+    turn = 1.0 if own.values["direction"] == "counter-clockwise" else -1.0
+    for old, new in (
+        ("1.0 / 4.0", f"1.0 / {own.values['rate_hz']}"),
+        ("0.8", str(own.values["radius_m"])),
+        ("-1.0", str(turn)),
+    ):
         assert old in text
         text = text.replace(old, new)
     return text

@@ -171,10 +171,12 @@ def test_answers_are_in_a_folder_of_their_own(home: Path) -> None:
     assert workspace.work_folder(begun.exercise, home / "ros2_ws") == begun.started.folder
 
 
-def test_the_last_step_begins_with_the_students_own_numbers(home: Path) -> None:
+def test_a_step_with_own_numbers_begins_with_the_students_own_numbers(home: Path) -> None:
     steps.start("07", None, student="4711")
     file = home / "ros2_ws/src/my_robot_controller/my_numbers.toml"
-    assert from_toml(file.read_bytes()) == draw_numbers("4711")
+    spec = find_exercise("07").numbers
+    assert spec is not None
+    assert from_toml(spec, file.read_bytes()) == draw_numbers(spec, "4711")
     assert steps.start("07", None).started.added == ()
 
 

@@ -7,25 +7,38 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
 from grader.checks.subjects.own import CIRCLE, NUMBERS, RATE
 from grader.evidence.evidence import Run
-from grader.exercise.own_numbers import FILE, draw_numbers, to_toml
-from grader.tests.checks.made import every, evidence, found, recording, submission
+from grader.exercise.own_numbers import draw_numbers, to_toml
+from grader.tests.checks.made import every, evidence, exercise, found, recording, submission
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.exercise.own_numbers import OwnNumbers
 
-ALICE = draw_numbers("alice")
+STEP = find_exercise("07")
+assert STEP.numbers is not None
+SPEC = STEP.numbers
+FILE = SPEC.file
+ALICE = draw_numbers(SPEC, "alice")
+RADIUS_M, RATE_HZ = float(ALICE.values["radius_m"]), float(ALICE.values["rate_hz"])
 SIDE = {"counter-clockwise": 1.0, "clockwise": -1.0}
+
+
+def changed(**values: float) -> OwnNumbers:
+    """The numbers of alice with these values."""
+    return replace(ALICE, values={**ALICE.values, **values})
 
 
 def given(numbers: OwnNumbers | str | None, by: str | None = "alice") -> Evidence:
     """A circle driven by the numbers drawn for alice, with these in the file."""
-    commands = every(1.0 / ALICE.rate_hz, ALICE.radius_m, SIDE[ALICE.direction])
+    commands = every(1.0 / RATE_HZ, RADIUS_M, SIDE[str(ALICE.values["direction"])])
     text = numbers if numbers is None or isinstance(numbers, str) else to_toml(numbers)
-    return evidence(recording(commands), replace(submission({FILE: text}), student=by))
+    return evidence(
+        recording(commands), replace(submission({FILE: text}), student=by), exercise=replace(exercise(), numbers=SPEC)
+    )
 
 
 @pytest.mark.parametrize("by", ["alice", " Alice", None])
@@ -37,7 +50,7 @@ def test_no_spelling_of_the_own_id_makes_a_friends_circle_pass() -> None:
     """Bob hands in alice's program, and tries spellings of his own id until the drawn numbers are hers."""
     for number in range(512):
         spelling = "".join(char.upper() if number >> at & 1 else char for at, char in enumerate("bobbobbob"))
-        numbers = draw_numbers(spelling)
+        numbers = draw_numbers(SPEC, spelling)
         assert found(NUMBERS, given(numbers, "bobbobbob")).status is Status.PASSED
         assert Status.FAILED in {found(kind, given(numbers, "bobbobbob")).status for kind in (CIRCLE, RATE)}
 
@@ -52,13 +65,13 @@ def test_no_spelling_of_the_own_id_makes_a_friends_circle_pass() -> None:
             f'The numbers in {FILE} were drawn for "alice", but "bob" submitted them.',
         ),
         (
-            replace(ALICE, radius_m=ALICE.radius_m + 0.2),
+            changed(radius_m=RADIUS_M + 0.2),
             "alice",
             "numbers-changed",
             f"The numbers in {FILE} are not the ones that were drawn for this student.",
         ),
         (None, "alice", "no-numbers", f"There is no {FILE}."),
-        ("student = 3", "alice", "numbers-unreadable", f"{FILE}: student or direction is missing, or not a string."),
+        ("student = 3", "alice", "numbers-unreadable", f"{FILE}: student is missing, or not a string."),
     ],
 )
 def test_other_numbers_are_told_from_the_own(
@@ -70,13 +83,13 @@ def test_other_numbers_are_told_from_the_own(
 
 
 def test_the_way_is_judged_by_the_numbers_drawn_whatever_the_file_says() -> None:
-    changed = given(replace(ALICE, radius_m=ALICE.radius_m + 0.4, rate_hz=10.0))
-    assert [found(kind, changed).status for kind in (CIRCLE, RATE)] == [Status.PASSED] * 2
+    other = given(changed(radius_m=RADIUS_M + 0.4, rate_hz=10.0))
+    assert [found(kind, other).status for kind in (CIRCLE, RATE)] == [Status.PASSED] * 2
 
 
 @pytest.mark.parametrize(("student", "diagnosis"), [("bob", "wrong-direction"), ("carol", "wrong-radius")])
 def test_a_trajectory_by_somebody_elses_numbers_is_wrong(student: str, diagnosis: str) -> None:
-    other = given(draw_numbers(student), by=None)
+    other = given(draw_numbers(SPEC, student), by=None)
     assert [found(kind, other).diagnosis for kind in (CIRCLE, RATE)] == [diagnosis, "wrong-rate"]
 
 
@@ -84,15 +97,15 @@ def test_a_trajectory_by_somebody_elses_numbers_is_wrong(student: str, diagnosis
     ("share", "status"), [(1.2, Status.PASSED), (1.4, Status.FAILED), (0.85, Status.PASSED), (0.75, Status.FAILED)]
 )
 def test_one_interval_may_be_a_little_longer_or_shorter_than_the_own_period(share: float, status: Status) -> None:
-    period_s = 1.0 / ALICE.rate_hz
-    commands = every(period_s, ALICE.radius_m, 1.0)
+    period_s = 1.0 / RATE_HZ
+    commands = every(period_s, RADIUS_M, 1.0)
     moved = [(t_s + (share - 1.0) * period_s * (index >= 20), v, w) for index, (t_s, v, w) in enumerate(commands)]
     assert found(RATE, given(ALICE).with_run(Run(recording(moved)))).status is status
 
 
 @pytest.mark.parametrize(("first_s", "diagnosis"), [(2.9, None), (3.5, "late-start")])
 def test_the_first_command_may_come_three_seconds_late(first_s: float, diagnosis: str | None) -> None:
-    commands = every(1.0 / ALICE.rate_hz, ALICE.radius_m, 1.0, first_s=first_s)
+    commands = every(1.0 / RATE_HZ, RADIUS_M, 1.0, first_s=first_s)
     assert found(RATE, given(ALICE).with_run(Run(recording(commands)))).diagnosis == diagnosis
 
 
