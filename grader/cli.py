@@ -13,7 +13,7 @@ import typer
 from grader.authoring import cli as authoring
 from grader.classroom import cli as classroom
 from grader.common.interpreter import clean_own
-from grader.common.refusal import refusal
+from grader.common.system_errors import refusal
 from grader.errors import GraderError
 from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from grader.checks.outcome import Outcome
-    from grader.evidence.archive import Archived
     from grader.evidence.evidence import Evidence
+    from grader.evidence.recording_format import Archived
     from grader.exercise.model import Exercise
     from grader.report.report import Report
     from grader.submission.package import Submission
@@ -98,10 +98,10 @@ def check(
     verbose: Verbose = False,
 ) -> None:
     """Build and run one submission, and print what is right and what is wrong."""
-    from grader.evidence import archive
+    from grader.evidence import recording_format
     from grader.grading.grade import grade
     from grader.grading.options import Options
-    from grader.report.files import check_writable
+    from grader.report.output_file import check_writable
     from grader.report.progress_line import progress
     from grader.report.terminal import early
     from grader.sandbox import bubblewrap
@@ -109,14 +109,14 @@ def check(
     for file in (json, image, html):
         check_writable(file)
     if recording:
-        archive.check_free(recording)
+        recording_format.check_free(recording)
     asked, opened = _opened(submission, exercise)
     in_cell = bubblewrap.require() if confined else bubblewrap.usable()
     options = Options(in_cell, clock.value, seed, explain)
     with progress() as tell:
         graded = grade(asked, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)))
         if recording:
-            archive.save(recording, graded.evidence, graded.report.ros, graded.prefixes)
+            recording_format.save(recording, graded.evidence, graded.report.ros, graded.prefixes)
     from grader.learner import steps
 
     following = steps.note(asked, opened.package_dir, graded.report)
@@ -137,7 +137,7 @@ def regrade(
 ) -> None:
     """Judge a recording again. No code of the student is run."""
     from grader.checks.exercises import find_exercise, load_exercise
-    from grader.report.files import check_writable
+    from grader.report.output_file import check_writable
     from grader.report.report import report_of
     from grader.submission.reader import read
 
@@ -218,15 +218,15 @@ def _drop_unwritten() -> None:
 
 def _judged(recording: Path, read_exercise: Callable[[Path], Exercise]) -> tuple[Archived, tuple[Outcome, ...]]:
     from grader.checks.judge import judge
-    from grader.evidence import archive
+    from grader.evidence import recording_format
 
-    kept = archive.load(recording, read_exercise)
+    kept = recording_format.load(recording, read_exercise)
     return kept, judge(kept.evidence)
 
 
 def _opened(path: Path | None, name: str | None) -> tuple[Exercise, Submission]:
     """Open the submission. If the folder does not say which exercise it is for, the package in it may."""
-    from grader.learner.meant import guessed, meant
+    from grader.learner.exercise_argument import guessed, meant
     from grader.submission.package import open_answers, open_submission
 
     known, place = guessed(path, name)
@@ -252,8 +252,8 @@ def _show(
     from grader.report import terminal
 
     if json:
-        from grader.report.files import write
         from grader.report.json import to_json
+        from grader.report.output_file import write
 
         write(json, to_json(report).encode())
     if image:

@@ -28,7 +28,7 @@ from typing import Any
 
 from grader.common.interpreter import interpreter
 from grader.exercise.model import course_folder
-from grader.gradebook.class_folder import make_class
+from grader.gradebook.new_class import make_class
 
 STEP = "03-circle-publisher"
 AT_MOST = 1.5

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 from grader.benchmarks.bare import bare_costs
 from grader.checks.exercises import load_exercise
 from grader.errors import MachineError
-from grader.evidence import archive
+from grader.evidence import recording_format
 from grader.exercise.model import course_folder
 from grader.grading.judging import Judging
 from grader.submission import reader
@@ -47,7 +47,7 @@ def main() -> None:
         kept = Path(folder) / "recording"
         argv = [_GRADER, "check", str(asked.submission), "--recording", str(kept)]
         subprocess.run(argv, check=True, capture_output=True)
-        evidence = archive.load(kept, load_exercise).evidence
+        evidence = recording_format.load(kept, load_exercise).evidence
     costs: dict[bool, list[tuple[float, float]]] = {True: [], False: []}
     for turn in range(2 * (asked.times + 1)):
         inside = reader._Child.inside = bool(turn % 2)

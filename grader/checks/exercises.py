@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.common.refusal import of_the_machine
+from grader.common.system_errors import of_the_machine
 from grader.common.words import a_list, nearest
 from grader.errors import UsageError
 from grader.exercise.exercise_toml import parse_exercise

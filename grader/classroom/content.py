@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from grader.classroom.found import Found
+    from grader.classroom.find_submissions import Found
     from grader.exercise.model import Exercise
 
 MOST_DEEP = 4

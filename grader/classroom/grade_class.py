@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
-from grader.classroom import outputs, results
-from grader.classroom.found import find_submissions, passed_over
+from grader.classroom import result_files, results
+from grader.classroom.class_run import run
+from grader.classroom.find_submissions import find_submissions, passed_over
 from grader.classroom.order import Order, sort_out, sources_for
+from grader.classroom.progress_display import screen, summary
 from grader.classroom.roster import read_owners
-from grader.classroom.run import run
-from grader.classroom.show import screen, summary
 from grader.common.words import a_list, count
 from grader.errors import MachineError, UsageError
 from grader.ros import underlay
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.classroom.engine import Engine
-    from grader.classroom.found import Found
+    from grader.classroom.find_submissions import Found
     from grader.classroom.order import Todo
     from grader.classroom.results import Result
     from grader.grading.clock import ClockChoice
@@ -95,7 +95,7 @@ def grade_found(
                 graded = run(order, todo, engine, folder, shown)
         every = {(result.student, result.report.exercise): result for result in (*kept, *graded)}
         ordered = [every[each.student, each.exercise] for each in found]
-        outputs.write_all(folder, ordered, request.repository_folder)
+        result_files.write_all(folder, ordered, request.repository_folder)
         left = folder.others({result.page for result in ordered})
     say(summary(ordered))
     if left:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from grader.classroom.found import Found
+    from grader.classroom.find_submissions import Found
     from grader.classroom.results import Result, Results
     from grader.exercise.model import Exercise
     from grader.exercise.private_checks import Sources

@@ -10,7 +10,7 @@ from grader.evidence import activity
 from grader.evidence.arrivals import Measured, measure_arrivals
 from grader.evidence.trajectory import Trajectory, trajectory_of
 from grader.evidence.tries import Tries
-from grader.submission.answers import Answers, read_answers
+from grader.submission.answers_toml import Answers, read_answers
 from grader.submission.code import Code, module_file, read_code
 from grader.submission.package_xml import Manifest, read_manifest
 from grader.submission.setup_py import SetupPy, read_setup_py

@@ -65,7 +65,7 @@ def sync(
 ) -> None:
     """Grade the submitted packages in parallel and write the scores into nbgrader's gradebook."""
     from grader.common.words import a_list, count, printable
-    from grader.gradebook.folders import open_class
+    from grader.gradebook.class_folders import open_class
     from grader.gradebook.scores import sync as write
     from grader.report.progress_line import progress
 
@@ -89,7 +89,7 @@ def sync(
 def compare(steps: Steps = None, course: Course = None) -> None:
     """List scores on which autograde's kernel and the grader disagree, and scores that are not confirmed."""
     from grader.common.words import count, printable
-    from grader.gradebook.folders import open_class
+    from grader.gradebook.class_folders import open_class
     from grader.gradebook.scores import compare as differences_of
 
     differences = differences_of(open_class(course), steps or [])
@@ -109,8 +109,8 @@ def new(
 ) -> None:
     """Make a course folder for a class, with lessons, solutions, notebooks and nbgrader's gradebook."""
     from grader.common.words import count
-    from grader.gradebook.class_folder import make_class
-    from grader.gradebook.folders import remember
+    from grader.gradebook.class_folders import remember
+    from grader.gradebook.new_class import make_class
 
     students = make_class(folder, roster)
     remember(folder)

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from grader.gradebook.folders import CLASS
+from grader.gradebook.class_folders import CLASS
 
 COURSE_ID = "ros2-topics"
 BUSY_S = 60
@@ -18,11 +18,11 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     """Configure nbgrader for the course in `root`, the folder that contains solutions/ and exercises/."""
     from nbgrader import preprocessors as steps
 
-    from grader.gradebook.confined import CHECK_S, ConfinedExecute
+    from grader.gradebook.confined_autograde import CHECK_S, ConfinedExecute
     from grader.gradebook.export import ConfirmedCsv
     from grader.gradebook.feedback import GraderReasons, HideHiddenTests
+    from grader.gradebook.release_preprocessors import ReleaseFiles, StripSolutions
     from grader.gradebook.restore import RestoreCells
-    from grader.gradebook.steps import ReleaseFiles, StripSolutions
     from grader.gradebook.unconfirmed import SaveUnconfirmed
 
     _see_own_commands()

@@ -9,8 +9,8 @@ from nbgrader.plugins import CsvExportPlugin
 
 from grader.classroom.results import Results
 from grader.common.words import a_list, count
+from grader.gradebook.class_folders import CLASS, RESULTS
 from grader.gradebook.confirmed import withhold_unconfirmed
-from grader.gradebook.folders import CLASS, RESULTS
 
 
 class ConfirmedCsv(CsvExportPlugin):  # type: ignore[misc, unused-ignore]

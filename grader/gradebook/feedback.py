@@ -10,8 +10,8 @@ from nbformat.v4 import new_output
 from nbgrader.preprocessors import ClearHiddenTests, NbGraderPreprocessor
 
 from grader.classroom.results import Results
-from grader.gradebook.folders import CLASS, RESULTS
-from grader.notebook.worker import reason
+from grader.gradebook.class_folders import CLASS, RESULTS
+from grader.notebook.grading_process import reason
 from grader.report.hidden import for_students
 
 if TYPE_CHECKING:

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
-from grader.classroom.found import Found
+from grader.classroom.find_submissions import Found
 from grader.classroom.grade_class import Request, grade_found
 from grader.classroom.results import Results
-from grader.common.refusal import OF_THE_DISK
+from grader.common.system_errors import OF_THE_DISK
 from grader.common.words import shorten
 from grader.errors import UnreadableError, UsageError
 from grader.gradebook.confirmed import (
@@ -27,7 +27,7 @@ from grader.gradebook.confirmed import (
     unconfirmed,
     withhold_unconfirmed,
 )
-from grader.gradebook.put_together import graded_folder
+from grader.gradebook.package_from_notebook import graded_folder
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from grader.classroom.results import Result
-    from grader.gradebook.folders import ClassFolders
+    from grader.gradebook.class_folders import ClassFolders
 
 
 @dataclass(frozen=True)

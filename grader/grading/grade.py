@@ -11,7 +11,7 @@ from grader.checks.judge import in_words
 from grader.checks.outcome import Status
 from grader.colcon import runner
 from grader.colcon.rebuild import Rebuild
-from grader.common.refusal import refusal
+from grader.common.system_errors import refusal
 from grader.errors import MachineError
 from grader.evidence.evidence import Evidence, Fault
 from grader.grading.explain import explain

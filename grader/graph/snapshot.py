@@ -12,7 +12,7 @@ from rclpy.action import (
 )
 from rclpy.node import NodeNameNonExistentError
 
-from grader.graph.look import EndpointLook, Look, Named, NodeLook
+from grader.graph.graph_info import EndpointLook, Look, Named, NodeLook
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -87,7 +87,7 @@ def watch(
     workspace: Workspace = None,
 ) -> None:
     """Grade again after every save. Keys: h hint, l list, n next, r rerun, q quit."""
-    from grader.learner.screen import run
+    from grader.learner.watch_screen import run
 
     run(*place(path, exercise, workspace), workspace)
 
@@ -106,6 +106,6 @@ def place(path: Path | None, exercise: str | None, workspace: Path | None = None
     Raises:
         UsageError: neither the path nor the learner's progress determines the exercise.
     """
-    from grader.learner.meant import meant
+    from grader.learner.exercise_argument import meant
 
     return meant(path, exercise, workspace)

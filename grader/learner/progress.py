@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.checks.outcome import Status
 from grader.common import xdg
-from grader.common.refusal import of_the_machine, refusal
+from grader.common.system_errors import of_the_machine, refusal
 from grader.errors import MachineError
 
 if TYPE_CHECKING:

@@ -116,7 +116,8 @@ def main() -> None:
         for other in others:
             bridge.send(*other)
         kernel = interpreter(
-            *("-m", "grader.notebook.confined", folder, workspace, "-f", str(bridge.connection_file)), searches=True
+            *("-m", "grader.notebook.confined_kernel", folder, workspace, "-f", str(bridge.connection_file)),
+            searches=True,
         )
         null = subprocess.DEVNULL
         with subprocess.Popen(kernel.argv, env=kernel.env, stdin=null, stdout=null, stderr=null) as child:

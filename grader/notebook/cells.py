@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from grader.checks.exercises import find_exercise
 from grader.common.words import a_list
 from grader.errors import UsageError
-from grader.notebook import lesson, place
+from grader.notebook import cell_files, lesson
 from grader.notebook.mode import grading
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Cells:
         """`%step 03-circle-publisher`: set the step of this notebook, and add missing files next to it."""
         self.exercise = find_exercise(line.strip())
         try:
-            written = place.begin(self.exercise, Path.cwd(), alone=grading())
+            written = cell_files.begin(self.exercise, Path.cwd(), alone=grading())
         except OSError as error:
             message = f"{error.filename} could not be written: {error.strerror}."
             raise UsageError(message) from error
@@ -79,15 +79,15 @@ class Cells:
 
     def _write(self, magic: str, line: str, cell: str) -> None:
         exercise = self.current()
-        path = place.part_path(magic, line.strip(), exercise)
-        file, text, start = Path.cwd() / path, place.ended(cell), place.starting_text(exercise, path)
+        path = cell_files.part_path(magic, line.strip(), exercise)
+        file, text, start = Path.cwd() / path, cell_files.ended(cell), cell_files.starting_text(exercise, path)
         present = file.read_text("utf-8", "replace") if file.is_file() else None
-        if present is not None and place.ended(present) == text:
+        if present is not None and cell_files.ended(present) == text:
             self._written[file] = text
             self._say(f"{path} already has this content.")
             return
-        worked_on = place.counts(present, start) == "file"
-        if worked_on and (grading() or (start is not None and text == place.ended(start))):
+        worked_on = cell_files.counts(present, start) == "file"
+        if worked_on and (grading() or (start is not None and text == cell_files.ended(start))):
             self._say(f"{path} has your own work and stays unchanged, because this cell is still the starting point.")
             return
         if worked_on and self._written.get(file) != present:
@@ -158,11 +158,11 @@ class _Alarm:
 
 
 def _keep(file: Path) -> str:
-    folder = Path.cwd() / place.KEPT
+    folder = Path.cwd() / cell_files.KEPT
     folder.mkdir(exist_ok=True)
     for number in itertools.count(1):
         target = folder / f"{file.stem}-{number}{file.suffix}"
         if not target.exists():
             shutil.copy2(file, target)
-            return f"{place.KEPT}/{target.name}"
+            return f"{cell_files.KEPT}/{target.name}"
     raise AssertionError

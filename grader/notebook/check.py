@@ -75,7 +75,7 @@ class Checking:
             UsageError: there is no such step, or nothing to grade.
             MachineError: the grader or the machine is broken.
         """
-        from grader.notebook.worker import opened
+        from grader.notebook.grading_process import opened
 
         exercise = find_exercise(step) if step else self._cells.current()
         key = exercise.id, opened(exercise, Path.cwd()).digest
@@ -86,7 +86,7 @@ class Checking:
 
 def _graded(exercise: Exercise, folder: Path) -> Verdict:
     with tempfile.TemporaryFile() as answer, _Progress() as progress:
-        start = interpreter("-m", "grader.notebook.worker", exercise.id, str(folder))
+        start = interpreter("-m", "grader.notebook.grading_process", exercise.id, str(folder))
         worker = subprocess.Popen(
             start.argv,
             env=start.env,

@@ -10,7 +10,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from grader.errors import UsageError
-from grader.notebook.place import MAGICS, part_path
+from grader.notebook.cell_files import MAGICS, part_path
 from grader.notebook.released import Cell, to_bytes
 
 if TYPE_CHECKING:

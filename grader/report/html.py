@@ -14,9 +14,9 @@ from grader.checks.outcome import Status
 from grader.errors import UnreadableError
 from grader.report.code_excerpt import excerpt
 from grader.report.escaped_template import compiled
+from grader.report.html_page import make_page, save_page
 from grader.report.html_run import runs_of
 from grader.report.logs import logs_of
-from grader.report.page import make_page, save_page
 from grader.report.plain import plain_line
 from grader.report.verdict import UNCONFINED, tone, verdict
 from grader.submission.reader import read

@@ -16,8 +16,8 @@ from markupsafe import Markup
 
 from grader.checks.outcome import Status
 from grader.errors import UsageError
+from grader.report.html_page import make_page, save_page
 from grader.report.json import from_json
-from grader.report.page import make_page, save_page
 from grader.report.suspicion import ERRORS, suspicions
 from grader.report.svg import picture, tag, words
 from grader.report.verdict import tone, verdict

@@ -25,7 +25,7 @@ import json
 from typing import Any
 
 from grader.checks.outcome import Finding, Outcome, Status
-from grader.common.kind_of import number, text, text_or_none, whole_or_none
+from grader.common.json_types import number, text, text_or_none, whole_or_none
 from grader.errors import UsageError
 from grader.report.report import Report
 from grader.submission.where import Where

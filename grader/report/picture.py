@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from grader.checks.outcome import Status
 from grader.common.words import printable
-from grader.report.files import not_written
+from grader.report.output_file import not_written
 from grader.report.scene import Scene, scene_of
 from grader.report.scene_image import paint
 from grader.report.shapes import DEEP, LOOKS, SEA, SIDE_M, Rgb, Role

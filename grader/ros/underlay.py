@@ -17,7 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.common import packages, xdg
+from grader.common import package_managers, xdg
 from grader.common.interpreter import interpreter
 from grader.errors import MachineError
 from grader.ros import installation
@@ -116,23 +116,26 @@ def _require_tools(search: str) -> None:
     python_headers = Path(sysconfig.get_path("include"), "Python.h")
     dev = f"python{sys.version_info.major}.{sys.version_info.minor}-dev"
     checks = [
-        (shutil.which("c++", path=search), packages.Need("a C++ compiler", "g++")),
-        (shutil.which("cc", path=search), packages.Need("a C compiler", "gcc")),
-        (shutil.which("cmake", path=search), packages.Need("cmake", "cmake")),
-        (shutil.which("ninja", path=search) or shutil.which("make", path=search), packages.Need("make", "make")),
-        (python_headers.is_file(), packages.Need("Python's headers (Python.h)", dev)),
+        (shutil.which("c++", path=search), package_managers.Need("a C++ compiler", "g++")),
+        (shutil.which("cc", path=search), package_managers.Need("a C compiler", "gcc")),
+        (shutil.which("cmake", path=search), package_managers.Need("cmake", "cmake")),
+        (
+            shutil.which("ninja", path=search) or shutil.which("make", path=search),
+            package_managers.Need("make", "make"),
+        ),
+        (python_headers.is_file(), package_managers.Need("Python's headers (Python.h)", dev)),
     ]
     missing = [need for found, need in checks if not found]
     if missing:
-        manager = packages.find_manager(search)
+        manager = package_managers.find_manager(search)
         message = (
             f"The turtlesim interfaces must be built once, and this machine lacks {_listed(missing)} for that. "
-            f"Install it: {packages.command(manager, missing, root=os.geteuid() == 0)}"
+            f"Install it: {package_managers.command(manager, missing, root=os.geteuid() == 0)}"
         )
         raise MachineError(message)
 
 
-def _listed(needs: list[packages.Need]) -> str:
+def _listed(needs: list[package_managers.Need]) -> str:
     *most, last = [need.what for need in needs]
     return f"{', '.join(most)} and {last}" if most else last
 

@@ -10,7 +10,7 @@ from grader.ros import index
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from grader.graph.look import Look
+    from grader.graph.graph_info import Look
 
 
 def completes(argument: argparse.Action, names: Callable[..., Iterable[str]]) -> None:
@@ -19,7 +19,7 @@ def completes(argument: argparse.Action, names: Callable[..., Iterable[str]]) ->
 
 
 def _look() -> Look:
-    from grader.ros2.looking import look
+    from grader.ros2.graph_source import look
 
     return look(argparse.Namespace())
 
@@ -92,9 +92,9 @@ def prototype(type_argument: str, kind: str, part: str = "") -> Callable[..., li
     """
 
     def offered(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-        from grader.ros import rendering, values
+        from grader.ros import message_values, rendering
 
-        made = values.load_type(getattr(parsed_args, type_argument), kind)
+        made = message_values.load_type(getattr(parsed_args, type_argument), kind)
         return [rendering.on_one_line((getattr(made, part) if part else made)())]
 
     return offered

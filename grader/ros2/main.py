@@ -12,9 +12,9 @@ import sys
 from contextlib import suppress
 from typing import TYPE_CHECKING, NoReturn
 
-from grader.common.refusal import refusal
+from grader.common.system_errors import refusal
 from grader.errors import GraderError
-from grader.ros.start import hand_over, see_to_environment
+from grader.ros.startup import hand_over, see_to_environment
 from grader.ros2.parser import make_parser
 
 if TYPE_CHECKING:

@@ -20,8 +20,8 @@ MODULES = {
     # xml is a package in Python's standard library.
     "pkg.xml": "pkg.manifest",
     "wtf": "doctor",
-    **dict.fromkeys(("launch", "security", "doctor.hello", "wtf.hello"), "whole"),
-    **dict.fromkeys(("component.load", "component.standalone", "component.unload"), "whole"),
+    **dict.fromkeys(("launch", "security", "doctor.hello", "wtf.hello"), "unsupported"),
+    **dict.fromkeys(("component.load", "component.standalone", "component.unload"), "unsupported"),
 }
 """The modules of groups and verbs, where their names differ from those of the groups and verbs."""
 _CHOICE = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.common import packages
+from grader.common import package_managers
 from grader.errors import MachineError
 from grader.sandbox.limits import MIB, NODE_LIMITS, Limits, limited
 from grader.sandbox.system_calls import call_filter
@@ -187,9 +187,10 @@ def _bwrap() -> str:
 
 
 def _not_installed() -> str:
-    need = packages.Need("bubblewrap", "bubblewrap")
-    manager = packages.find_manager(os.environ.get("PATH", ""))
-    return f"bubblewrap is not installed. Install it with `{packages.command(manager, [need], root=os.geteuid() == 0)}`"
+    need = package_managers.Need("bubblewrap", "bubblewrap")
+    manager = package_managers.find_manager(os.environ.get("PATH", ""))
+    command = package_managers.command(manager, [need], root=os.geteuid() == 0)
+    return f"bubblewrap is not installed. Install it with `{command}`"
 
 
 def _ordinary(command: list[str], user: int | None) -> list[str]:

@@ -18,11 +18,11 @@ import time
 from pathlib import Path
 from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from grader.common import interpreter, packages
-from grader.common.packages import Need
-from grader.setup import machine, refused
+from grader.common import interpreter, package_managers
+from grader.common.package_managers import Need
+from grader.setup import machine, setup_errors
 from grader.setup.provide import provide
-from grader.setup.refused import MACHINE_BROKEN
+from grader.setup.setup_errors import MACHINE_BROKEN
 
 ROOT = Path(__file__).resolve().parents[2]
 VENV = ROOT / ".venv"
@@ -126,7 +126,7 @@ def look(
         refused = [python for python in found if python.lacks]
         pythons = iter(found)
     python = machine.choose_python(pythons, root=os.getuid() == 0, wanted=version)
-    manager = packages.find_manager(path)
+    manager = package_managers.find_manager(path)
     newer = manager.newer if manager and Path("/usr/bin/python3").exists() else ""
     return python, machine.missing_of_python(python, version, newer, refused) + tools
 
@@ -134,13 +134,13 @@ def look(
 def tell_lacks(needs: Sequence[Need], why: str) -> bool:
     """Print what the system lacks, and `why` it was not installed. Return whether the set-up must stop."""
     root = os.getuid() == 0
-    manager = packages.find_manager(os.environ.get("PATH", ""))
+    manager = package_managers.find_manager(os.environ.get("PATH", ""))
     if not all(need.lost for need in needs):
         print(machine.lack_message(needs, manager, root=root, why=why), file=sys.stderr)
         return True
     for need in needs:
         reason = f" It was not installed: {why.rstrip('.')}." if why else ""
-        how = packages.command(manager, [need], root=root)
+        how = package_managers.command(manager, [need], root=root)
         say(f"Without {need.what.partition(',')[0]}: {need.lost}.{reason} It comes with: {how}")
     return False
 
@@ -160,7 +160,7 @@ def make_venv(python: machine.Python, ros: Optional[machine.SourcedRos]) -> bool
         subprocess.check_output(making.argv, stderr=subprocess.STDOUT, env=making.env, cwd=str(ROOT))
     except subprocess.CalledProcessError as error:
         said = error.output.decode(errors="replace")
-        known = refused.of_output(said, VENV)
+        known = setup_errors.of_output(said, VENV)
         unknown = f"{said}Python could not make {VENV}; its messages are above."
         print(known or unknown, file=sys.stderr)
         return False
@@ -226,7 +226,7 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
                 f"This set-up was made for the ROS 2 in {stamp.ros}, which is not sourced: the course's own replaces it"
             )
         if machine.is_offline(os.environ):
-            print(refused.NO_NETWORK.format("it has no network"), file=sys.stderr)
+            print(setup_errors.NO_NETWORK.format("it has no network"), file=sys.stderr)
             return MACHINE_BROKEN
         begin = time.monotonic()
         if not make_venv(python, ros):
@@ -243,4 +243,4 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
 
 
 if __name__ == "__main__":
-    sys.exit(refused.guarded(lambda: main(sys.argv[1:])))
+    sys.exit(setup_errors.guarded(lambda: main(sys.argv[1:])))

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from grader.common.interpreter import interpreter
 from grader.setup.bootstrap import ROOT, STAMP, read_stamp, say
-from grader.setup.refused import MACHINE_BROKEN, guarded
+from grader.setup.setup_errors import MACHINE_BROKEN, guarded
 
 STEP = "03-circle-publisher"
 FOLDER = Path("build/demo")

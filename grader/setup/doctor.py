@@ -19,7 +19,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from grader.common import packages, xdg
+from grader.common import package_managers, xdg
 from grader.errors import MachineError
 from grader.ros import underlay
 from grader.ros.installation import DISTRO, Ros, find_ros
@@ -27,8 +27,8 @@ from grader.sandbox import bubblewrap
 from grader.sandbox.control_group import control_group
 from grader.sandbox.limits import NODE_LIMITS
 from grader.setup import bootstrap, machine
-from grader.setup.shares import shares
-from grader.setup.talk import why_not_heard
+from grader.setup.node_test import why_not_heard
+from grader.setup.user_limits import shares
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -138,7 +138,7 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
     headers = Path(sysconfig.get_path("include"), "Python.h").is_file()
     builds = not (ros and ros.turtlesim)
     if builds and not headers:
-        needs.append(packages.Need("Python's headers (Python.h)", f"python3.{sys.version_info.minor}-dev"))
+        needs.append(package_managers.Need("Python's headers (Python.h)", f"python3.{sys.version_info.minor}-dev"))
     for name in ("g++", "cmake", "make") if builds else ():
         version = _version_of(name)
         if version:
@@ -149,8 +149,8 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
     needs = [need for need in needs if not need.lost]
     if needs:
         seen = "missing: " + "; ".join(need.what for need in needs)
-        manager = packages.find_manager(env.get("PATH", ""))
-        yield Line("programs", seen, "broken", packages.command(manager, needs, root=os.getuid() == 0))
+        manager = package_managers.find_manager(env.get("PATH", ""))
+        yield Line("programs", seen, "broken", package_managers.command(manager, needs, root=os.getuid() == 0))
 
 
 def look_at_colcon() -> Line:

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from grader.common.interpreter import clean, interpreter
 from grader.errors import MachineError
-from grader.setup import lock, refused
+from grader.setup import lock, setup_errors
 from grader.setup.bootstrap import ROOT, STAMP, Stamp, say, write_stamp
 
 BIN = Path(sys.prefix, "bin")
@@ -31,7 +31,7 @@ _FIRST = frozenset({"uv", "setuptools"})
 """The packages that are installed with pip, which is slower: uv, and setuptools, which uv needs to build empy."""
 _UNKNOWN = (
     "The packages could not be installed; the installer's messages are above. A proxy is read from HTTPS_PROXY, a "
-    f"mirror from pip's own configuration; {refused.AGAIN}."
+    f"mirror from pip's own configuration; {setup_errors.AGAIN}."
 )
 
 
@@ -49,7 +49,7 @@ def main(stamp: Stamp) -> int:
         seconds = {**stamp.seconds, **install(stamp.parts, sourced=stamp.ros != "wheels")}
     except MachineError as error:
         print(f"\n{error}", file=sys.stderr)
-        return refused.MACHINE_BROKEN
+        return setup_errors.MACHINE_BROKEN
     write_stamp(stamp._replace(seconds=seconds))
     say("Set up: " + ", ".join(f"{name} {value:.0f} s" for name, value in seconds.items()))
     return 0
@@ -92,10 +92,10 @@ def _pip(requirements: Path) -> None:
     options = ("--disable-pip-version-check", "--no-input", "--retries", "2", "--progress-bar", "off", *_OPTIONS)
     done = _run(*interpreter("-m", "pip", "install", *options, "-r", str(requirements)))
     if done.code != 0:
-        known = refused.of_output(done.said, STAMP.parent)
-        network = refused.offline(done.said)
+        known = setup_errors.of_output(done.said, STAMP.parent)
+        network = setup_errors.offline(done.said)
         if network and not known:
-            known = refused.NO_NETWORK.format(network)
+            known = setup_errors.NO_NETWORK.format(network)
         if not known:
             _repeat(done)
         raise MachineError(known or _UNKNOWN)
@@ -112,12 +112,12 @@ def _uv(*arguments: str) -> float | None:
         command.append(
             "--system-certs"
         )  # Use the system's certificates, as other programs do. A minimal system has none, so there uv uses its own.
-    if not _may_write(refused.cache()):
+    if not _may_write(setup_errors.cache()):
         command.append("--no-cache")  # Without a writable home folder, uv needs only this option.
     done = _run(command, clean(os.environ))
     if done.code == 0:
         return seconds_of(next((line for line in done.shown if line.startswith("Prepared ")), ""))
-    known = refused.of_output(done.said, STAMP.parent)
+    known = setup_errors.of_output(done.said, STAMP.parent)
     if known:
         raise MachineError(known)
     _repeat(done)
@@ -148,7 +148,7 @@ def _run(command: list[str], env: dict[str, str]) -> Ran:
                 print(f"  {shown[-1]}", flush=True)
                 continue
             rest.append(line)
-            retried += "Retrying" in line and refused.offline(line) is not None
+            retried += "Retrying" in line and setup_errors.offline(line) is not None
             if retried == _RETRIES:
                 process.terminate()
     return Ran(process.returncode, shown, "".join(rest))
@@ -173,4 +173,4 @@ def _write(name: str, requirements: str) -> Path:
 
 
 if __name__ == "__main__":
-    sys.exit(refused.guarded(lambda: main(Stamp(**json.loads(sys.argv[1])))))
+    sys.exit(setup_errors.guarded(lambda: main(Stamp(**json.loads(sys.argv[1])))))

@@ -13,10 +13,10 @@ import subprocess
 from pathlib import Path
 from typing import Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from grader.common import packages
+from grader.common import package_managers
 from grader.common.interpreter import clean, interpreter
-from grader.common.packages import Need
-from grader.common.refusal import of_the_machine
+from grader.common.package_managers import Need
+from grader.common.system_errors import of_the_machine
 
 OLDEST, NEWEST = (3, 10), (3, 14)
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -266,12 +266,14 @@ def missing_of_python(
     return needs
 
 
-def lack_message(needs: Sequence[Need], manager: Optional[packages.Manager], *, root: bool, why: str = "") -> str:
+def lack_message(
+    needs: Sequence[Need], manager: Optional[package_managers.Manager], *, root: bool, why: str = ""
+) -> str:
     """Return a message with what the system lacks, the command that installs it, and `why` it was not installed."""
     whats = [f"  - {what}" for what in dict.fromkeys(need.what for need in needs)]
     lines = ["The course needs the following, which this system does not have:", *whats]
     lines += [f"They were not installed: {why}."] if why else []
-    how = packages.command(manager, needs, root=root)
+    how = package_managers.command(manager, needs, root=root)
     if manager is None:
         lines.append(f"Install them with {how}, then run make again.")
     else:

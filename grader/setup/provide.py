@@ -9,21 +9,21 @@ import subprocess
 import sys
 from typing import Callable, List, Mapping, Optional, Sequence
 
-from grader.common import packages
+from grader.common import package_managers
 
 TOLD_LINES = 3
 """The number of lines of a package manager's output that are shown if it fails."""
 _ERROR = re.compile(r"(E:|W:|Err:|error|problem|fatal|no package|nothing provides|sudo:)", re.IGNORECASE)
 
 
-def provide(needs: Sequence[packages.Need], env: Mapping[str, str], say: Callable[[str], None]) -> str:
+def provide(needs: Sequence[package_managers.Need], env: Mapping[str, str], say: Callable[[str], None]) -> str:
     """Print a line with `say`, then install what is needed. Return why something could not be installed.
 
     The required packages are installed first, together. Each optional package is installed separately, so that a
     missing one does not stop the others.
     """
     path = env.get("PATH", "")
-    manager = packages.find_manager(path)
+    manager = package_managers.find_manager(path)
     if env.get("INSTALL_SYSTEM") == "0":
         return "INSTALL_SYSTEM=0 forbids changes to the system"
     if manager is None:
@@ -32,8 +32,8 @@ def provide(needs: Sequence[packages.Need], env: Mapping[str, str], say: Callabl
     rights = _rights(path)
     if rights is None:
         return "only root can install it, and there is no sudo"
-    script = packages.script(manager, groups)
-    command = packages.command(manager, needs, root=os.getuid() == 0)
+    script = package_managers.script(manager, groups)
+    command = package_managers.command(manager, needs, root=os.getuid() == 0)
     if rights[-1:] == ["-n"] and not _quietly(rights):
         if not _at_terminal():
             return "only root can install it, and sudo needs a password, for which there is no terminal"
@@ -45,7 +45,7 @@ def provide(needs: Sequence[packages.Need], env: Mapping[str, str], say: Callabl
     return _run([*rights, "sh", "-c", script], manager.program, env)
 
 
-def _groups(needs: Sequence[packages.Need]) -> List[List[packages.Need]]:
+def _groups(needs: Sequence[package_managers.Need]) -> List[List[package_managers.Need]]:
     """Return groups of needs: all required needs together, and each optional need in its own group."""
     musts = [need for need in needs if not need.lost]
     return [*([musts] if musts else []), *([need] for need in needs if need.lost)]
@@ -55,7 +55,7 @@ def _rights(path: str) -> Optional[List[str]]:
     """Return the prefix that runs a command as root, or None if that is not possible."""
     if os.getuid() == 0:
         return []
-    sudo = packages.find_program("sudo", path)
+    sudo = package_managers.find_program("sudo", path)
     return [sudo, "-n"] if sudo else None
 
 

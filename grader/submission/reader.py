@@ -22,7 +22,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 
-from grader.common.refusal import refusal
+from grader.common.system_errors import refusal
 from grader.errors import GraderError, MachineError, TooLargeError, UnreadableError
 
 if TYPE_CHECKING:

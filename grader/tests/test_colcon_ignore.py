@@ -11,10 +11,10 @@ import pytest
 
 from grader.authoring.handout import hand_out
 from grader.checks.exercises import find_exercise
-from grader.evidence.archive import save
 from grader.evidence.evidence import Evidence
+from grader.evidence.recording_format import save
 from grader.exercise.model import catalogue
-from grader.gradebook.class_folder import make_class
+from grader.gradebook.new_class import make_class
 from grader.submission.package import open_submission
 from grader.submission.search import IGNORE_MARKER, PACKAGE_FILES
 

@@ -19,7 +19,7 @@ import pytest
 from grader.checks.exercises import load_exercise
 from grader.checks.judge import judge
 from grader.checks.outcome import Status
-from grader.evidence import archive
+from grader.evidence import recording_format
 from grader.evidence.evidence import Run
 from grader.ros import installation, underlay
 from grader.sandbox import bubblewrap
@@ -49,7 +49,7 @@ class Graded:
 
     @property
     def evidence(self) -> Evidence:
-        return archive.load(self.work / "recording", load_exercise).evidence
+        return recording_format.load(self.work / "recording", load_exercise).evidence
 
     @property
     def points(self) -> float:

@@ -15,7 +15,7 @@ import pexpect
 import pytest
 
 from grader.ros.installation import environment, find_ros
-from grader.submission.answers import read_answers
+from grader.submission.answers_toml import read_answers
 from grader.submission.package_xml import read_manifest
 from grader.tests.console import Block, blocks, differs, run
 from grader.tests.domains import own_domain

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 READS = {
     "read_tree", "read_folder", "find_package", "read_code", "read_module", "read_manifest", "read_setup_py",
     "read_answers", "read_tar", "read_entry_points", "wall_clues", "uses_of", "judge", "judge_so_far", "judge_early",
-    "archive.load", "parse_package_string", "read_class", "read_notebook", "nbformat.read", "zipfile.ZipFile",
+    "recording_format.load", "parse_package_string", "read_class", "read_notebook", "nbformat.read", "zipfile.ZipFile",
     "read_payloads", "tarfile.open", "tokenize.tokenize", "tomllib.loads", "ast.parse", "json.loads", "json.load",
     "ET.fromstring", "yaml.safe_load", "pickle.load", "pickle.loads",
 }  # fmt: skip
@@ -34,9 +34,9 @@ BEHIND_THE_DOOR = {
     ("judging", "_early"): "judging",
     ("clock", "first_clock"): "judging",
     ("json", "from_json"): "html_class, and results of our own",
-    ("put_together", "_together"): "put_together",
-    ("put_together", "_with"): "put_together",
-    ("put_together", "_worked_on"): "put_together",
+    ("package_from_notebook", "_together"): "package_from_notebook",
+    ("package_from_notebook", "_with"): "package_from_notebook",
+    ("package_from_notebook", "_worked_on"): "package_from_notebook",
     ("rebuild", "_with_texts"): "rebuild",
     ("scores", "_scores_in"): "scores",
     ("unpack", "_tar"): "archives: a process of its own, with limits",
@@ -57,8 +57,8 @@ OURS = {
     ("launcher", "main"): "an order of the conductor",
     ("node_process", "_find_pid"): "what bubblewrap says",
     ("progress", "_read"): "the learner's state",
-    ("relay", "main"): "an order of confined.py",
-    ("relay", "read"): "an order of confined.py",
+    ("relay", "main"): "an order of confined_autograde.py",
+    ("relay", "read"): "an order of confined_autograde.py",
     ("release", "_read"): "a solution",
     ("released", "released_notebook"): "a notebook of the course",
     ("results", "load"): "a result of our own",
@@ -102,7 +102,7 @@ def test_the_door_is_where_it_is_said_to_be() -> None:
     }
     behind = {module for module in BEHIND_THE_DOOR.values() if re.fullmatch(r"\w+", module)}
     assert behind <= doors
-    assert {"package", "content", "confined", "compare", "html", "html_notebook", "picture"} <= doors
+    assert {"package", "content", "confined_autograde", "compare", "html", "html_notebook", "picture"} <= doors
 
 
 NEW = ("tree.read_tree(folder)", "import json\njson.loads(notebook)", "judge(evidence)")

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from grader.common.interpreter import interpreter
-from grader.common.refusal import refusal
+from grader.common.system_errors import refusal
 from grader.ros import installation
 from grader.sandbox import bubblewrap
 from grader.sandbox.limits import NODE_LIMITS, limited

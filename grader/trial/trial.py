@@ -19,7 +19,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import grader
 from grader.common.interpreter import interpreter
-from grader.common.refusal import refusal_in
+from grader.common.system_errors import refusal_in
 from grader.errors import MachineError
 from grader.ros import installation
 from grader.sandbox import bubblewrap

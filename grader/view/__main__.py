@@ -25,7 +25,7 @@ def main() -> int:
     feed = socket.socket(fileno=options.feed)
     try:
         if options.kind == "terminal":
-            from grader.view.terminal import watch
+            from grader.view.terminal_view import watch
 
             return watch(feed, options.said)
         import asyncio

@@ -36,7 +36,7 @@ def sim(
 ) -> None:
     """Run turtlesim as a node, in wall time, until Ctrl-C. It has no window; --view shows it."""
     from grader.common.interpreter import interpreter
-    from grader.report.files import check_writable
+    from grader.report.output_file import check_writable
     from grader.report.progress_line import progress
     from grader.ros.installation import find_ros, users_environment, who_hears
     from grader.ros.underlay import with_turtlesim

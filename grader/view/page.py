@@ -16,12 +16,12 @@ from grader.errors import GraderError
 from grader.graph.discovery import cli_node
 from grader.graph.graph import Show, picture
 from grader.view import browser
+from grader.view.controls import Hands
 from grader.view.feed import LARGEST
-from grader.view.graph import laid_out
 from grader.view.guard import Door
-from grader.view.hands import Hands
 from grader.view.hub import Hub
-from grader.view.server import application
+from grader.view.page_graph import laid_out
+from grader.view.page_server import application
 from grader.view.state import State
 from grader.view.system import Ears
 from grader.view.topics import VIEWS, rows

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from grader.errors import GraderError, MachineError, UsageError
 from grader.graph.graph import Show, picture, to_dot, to_text
 from grader.graph.layout import Format, render
-from grader.ros.start import hand_over, see_to_environment
+from grader.ros.startup import hand_over, see_to_environment
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

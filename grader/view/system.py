@@ -19,9 +19,9 @@ from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from grader.graph.endpoints import Observed, observe
 from grader.graph.graph import DEBUG_TOPICS
 from grader.graph.names import hidden
-from grader.ros import values
+from grader.ros import message_values
 from grader.ros.failure import Ros2Error
-from grader.turtlesim.programs.keys import Cancel, Drive, Turn
+from grader.turtlesim.programs.teleop_keys import Cancel, Drive, Turn
 from grader.view.rates import Arrivals
 
 if TYPE_CHECKING:
@@ -165,7 +165,7 @@ class _Counter:
         self._looked_s = time.monotonic()
         self._spared_until_s = 0.0
         try:
-            self._class = values.load_type(type_name, "msg", "message type")
+            self._class = message_values.load_type(type_name, "msg", "message type")
         except Ros2Error:
             # The type is from a package that is not sourced here.
             self._class = None

@@ -13,7 +13,7 @@ from grader.checks.tolerance import Band
 from grader.common.words import a_list, shorten
 from grader.errors import MachineError
 from grader.evidence import activity
-from grader.submission.answers import FILE, Answer
+from grader.submission.answers_toml import FILE, Answer
 from grader.submission.where import Where
 
 if TYPE_CHECKING:

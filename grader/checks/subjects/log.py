@@ -17,7 +17,7 @@ from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.rate import Rate, Subject, rate_of
 from grader.common.words import shorten
-from grader.evidence import lines
+from grader.evidence import student_log
 from grader.evidence.arrivals import measure_arrivals
 from grader.submission.where import Where
 
@@ -38,21 +38,21 @@ class LogFormat:
 
 def log_lines(evidence: Evidence, params: LogFormat) -> Finding:
     """Lines in the format arrive on /rosout."""
-    example = lines.Format(params.format).example()
+    example = student_log.Format(params.format).example()
     expected = f'The log contains lines such as "{example}".'
-    if lines.in_format(evidence.recording, params.format):
+    if student_log.in_format(evidence.recording, params.format):
         return passed(expected)
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
-    logged = [line.text for line in lines.students(evidence.recording)]
+    logged = [line.text for line in student_log.students(evidence.recording)]
     qos = why_qos(evidence)
     if qos is not None:
         observed = "No message reached the subscription, and nothing was logged."
         return failed(observed, expected, qos)
     if logged:
         return _other_format(evidence, params, logged, expected)
-    pattern = lines.Format(params.format).pattern()
+    pattern = student_log.Format(params.format).pattern()
     if any(pattern.search(line) for line in evidence.recording.stdout.text.splitlines()):
         observed = "The lines are printed, not logged."
         cause = (
@@ -80,7 +80,7 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
     line = logged[-1]
     observed = f'The last log line is "{shorten(line, 90)}".'
     why = Cause("log-format", "Compare it letter by letter: capital letters, spaces and dots count.")
-    pattern = lines.Format(params.format).pattern()
+    pattern = student_log.Format(params.format).pattern()
     if re.search(r"\{[\w.:]+\}", line):
         text = "The braces are in the line as they are in the code. Only in an f-string do they stand for a value."
         where = evidence.place(*LEVELS)
@@ -99,7 +99,7 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
 def _same_words(line: str, format_: str) -> bool:
     """Return whether only the numbers differ."""
     words = re.sub(r"[-+]?[\d.]+(e[-+]?\d+)?|\bnan\b|\binf\b", "", line)
-    return "".join(words.split()) == "".join(lines.FIELD.sub("", format_).split())
+    return "".join(words.split()) == "".join(student_log.FIELD.sub("", format_).split())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,7 +111,7 @@ class LogRate(Rate):
 
 def log_rate(evidence: Evidence, params: LogRate) -> Finding:
     """Lines in the format arrive at the rate."""
-    arrivals = (line.t_s for line in lines.in_format(evidence.recording, params.format))
+    arrivals = (line.t_s for line in student_log.in_format(evidence.recording, params.format))
     return rate_of(evidence, params, LOG_LINE, measure_arrivals(evidence.recording, arrivals))
 
 
@@ -126,8 +126,8 @@ class Counter:
 
 def log_counter(evidence: Evidence, params: Counter) -> Finding:
     """The number starts at the right value and increases by one with each line."""
-    numbers = [line.numbers[params.counts] for line in lines.in_format(evidence.recording, params.format)]
-    form = lines.Format(params.format)
+    numbers = [line.numbers[params.counts] for line in student_log.in_format(evidence.recording, params.format)]
+    form = student_log.Format(params.format)
     expected = f'"{form.example(params.first)}", then "{form.example(params.first + 1)}", and so on.'
     where = evidence.place(*LEVELS)
     if len(numbers) < 2:

@@ -12,7 +12,7 @@ from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.common.lazy import np
 from grader.common.words import shorten
-from grader.evidence import lines
+from grader.evidence import student_log
 from grader.submission.constants import dotted
 from grader.submission.where import Where
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from grader.evidence.evidence import Evidence
-    from grader.evidence.lines import Line
+    from grader.evidence.student_log import Line
     from grader.trial.recording import Floats, Recording
 
 EARLY_S = 0.02
@@ -153,11 +153,11 @@ def _overwritten(evidence: Evidence) -> Cause | None:
 
 def _trusted(recording: Recording, format_: str) -> list[Line]:
     """Return the lines in the format that no stall of the machine delayed."""
-    return [line for line in lines.in_format(recording, format_) if not recording.stalled(line.t_s)]
+    return [line for line in student_log.in_format(recording, format_) if not recording.stalled(line.t_s)]
 
 
 def _too_few(evidence: Evidence, text_: str) -> Finding:
-    if len(lines.in_format(evidence.recording, text_)) >= FEWEST:
+    if len(student_log.in_format(evidence.recording, text_)) >= FEWEST:
         return Finding(
             Status.ERROR, "The machine was too busy to judge this in wall time. Try again when it is less busy."
         )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from grader.ros import index
 from grader.ros.failure import did_you_mean
 from grader.ros2.completion import all_action_types, completes
-from grader.ros2.looking import look
+from grader.ros2.graph_source import look
 
 if TYPE_CHECKING:
     import argparse

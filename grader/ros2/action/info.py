@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from grader.graph.look import types_of
+from grader.graph.graph_info import types_of
 from grader.ros.failure import did_you_mean
 from grader.ros2.completion import actions, completes
-from grader.ros2.looking import look
+from grader.ros2.graph_source import look
 
 if TYPE_CHECKING:
     import argparse

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.ros2.looking import look
+from grader.ros2.graph_source import look
 
 if TYPE_CHECKING:
     import argparse

@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from grader.graph.names import absolute
-from grader.ros import values
+from grader.ros import message_values
 from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros.rendering import Form, to_yaml
 from grader.ros2.completion import action_types, actions, completes, prototype
@@ -46,11 +46,11 @@ def run(args: argparse.Namespace) -> int:
 
     from grader.graph.discovery import cli_node, settle
 
-    made = values.load_type(args.action_type, "action", "action type")
-    given = values.parse(sys.stdin.read() if args.stdin else args.goal, dictionary=False)
+    made = message_values.load_type(args.action_type, "action", "action type")
+    given = message_values.parse(sys.stdin.read() if args.stdin else args.goal, dictionary=False)
     try:
-        goal = values.fill(made.Goal(), given)
-    except values.MisfitError as error:
+        goal = message_values.fill(made.Goal(), given)
+    except message_values.MisfitError as error:
         message = "\n".join(
             part for part in (f"Failed to populate message fields: {error.cause!r}", error.help) if part
         )

@@ -44,8 +44,8 @@ def run(args: argparse.Namespace) -> int:
         Ros2Error: a bag or the options cannot be read, or a new bag cannot be written.
     """
     wanted = _options(args.output_options)
-    from grader.ros2.bag.reader import messages, open_bag
-    from grader.ros2.bag.writer import BagWriter
+    from grader.ros2.bag.bag_reader import messages, open_bag
+    from grader.ros2.bag.bag_writer import BagWriter
 
     with ExitStack() as stack:
         sources = []

@@ -30,7 +30,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         Ros2Error: the path is not a bag, or the bag is damaged.
     """
-    from grader.ros2.bag.reader import open_bag
+    from grader.ros2.bag.bag_reader import open_bag
 
     if args.topic_name and args.verbose:
         print(

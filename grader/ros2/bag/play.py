@@ -79,8 +79,8 @@ def run(args: argparse.Namespace) -> int:
     """
     rules = remapping(args.remap)
     from grader.graph.discovery import cli_node
-    from grader.ros2.bag.player import Player
-    from grader.ros2.bag.reader import open_bag
+    from grader.ros2.bag.bag_player import Player
+    from grader.ros2.bag.bag_reader import open_bag
 
     with open_bag(args.bag_path) as reader, cli_node("rosbag2_player") as node:
         chosen = [one for one in reader.connections if wanted(args, one.topic)]

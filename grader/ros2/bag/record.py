@@ -148,8 +148,8 @@ def run(args: argparse.Namespace) -> int:
     args.topics = absolute(args.topics or args.topics_positional)
     _validate(args, folder)
     from grader.graph.discovery import cli_node
-    from grader.ros2.bag.recorder import Recorder
-    from grader.ros2.bag.writer import BagWriter
+    from grader.ros2.bag.bag_recorder import Recorder
+    from grader.ros2.bag.bag_writer import BagWriter
 
     compression = args.compression_mode if args.compression_mode != "none" else _PROFILES[args.storage_preset_profile]
     with (

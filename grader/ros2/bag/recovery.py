@@ -14,8 +14,8 @@ from mcap.records import Channel, Message, Schema
 from mcap.stream_reader import StreamReader
 
 from grader.ros.failure import Ros2Error
-from grader.ros2.bag.say import Logger
-from grader.ros2.bag.writer import BagWriter
+from grader.ros2.bag.bag_writer import BagWriter
+from grader.ros2.bag.logger import Logger
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

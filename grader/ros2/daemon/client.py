@@ -10,7 +10,7 @@ import time
 from typing import Any
 
 from grader.common.interpreter import interpreter
-from grader.ros2.daemon import place
+from grader.ros2.daemon import socket_path
 
 ANSWER_S = 8.0
 """How long to wait for an answer. This is longer than the daemon waits for nodes that exist but send nothing."""
@@ -19,17 +19,17 @@ _POLL_S = 0.02
 
 def ask(call: str) -> dict[str, Any] | None:
     """Return the daemon's answer to "look", "ping" or "stop", or None if there is no daemon."""
-    folder = place.folder()
+    folder = socket_path.folder()
     if folder is None:
         return None
     try:
         with (
-            place.address(folder, f"{place.name()}.socket") as address,
+            socket_path.address(folder, f"{socket_path.name()}.socket") as address,
             socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection,
         ):
             connection.settimeout(ANSWER_S)
             connection.connect(address)
-            if not place.is_ours(connection):
+            if not socket_path.is_ours(connection):
                 return None
             connection.sendall(call.encode() + b"\n")
             text = b"".join(iter(lambda: connection.recv(1 << 16), b""))
@@ -62,18 +62,18 @@ def start(*, debug: bool = False) -> None:
 
 def start_for_later() -> None:
     """Start a daemon for the next command, unless it is disabled by GRADER_ROS2_DAEMON=0."""
-    if os.environ.get("GRADER_ROS2_DAEMON") != "0" and place.folder() is not None:
+    if os.environ.get("GRADER_ROS2_DAEMON") != "0" and socket_path.folder() is not None:
         start()
 
 
 def wait_until_ended(timeout_s: float) -> bool:
     """Wait until the daemon's process has exited; return False if the timeout expires first."""
-    folder = place.folder()
+    folder = socket_path.folder()
     if folder is None:
         return True
     end = time.monotonic() + timeout_s
-    with (folder / f"{place.name()}.lock").open("w") as file:
-        while not place.lock(file):
+    with (folder / f"{socket_path.name()}.lock").open("w") as file:
+        while not socket_path.lock(file):
             if time.monotonic() >= end:
                 return False
             time.sleep(_POLL_S)

@@ -16,7 +16,7 @@ import uuid
 from contextlib import suppress
 from typing import IO, TYPE_CHECKING, Any
 
-from grader.ros2.daemon import place
+from grader.ros2.daemon import socket_path
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,12 +36,12 @@ def main() -> int:
     """Run the daemon; return 0, or 1 if there is no folder for the socket. Exit early if another daemon is running."""
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
         signal.signal(number, _end)
-    folder = place.folder()
+    folder = socket_path.folder()
     if folder is None:
         return 1
-    name = place.name()
+    name = socket_path.name()
     with (folder / f"{name}.lock").open("w") as lock:
-        if not place.lock(lock):
+        if not socket_path.lock(lock):
             return 0
         with suppress(KeyboardInterrupt):
             _serve(folder, name, _telling())
@@ -61,13 +61,13 @@ def _serve(folder: Path, name: str, debug: IO[str] | None) -> None:
     from grader.graph.discovery import Settling, cli_node
 
     file = folder / f"{name}.socket"
-    with cli_node(f"_ros2cli_daemon_{place.domain()}_{uuid.uuid4().hex}", patient=True) as node:
+    with cli_node(f"_ros2cli_daemon_{socket_path.domain()}_{uuid.uuid4().hex}", patient=True) as node:
         # This process holds the lock, so the process that left the file behind has exited.
         file.unlink(missing_ok=True)
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as listening:
             before = os.umask(0o077)
             try:
-                with place.address(folder, file.name) as address:
+                with socket_path.address(folder, file.name) as address:
                     listening.bind(address)
             finally:
                 os.umask(before)
@@ -110,7 +110,7 @@ def _answer(connection: socket.socket, node: Node, settling: Settling, debug: IO
     from grader.graph.snapshot import snapshot
 
     connection.settimeout(_REQUEST_S)
-    if not place.is_ours(connection):
+    if not socket_path.is_ours(connection):
         return True
     call = b""
     while not call.endswith(b"\n"):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from grader.ros import index
 from grader.ros2.completion import completes
-from grader.ros2.interface.kinds import add_kinds, chosen
+from grader.ros2.interface.interface_kinds import add_kinds, chosen
 
 if TYPE_CHECKING:
     import argparse

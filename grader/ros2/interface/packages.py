@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from grader.ros import index
-from grader.ros2.interface.kinds import add_kinds, chosen
+from grader.ros2.interface.interface_kinds import add_kinds, chosen
 
 if TYPE_CHECKING:
     import argparse

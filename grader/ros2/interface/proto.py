@@ -22,11 +22,11 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print the interface as YAML."""
-    from grader.ros import rendering, values
+    from grader.ros import message_values, rendering
 
     index.interface_file(args.type)
     kind = args.type.split("/")[1]
-    made = values.load_type(args.type, kind, text=f"The interface '{args.type}' cannot be imported")
+    made = message_values.load_type(args.type, kind, text=f"The interface '{args.type}' cannot be imported")
     text = rendering.to_yaml((getattr(made, _PARTS[kind]) if _PARTS[kind] else made)(), rendering.Form(limit=None))
     print(text if args.no_quotes else f'"{text}"')
     return 0

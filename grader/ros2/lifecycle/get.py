@@ -6,7 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from grader.ros.failure import Ros2Error
-from grader.ros2.lifecycle import client
+from grader.ros2.lifecycle import lifecycle_client
 
 if TYPE_CHECKING:
     import argparse
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     text = "name of the node; without it, all nodes are asked"
-    client.add_node(parser, "?", text)
+    lifecycle_client.add_node(parser, "?", text)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -26,12 +26,12 @@ def run(args: argparse.Namespace) -> int:
     """
     from grader.graph.discovery import cli_node
 
-    named = [client.chosen(args)] if args.node_name else []
-    names = named or client.lifecycle_nodes(args, hidden=args.include_hidden_nodes)
+    named = [lifecycle_client.chosen(args)] if args.node_name else []
+    names = named or lifecycle_client.lifecycle_nodes(args, hidden=args.include_hidden_nodes)
     with cli_node(use_sim_time=args.use_sim_time) as node:
         for name in names:
             try:
-                state = client.call(node, "GetState", f"{name}/get_state").current_state
+                state = lifecycle_client.call(node, "GetState", f"{name}/get_state").current_state
             except Ros2Error as error:
                 if named:
                     raise

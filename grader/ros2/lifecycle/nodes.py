@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.ros2.lifecycle.client import lifecycle_nodes
+from grader.ros2.lifecycle.lifecycle_client import lifecycle_nodes
 from grader.ros2.options import add_look
 
 if TYPE_CHECKING:

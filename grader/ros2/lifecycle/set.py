@@ -6,7 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from grader.ros.failure import Ros2Error
-from grader.ros2.lifecycle import client
+from grader.ros2.lifecycle import lifecycle_client
 
 if TYPE_CHECKING:
     import argparse
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
-    client.add_node(parser)
+    lifecycle_client.add_node(parser)
     parser.add_argument("transition", help="name or number of the transition, as in configure")
 
 
@@ -26,9 +26,9 @@ def run(args: argparse.Namespace) -> int:
     """
     from grader.graph.discovery import cli_node
 
-    name = client.chosen(args)
+    name = lifecycle_client.chosen(args)
     with cli_node(use_sim_time=args.use_sim_time) as node:
-        answer = client.call(node, "GetAvailableTransitions", f"{name}/get_available_transitions")
+        answer = lifecycle_client.call(node, "GetAvailableTransitions", f"{name}/get_available_transitions")
         known = [one.transition for one in answer.available_transitions]
         wanted = next((one for one in known if args.transition in (one.label, str(one.id))), None)
         if wanted is None:
@@ -38,6 +38,6 @@ def run(args: argparse.Namespace) -> int:
         import lifecycle_msgs.srv
 
         request = lifecycle_msgs.srv.ChangeState.Request(transition=wanted)
-        done = client.call(node, "ChangeState", f"{name}/change_state", request).success
+        done = lifecycle_client.call(node, "ChangeState", f"{name}/change_state", request).success
     print("Transitioning successful" if done else "Transitioning failed", file=sys.stdout if done else sys.stderr)
     return 0

@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from grader.graph.look import shown
+from grader.graph.graph_info import shown
 from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros2.completion import completes, nodes
-from grader.ros2.looking import look
+from grader.ros2.graph_source import look
 from grader.ros2.options import add_look
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from grader.ros2.looking import look
+from grader.ros2.graph_source import look
 from grader.ros2.options import add_look
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Delete the parameter. Return 0 even if the node refuses to delete it."""
-    from grader.ros2.param.client import not_set, parameters_of
+    from grader.ros2.param.parameter_client import not_set, parameters_of
     from grader.ros2.param.set import report
 
     with parameters_of(args) as parameters:

@@ -21,7 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print the descriptions. Return 0 even if the node does not know a parameter and therefore describes none."""
-    from grader.ros2.param.client import parameters_of
+    from grader.ros2.param.parameter_client import parameters_of
 
     with parameters_of(args) as parameters:
         found = parameters.describe(args.parameter_names)
@@ -38,7 +38,7 @@ def run(args: argparse.Namespace) -> int:
 
 def described(descriptor: Any) -> str:  # noqa: ANN401
     """Return a descriptor as text."""
-    from grader.ros2.param.client import type_name
+    from grader.ros2.param.parameter_client import type_name
 
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {type_name(descriptor.type)}"]
     if descriptor.description:

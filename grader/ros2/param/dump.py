@@ -18,7 +18,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print the parameter file, with an empty line at the end."""
-    from grader.ros2.param.client import parameters_of
+    from grader.ros2.param.parameter_client import parameters_of
 
     with parameters_of(args) as parameters:
         print(dumped(parameters.node_name, parameters.all_values()))

@@ -25,7 +25,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         Ros2Error: the node or the parameter does not exist.
     """
-    from grader.ros2.param.client import parameters_of, told
+    from grader.ros2.param.parameter_client import parameters_of, told
 
     with parameters_of(args) as parameters:
         value = parameters.get(args.parameter_name)

@@ -12,7 +12,7 @@ from grader.ros2.options import add_look
 if TYPE_CHECKING:
     import argparse
 
-    from grader.ros2.param.client import Parameters
+    from grader.ros2.param.parameter_client import Parameters
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -34,7 +34,7 @@ def run(args: argparse.Namespace) -> int:
         Ros2Error: there is no such node.
     """
     from grader.graph.discovery import cli_node, settle
-    from grader.ros2.param.client import Parameters, parameters_of, with_parameters
+    from grader.ros2.param.parameter_client import Parameters, parameters_of, with_parameters
 
     if args.node_name:
         with parameters_of(args) as parameters:
@@ -48,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _print(parameters: Parameters, args: argparse.Namespace, title: str = "") -> None:
-    from grader.ros2.param.client import type_name
+    from grader.ros2.param.parameter_client import type_name
 
     names = parameters.names(args.param_prefixes)
     if args.filter:

@@ -28,7 +28,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         Ros2Error: the file cannot be read, or it is not a parameter file.
     """
-    from grader.ros2.param.client import parameters_of
+    from grader.ros2.param.parameter_client import parameters_of
 
     with parameters_of(args) as parameters:
         wanted = read(args.parameter_file, use_wildcard=not args.no_use_wildcard)

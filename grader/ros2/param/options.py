@@ -31,7 +31,7 @@ def add_name(parser: argparse.ArgumentParser, name: str = "parameter_name", **op
 
 
 def _names(parsed_args: argparse.Namespace, **_: Any) -> list[str]:  # noqa: ANN401
-    from grader.ros2.param.client import parameters_of
+    from grader.ros2.param.parameter_client import parameters_of
 
     with parameters_of(parsed_args) as parameters:
         return parameters.names()

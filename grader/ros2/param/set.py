@@ -24,7 +24,7 @@ def run(args: argparse.Namespace) -> int:
     """Set the parameter. Return 0 even if the node rejects the value."""
     from rcl_interfaces.msg import Parameter
 
-    from grader.ros2.param.client import parameters_of
+    from grader.ros2.param.parameter_client import parameters_of
 
     with parameters_of(args) as parameters:
         wanted = Parameter(name=args.parameter_name, value=value_of(args.value))

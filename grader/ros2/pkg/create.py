@@ -57,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         Ros2Error: the folder already exists or cannot be created, or a name is not allowed.
     """
-    from grader.ros2.pkg import files, licenses
+    from grader.ros2.pkg import licenses, package_files
 
     if args.license == "?":
         print("\n".join(["Supported licenses:", *licenses.KNOWN]))
@@ -66,7 +66,7 @@ def run(args: argparse.Namespace) -> int:
     _check(wanted)
     _tell(wanted, args.destination_directory)
     try:
-        files.write(wanted)
+        package_files.write(wanted)
         licensed = licenses.write(wanted.license, wanted.folder / "LICENSE", wanted.maintainer)
     except OSError as error:
         message = f"\nAborted!\n{error.filename or wanted.folder} could not be written: {error.strerror}"

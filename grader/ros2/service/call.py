@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from grader.graph.names import absolute, hidden
-from grader.ros import values
+from grader.ros import message_values
 from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros2.completion import completes, prototype, service_types, services
 
@@ -43,9 +43,9 @@ def run(args: argparse.Namespace) -> int:
     if args.rate is not None and not args.rate > 0:
         message = "rate must be greater than zero"
         raise Ros2Error(message)
-    made = values.load_type(args.service_type, "srv", "service type")
+    made = message_values.load_type(args.service_type, "srv", "service type")
     given = sys.stdin.read() if args.stdin else args.values
-    request = values.fill(made.Request(), values.parse(given, dictionary=False))
+    request = message_values.fill(made.Request(), message_values.parse(given, dictionary=False))
     name = absolute(args.service_name)
     package, last = args.service_type.split("/")[0], args.service_type.split("/")[-1]
     with cli_node(f"_ros2cli_requester_{package}_{last}") as node:

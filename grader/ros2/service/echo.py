@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from grader.graph.names import absolute
-from grader.ros import values
+from grader.ros import message_values
 from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros.rendering import Form, dumped, plain, to_csv
 from grader.ros2.completion import completes, service_types, services
-from grader.ros2.form import add_form, form_of
+from grader.ros2.format_options import add_form, form_of
 
 if TYPE_CHECKING:
     import argparse
@@ -57,7 +57,9 @@ def run(args: argparse.Namespace) -> int:
 
 def _class(node: Node, name: str, args: argparse.Namespace) -> Any:  # noqa: ANN401
     if args.service_type:
-        return values.load_type(args.service_type, "srv", text=f"The service type '{args.service_type}' is invalid")
+        return message_values.load_type(
+            args.service_type, "srv", text=f"The service type '{args.service_type}' is invalid"
+        )
     found = dict(node.get_service_names_and_types())
     types = found.get(name, [])
     if not types:
@@ -65,7 +67,7 @@ def _class(node: Node, name: str, args: argparse.Namespace) -> Any:  # noqa: ANN
     if len(types) > 1:
         message = f"More than one type associated with service '{args.service_name}'"
         raise Ros2Error(message)
-    return values.load_type(types[0], "srv", text=f"The service type '{types[0]}' is invalid")
+    return message_values.load_type(types[0], "srv", text=f"The service type '{types[0]}' is invalid")
 
 
 def _as_yaml(event: Any, form: Form) -> str:  # noqa: ANN401

@@ -5,11 +5,11 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from grader.graph.look import shown
+from grader.graph.graph_info import shown
 from grader.ros import index
 from grader.ros.failure import did_you_mean
 from grader.ros2.completion import all_service_types, completes
-from grader.ros2.looking import look
+from grader.ros2.graph_source import look
 
 if TYPE_CHECKING:
     import argparse

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.graph.look import shown
-from grader.ros2.looking import look
+from grader.graph.graph_info import shown
+from grader.ros2.graph_source import look
 from grader.ros2.options import add_look
 
 if TYPE_CHECKING:

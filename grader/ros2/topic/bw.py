@@ -72,13 +72,13 @@ def run(args: argparse.Namespace) -> int:
     from rclpy.qos import qos_profile_sensor_data
 
     from grader.graph.discovery import cli_node, spin_until
-    from grader.ros2.topic import ends
+    from grader.ros2.topic import topic_lookup
 
     arrivals: deque[tuple[int, int]] = deque(maxlen=args.window)
     with cli_node(use_sim_time=args.use_sim_time) as node:
-        topic = ends.expanded(node, args.topic)
-        ends.find(node, topic, args)
-        made = ends.wait_for_type(node, topic, args.topic)
+        topic = topic_lookup.expanded(node, args.topic)
+        topic_lookup.find(node, topic, args)
+        made = topic_lookup.wait_for_type(node, topic, args.topic)
         clock = node.get_clock()
 
         def count(data: bytes) -> None:

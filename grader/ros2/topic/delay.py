@@ -83,13 +83,13 @@ def run(args: argparse.Namespace) -> int:
     from rclpy.time import Time
 
     from grader.graph.discovery import cli_node, spin_until
-    from grader.ros2.topic import ends
+    from grader.ros2.topic import topic_lookup
 
     delays = Delays(args.window)
     with cli_node(use_sim_time=args.use_sim_time) as node:
-        topic = ends.expanded(node, args.topic)
-        ends.find(node, topic, args)
-        made = ends.wait_for_type(node, topic, args.topic)
+        topic = topic_lookup.expanded(node, args.topic)
+        topic_lookup.find(node, topic, args)
+        made = topic_lookup.wait_for_type(node, topic, args.topic)
         if not hasattr(made, "header"):
             message = "msg does not have header"
             raise Ros2Error(message)

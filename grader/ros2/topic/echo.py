@@ -5,12 +5,12 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
-from grader.ros import values
+from grader.ros import message_values
 from grader.ros.failure import Ros2Error
 from grader.ros.rendering import Form, is_message, to_csv, to_yaml
 from grader.ros2 import qos
 from grader.ros2.completion import completes, topic_types, topics
-from grader.ros2.form import add_form, form_of
+from grader.ros2.format_options import add_form, form_of
 from grader.ros2.options import add_look, positive_float
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
         Ros2Error: the type of the topic cannot be determined, or the type has no such field.
     """
     from grader.graph.discovery import cli_node, spin_until
-    from grader.ros2.topic import ends
+    from grader.ros2.topic import topic_lookup
     from grader.ros2.topic.subscribe import chosen_qos, subscribe
 
     for field in args.field or ():
@@ -62,12 +62,12 @@ def run(args: argparse.Namespace) -> int:
             raise Ros2Error(message)
     printer = Printer(args)
     with cli_node(use_sim_time=args.use_sim_time) as node:
-        topic = ends.expanded(node, args.topic_name)
-        ends.find(node, topic, args)
+        topic = topic_lookup.expanded(node, args.topic_name)
+        topic_lookup.find(node, topic, args)
         profile = chosen_qos(node, topic, args)
         made = _class(node, topic, args)
         for field in args.field or () if not args.raw else ():
-            values.field(made(), field, complete=False)
+            message_values.field(made(), field, complete=False)
         subscribe(node, made, topic, printer.show, profile, args)
         end = time.monotonic() + args.timeout if args.timeout else None
         spin_until(node, lambda: args.once and printer.printed > 0, end - time.monotonic() if end else None)
@@ -75,14 +75,14 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _class(node: Node, topic: str, args: argparse.Namespace) -> Any:  # noqa: ANN401
-    from grader.ros2.topic import ends
+    from grader.ros2.topic import topic_lookup
 
     if args.message_type:
-        return values.load_type(args.message_type, "msg")
-    made = ends.type_of(node, topic, args.topic_name)
+        return message_values.load_type(args.message_type, "msg")
+    made = topic_lookup.type_of(node, topic, args.topic_name)
     if made is None:
-        ends.not_published(args.topic_name)
-        raise Ros2Error(ends.nearest_topic(node, topic, "Could not determine the type for the passed topic"))
+        topic_lookup.not_published(args.topic_name)
+        raise Ros2Error(topic_lookup.nearest_topic(node, topic, "Could not determine the type for the passed topic"))
     return made
 
 
@@ -123,7 +123,7 @@ class Printer:
         """Print a message. `info` is the information that rclpy provides about its transport."""
         if self._args.once and self.printed:
             return
-        parts = [values.field(message, field) for field in self._args.field or ()] or [message]
+        parts = [message_values.field(message, field) for field in self._args.field or ()] or [message]
         if self._wanted is not None and not self._wanted(parts[0] if len(parts) == 1 else message):
             return
         self.printed += 1

@@ -110,15 +110,15 @@ def run(args: argparse.Namespace) -> int:
     from rclpy.qos import qos_profile_sensor_data
 
     from grader.graph.discovery import cli_node, spin_until
-    from grader.ros2.topic import ends
+    from grader.ros2.topic import topic_lookup
     from grader.ros2.topic.echo import matching
 
     wanted: Callable[[Any], bool] | None = matching(args.filter_expr) if args.filter_expr else None
     arrivals = Arrivals(args.window)
     with cli_node(use_sim_time=args.use_sim_time) as node:
-        topic = ends.expanded(node, args.topic_name)
-        ends.find(node, topic, args)
-        made = ends.wait_for_type(node, topic, args.topic_name)
+        topic = topic_lookup.expanded(node, args.topic_name)
+        topic_lookup.find(node, topic, args)
+        made = topic_lookup.wait_for_type(node, topic, args.topic_name)
         clock = Clock(clock_type=ClockType.SYSTEM_TIME) if args.wall_time else node.get_clock()
 
         def count(message: Any) -> None:  # noqa: ANN401

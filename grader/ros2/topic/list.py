@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from grader.graph.look import shown
-from grader.ros2.looking import look
+from grader.graph.graph_info import shown
+from grader.ros2.graph_source import look
 from grader.ros2.options import add_look
 
 if TYPE_CHECKING:
     import argparse
 
-    from grader.graph.look import Look, Named
+    from grader.graph.graph_info import Look, Named
 
 
 def add(parser: argparse.ArgumentParser) -> None:

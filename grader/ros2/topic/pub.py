@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from grader.graph.names import absolute
-from grader.ros import values
+from grader.ros import message_values
 from grader.ros.failure import Ros2Error
 from grader.ros2 import qos
 from grader.ros2.completion import completes, prototype, topic_types, topics
@@ -80,10 +80,10 @@ def run(args: argparse.Namespace) -> int:
     """
     from grader.graph.discovery import cli_node, settle
 
-    made = values.load_type(args.message_type, "msg")
-    stamps: list[values.Stamper] = []
-    given = values.parse(sys.stdin.read() if args.stdin else args.values)
-    message = values.fill(made(), given, stamps)
+    made = message_values.load_type(args.message_type, "msg")
+    stamps: list[message_values.Stamper] = []
+    given = message_values.parse(sys.stdin.read() if args.stdin else args.values)
+    message = message_values.fill(made(), given, stamps)
     times = 1 if args.once else args.times
     wanted = args.wait_matching_subscriptions
     wanted = int(times != 0) if wanted is None else wanted
@@ -110,7 +110,7 @@ def _publish(
     node: Node,
     publisher: Any,  # noqa: ANN401
     message: Any,  # noqa: ANN401
-    stamps: list[values.Stamper],
+    stamps: list[message_values.Stamper],
     times: int,
     args: argparse.Namespace,
 ) -> None:
@@ -144,11 +144,11 @@ def _wait_for_subscriptions(
     wanted: int,
     most_s: float | None,
 ) -> None:
-    from grader.ros2.topic import ends
+    from grader.ros2.topic import topic_lookup
 
     begun = time.monotonic()
     told_s = begun - _TOLD_EVERY_S
-    hint = ends.nearest_topic(node, topic)
+    hint = topic_lookup.nearest_topic(node, topic)
     while publisher.get_subscription_count() < wanted:
         now = time.monotonic()
         if now - told_s >= _TOLD_EVERY_S:

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.classroom import outputs
+from grader.classroom import result_files
+from grader.classroom.class_run import TRIES, run
 from grader.classroom.engine import Died, Event, Finished
-from grader.classroom.found import Found
+from grader.classroom.find_submissions import Found
 from grader.classroom.order import Order, sort_out, sources_for
+from grader.classroom.progress_display import Lines
 from grader.classroom.results import Result, opened
-from grader.classroom.run import TRIES, run
-from grader.classroom.show import Lines
 from grader.classroom.task import Done, Task
 from grader.tests.report.reports import report
 
@@ -68,7 +68,7 @@ def graded(folder: Path, out: Path, engine: Scripted, ends: dict[str, list[str]]
     with opened(out) as results:
         kept, todo = sort_out(order, results)
         done = [*kept, *run(order, todo, engine, results, Lines(len(todo), several=False))]
-        outputs.write_all(results, done)
+        result_files.write_all(results, done)
     assert len(done) == len(found)
     return {result.student: result for result in done}
 

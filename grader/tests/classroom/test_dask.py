@@ -18,7 +18,7 @@ from grader.errors import UsageError
 from grader.sandbox import bubblewrap
 from grader.tests.case import copy_solution
 from grader.tests.classroom.a_class import STEP, environment, grade, judged
-from grader.tests.classroom.test_run import assert_set_aside, graded, make_four, order_of, waited
+from grader.tests.classroom.test_class_run import assert_set_aside, graded, make_four, order_of, waited
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

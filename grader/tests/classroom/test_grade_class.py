@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.judge import judge
-from grader.classroom.found import Found
+from grader.classroom.find_submissions import Found
 from grader.classroom.order import Order
 from grader.evidence.evidence import Evidence
 from grader.exercise.private_checks import sources_of

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Literal
 import pytest
 
 from grader.tests.classroom.a_class import POINTS, STEP, command, environment, grade, judged, rows
-from grader.tests.classroom.test_run import command_line
+from grader.tests.classroom.test_class_run import command_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable

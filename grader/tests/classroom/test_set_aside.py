@@ -16,7 +16,7 @@ from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
 from grader.classroom import archives, content
 from grader.classroom.content import Refused, read
-from grader.classroom.found import Found, find_submissions
+from grader.classroom.find_submissions import Found, find_submissions
 from grader.classroom.order import Order, sources_for
 from grader.classroom.task import perform
 from grader.common.interpreter import interpreter
@@ -158,7 +158,7 @@ LOOK = """
 import pathlib, sys
 from grader.checks.exercises import find_exercise
 from grader.classroom.content import fingerprint, read
-from grader.classroom.found import find_submissions, passed_over
+from grader.classroom.find_submissions import find_submissions, passed_over
 folder = pathlib.Path(sys.argv[1])
 for found in find_submissions([folder], sys.argv[2], folder):
     exercise = find_exercise(sys.argv[2])

@@ -7,7 +7,7 @@ import pytest
 
 from grader.common.lazy import np
 
-START = "import sys, grader.cli, grader.grading.grade, grader.evidence.archive, grader.report.terminal\n"
+START = "import sys, grader.cli, grader.grading.grade, grader.evidence.recording_format, grader.report.terminal\n"
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from grader.gradebook import relay
 from grader.gradebook.budget import Budget
 from grader.sandbox.limits import MIB, MOST_SIGNALS, NODE_LIMITS, Limits
 from grader.sandbox.user import FEW_USERS, FIRST_USER, USERS
-from grader.submission import answers, code, package_xml, reader, tree
+from grader.submission import answers_toml, code, package_xml, reader, tree
 from grader.tests.docs.pages import ROOT, text_of
 from grader.trial.conductor import REQUESTS_HZ
 
@@ -65,9 +65,8 @@ def test_the_budgets_of_reading_are_those_of_the_code() -> None:
     text = " ".join(text_of("docs/security.md").split())
     told = f"{code.MAX_BYTES // 1000} kB per Python file and {code.MOST_BYTES // 1_000_000} MB in all"
     assert told in text
-    assert (
-        f"{package_xml.MAX_BYTES // 1000} kB for package.xml, {answers.MAX_BYTES // 1000} kB for answers.toml" in text
-    )
+    answers, manifest = (f"{one.MAX_BYTES // 1000} kB" for one in (answers_toml, package_xml))
+    assert f"{manifest} for package.xml, {answers} for answers.toml" in text
     assert (
         f"{tree.MAX_FILES:,} files, {tree.MAX_FILE_BYTES // MIB} MiB per file and {tree.MAX_TOTAL_BYTES // MIB} MiB"
         in text

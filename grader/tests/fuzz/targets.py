@@ -17,9 +17,9 @@ from grader.checks.exercises import find_exercise
 from grader.classroom import unpack
 from grader.colcon.runner import _READY, _described
 from grader.errors import GraderError, UnreadableError, UsageError
-from grader.evidence import archive
+from grader.evidence import recording_format
 from grader.exercise.model import course_folder
-from grader.gradebook.put_together import graded_folder
+from grader.gradebook.package_from_notebook import graded_folder
 from grader.report.html_class import save_class_page
 from grader.report.json import to_json
 from grader.sandbox.process import Finished
@@ -145,7 +145,7 @@ def reports(data: bytes) -> None:
 @cache
 def _recording() -> dict[str, bytes]:
     with tempfile.TemporaryDirectory() as folder:
-        archive.save(Path(folder), evidence(good()), "none", ())
+        recording_format.save(Path(folder), evidence(good()), "none", ())
         return {str(path.relative_to(folder)): path.read_bytes() for path in Path(folder).rglob("*") if path.is_file()}
 
 

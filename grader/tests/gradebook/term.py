@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.exercise.model import course_folder
-from grader.gradebook.class_folder import make_class
+from grader.gradebook.new_class import make_class
 
 if TYPE_CHECKING:
     from collections.abc import Callable

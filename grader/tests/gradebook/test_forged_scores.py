@@ -13,7 +13,7 @@ from grader.classroom.order import Order, sources_for
 from grader.classroom.results import Results
 from grader.classroom.task import set_aside
 from grader.gradebook import scores
-from grader.gradebook.folders import open_class
+from grader.gradebook.class_folders import open_class
 from grader.sandbox import bubblewrap
 from grader.tests.gradebook.term import STEP, Term, edit, too_slow, unchanged, with_cell
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from grader.classroom.found import Found
+    from grader.classroom.find_submissions import Found
     from grader.classroom.grade_class import Request
     from grader.classroom.results import Result
     from grader.gradebook.scores import Synced

@@ -13,8 +13,8 @@ import pytest
 from nbformat.v4 import new_code_cell, new_notebook
 from traitlets.config import Configurable
 
-from grader.gradebook.confined import ConfinedExecute
-from grader.gradebook.outputs import MOST_OUTPUT, TOO_MUCH
+from grader.gradebook.cell_outputs import MOST_OUTPUT, TOO_MUCH
+from grader.gradebook.confined_autograde import ConfinedExecute
 from grader.sandbox import bubblewrap
 
 if TYPE_CHECKING:

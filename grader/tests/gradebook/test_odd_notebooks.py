@@ -12,7 +12,7 @@ import pytest
 from grader.errors import MachineError
 from grader.gradebook import scores
 from grader.gradebook.scores import _put_together
-from grader.tests.gradebook.test_put_together import CIRCLE, NODE, handed_in
+from grader.tests.gradebook.test_package_from_notebook import CIRCLE, NODE, handed_in
 
 if TYPE_CHECKING:
     from pathlib import Path

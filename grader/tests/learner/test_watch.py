@@ -19,8 +19,8 @@ from grader.checks.exercises import find_exercise
 from grader.colcon.rebuild import Rebuild
 from grader.errors import UsageError
 from grader.grading.options import Options
-from grader.learner.screen import _Screen
 from grader.learner.watch import Events, Watched
+from grader.learner.watch_screen import _Screen
 from grader.ros.installation import find_ros
 from grader.ros.underlay import with_turtlesim
 from grader.sandbox import bubblewrap

@@ -62,7 +62,7 @@ class Job:
 def load(recorded: Iterable[Recorded]) -> list[Material]:
     """Read recordings; then forget the checks, so that whoever imports them next gets them fresh."""
     from grader.checks.exercises import load_exercise
-    from grader.evidence.archive import load as open_archive
+    from grader.evidence.recording_format import load as open_archive
 
     loaded = []
     for each in recorded:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.ros2.bag.record import NOT_HERE
-from grader.ros2.whole import INSTEAD
+from grader.ros2.unsupported import INSTEAD
 from grader.tests.ros2.world import World, world
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from grader.setup.machine import Python, SourcedRos
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from grader.common.packages import Need
+    from grader.common.package_managers import Need
 
 SYSTEMS = Python("/usr/bin/python3.11", (3, 11, 2), cpython=True, venv=True, headers=True)
 LEARNER, TESTS = bootstrap.PARTS["learner"], bootstrap.PARTS["tests"]

@@ -11,7 +11,7 @@ import pytest
 from grader.setup import bootstrap, machine
 from grader.setup.bootstrap import Stamp
 from grader.setup.machine import SourcedRos
-from grader.setup.refused import MACHINE_BROKEN
+from grader.setup.setup_errors import MACHINE_BROKEN
 from grader.tests.setup.course import LEARNER, SYSTEMS, TESTS, Course
 
 ROOT = Path(bootstrap.__file__).parents[2]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from grader.common.packages import Need
-from grader.setup.refused import MACHINE_BROKEN
+from grader.common.package_managers import Need
+from grader.setup.setup_errors import MACHINE_BROKEN
 from grader.tests.setup.course import LEARNER, SYSTEMS, TESTS, Course
 
 

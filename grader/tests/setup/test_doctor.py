@@ -15,7 +15,7 @@ from grader.errors import MachineError
 from grader.ros import underlay
 from grader.ros.installation import Ros, find_ros
 from grader.sandbox import bubblewrap
-from grader.setup import bootstrap, doctor, machine, talk
+from grader.setup import bootstrap, doctor, machine, node_test
 from grader.setup.doctor import Line
 from grader.tests.both_worlds import REAL_TURTLESIM, SOURCED_ENV
 
@@ -164,8 +164,8 @@ def test_memory(meminfo: str, state: str) -> None:
 
 
 def test_a_node_that_is_not_heard_is_told(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
-    monkeypatch.setattr(talk, "_TALKER", "raise SystemExit('no interfaces')")
-    monkeypatch.setattr(talk, "_LISTENER", talk._LISTENER.replace("20.0", "1.0"))
+    monkeypatch.setattr(node_test, "_TALKER", "raise SystemExit('no interfaces')")
+    monkeypatch.setattr(node_test, "_LISTENER", node_test._LISTENER.replace("20.0", "1.0"))
     line = doctor.look_at_node(wheels)
     assert line.state == "broken"
     assert "no message arrived from it" in line.seen
@@ -183,8 +183,8 @@ def test_a_machine_without_a_sandbox_is_good_enough_for_ones_own_code(monkeypatc
 
 
 def test_a_node_that_is_not_heard_without_a_cell_is_told(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
-    monkeypatch.setattr(talk, "_TALKER", "raise SystemExit('no interfaces')")
-    monkeypatch.setattr(talk, "_LISTENER", talk._LISTENER.replace("20.0", "1.0"))
+    monkeypatch.setattr(node_test, "_TALKER", "raise SystemExit('no interfaces')")
+    monkeypatch.setattr(node_test, "_LISTENER", node_test._LISTENER.replace("20.0", "1.0"))
     line = doctor.look_at_node(wheels, confined=False)
     assert (line.state, "no message arrived from it" in line.seen) == ("broken", True)
 

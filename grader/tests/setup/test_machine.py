@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.common.packages import MANAGERS
+from grader.common.package_managers import MANAGERS
 from grader.setup import machine
 from grader.setup.machine import Python, SourcedRos
 
@@ -50,8 +50,14 @@ def fake_ros(prefix: Path, *packages: str, python: str = "python3.12") -> None:
 
 
 RUNS_FIRST = (
-    *("__init__.py", "common/__init__.py", "common/interpreter.py", "common/packages.py", "common/refusal.py"),
-    *("setup/__init__.py", "setup/bootstrap.py", "setup/machine.py", "setup/provide.py", "setup/refused.py"),
+    *(
+        "__init__.py",
+        "common/__init__.py",
+        "common/interpreter.py",
+        "common/package_managers.py",
+        "common/system_errors.py",
+    ),
+    *("setup/__init__.py", "setup/bootstrap.py", "setup/machine.py", "setup/provide.py", "setup/setup_errors.py"),
 )
 
 

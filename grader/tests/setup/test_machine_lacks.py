@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
-from grader.common.packages import MANAGERS, Need
+from grader.common.package_managers import MANAGERS, Need
 from grader.setup import machine
 from grader.setup.machine import Python, SourcedRos
 

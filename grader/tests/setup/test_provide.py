@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.common import packages
-from grader.common.packages import Need
+from grader.common import package_managers
+from grader.common.package_managers import Need
 from grader.setup import provide
 from grader.tests.stand_ins import StandIns
 
@@ -40,8 +40,8 @@ class Machine:
 
 @pytest.fixture
 def machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Machine:
-    monkeypatch.setattr(packages, "find_program", lambda name, _path: _in(tmp_path / "bin", name))
-    monkeypatch.setattr(packages, "PACMAN_LISTS", tmp_path)
+    monkeypatch.setattr(package_managers, "find_program", lambda name, _path: _in(tmp_path / "bin", name))
+    monkeypatch.setattr(package_managers, "PACMAN_LISTS", tmp_path)
     monkeypatch.setattr(os, "getuid", lambda: 1000)
     monkeypatch.setenv("PATH", f"{tmp_path}/bin:/usr/bin:/bin")
     return Machine(tmp_path / "bin")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.setup.refused import MACHINE_BROKEN
+from grader.setup.setup_errors import MACHINE_BROKEN
 from grader.tests.setup.fresh import Clone, clone
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.submission.answers import MAX_BYTES, Answer, read_answers
+from grader.submission.answers_toml import MAX_BYTES, Answer, read_answers
 
 
 @pytest.mark.parametrize(

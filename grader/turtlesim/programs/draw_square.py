@@ -10,8 +10,8 @@ from rclpy.node import Node
 from std_srvs.srv import Empty
 from turtlesim.msg import Pose
 
-from grader.turtlesim.programs.run import run
-from grader.turtlesim.programs.square import Leg, first, follow
+from grader.turtlesim.programs.run_node import run
+from grader.turtlesim.programs.square_velocity import Leg, first, follow
 
 if TYPE_CHECKING:
     from rclpy.task import Future

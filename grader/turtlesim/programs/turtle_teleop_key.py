@@ -19,8 +19,8 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from turtlesim.action import RotateAbsolute
 
-from grader.turtlesim.programs.keys import Cancel, Drive, Quit, Turn, keys
 from grader.turtlesim.programs.raw_terminal import is_terminal, keyboard
+from grader.turtlesim.programs.teleop_keys import Cancel, Drive, Quit, Turn, keys
 
 if TYPE_CHECKING:
     from collections.abc import Callable

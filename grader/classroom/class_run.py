@@ -1,0 +1,110 @@
+"""Run: grade all submissions of an order, even if worker processes die."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from grader.checks.outcome import Status
+from grader.classroom.engine import Finished, Tells
+from grader.classroom.task import set_aside
+
+if TYPE_CHECKING:
+    from grader.classroom.engine import Engine, Event
+    from grader.classroom.order import Order, Todo
+    from grader.classroom.progress_display import Name, Screen
+    from grader.classroom.results import Result, Results
+    from grader.classroom.task import Done
+
+TRIES = 2
+"""How many times a submission may kill its worker or end with an `error` before this becomes its result."""
+LOOK_S = 0.5
+"""How long to wait for events of the engine (s)."""
+
+
+def run(order: Order, todo: list[Todo], engine: Engine, results: Results, screen: Screen) -> list[Result]:
+    """Grade the submissions and write each result as soon as it is ready, in any order.
+
+    Submissions that end with an `error` are graded once more after all others, if at least one other submission could
+    be judged. In that case, the machine works, so the error occurred by chance or was caused by the submission.
+
+    Raises:
+        MachineError: nothing more can be graded or written. Results that were written are kept.
+    """
+    one = _Run(order, deque(todo), engine, results, screen)
+    with engine:
+        while one.goes_on():
+            one.start()
+            for event in engine.events(LOOK_S):
+                one.hear(event)
+    return list(one.graded.values())
+
+
+@dataclass
+class _Run:
+    order: Order
+    waiting: deque[Todo]
+    engine: Engine
+    results: Results
+    screen: Screen
+    running: dict[Name, Todo] = field(default_factory=dict)
+    again: dict[Name, Todo] = field(default_factory=dict)
+    """The submissions that ended with an `error` and will be graded once more."""
+    failures: Counter[Name] = field(default_factory=Counter)
+    graded: dict[Name, Result] = field(default_factory=dict)
+
+    def goes_on(self) -> bool:
+        """Return whether anything is left to do. Submissions that ended with an `error` come last."""
+        if not self.waiting and not self.running and self.again:
+            if len(self.again) < len(self.graded):
+                self.waiting.extend(self.again.values())
+            else:
+                # No submission could be judged, so the machine would fail again.
+                for name in self.again:
+                    self.screen.finished(self.graded[name])
+            self.again.clear()
+        return bool(self.waiting or self.running)
+
+    def start(self) -> None:
+        """Give the engine as many tasks as it has room for."""
+        while self.waiting and self.engine.has_room():
+            one = self.waiting.popleft()
+            task = self.order.task(one.found)
+            self.running[task.name] = one
+            self.screen.tells(task.name, "Starting")
+            self.engine.start(task)
+
+    def hear(self, event: Event) -> None:
+        """Handle an event of a task."""
+        name = event.task.name
+        if isinstance(event, Tells):
+            self.screen.tells(name, event.text)
+        elif isinstance(event, Finished):
+            self._keep(name, event.done)
+        elif self.failures[name] + 1 < TRIES:
+            self.failures[name] += 1
+            self.screen.tells(name, "Its worker was lost. It will be tried again later")
+            self.waiting.append(self.running.pop(name))
+        else:
+            self._keep(name, set_aside(event.task, _in_words(event.why)))
+
+    def _keep(self, name: Name, done: Done) -> None:
+        one = self.running.pop(name)
+        broken = bool(done.report.with_status(Status.ERROR))
+        self.failures[name] += broken
+        errors = one.errors + self.failures[name] if broken else 0
+        result = self.results.save(one.found.student, done.report, one.key, done.page, errors)
+        self.graded[name] = result
+        if broken and self.failures[name] < TRIES:
+            self.again[name] = one
+            self.screen.tells(name, "It could not be judged. It will be tried again later")
+        else:
+            self.screen.finished(result)
+
+
+def _in_words(why: str) -> str:
+    return (
+        f"The grader's own process was lost twice while it had this submission ({why}). It is reported as an error, "
+        "which says nothing about its quality. Grade it alone with `grader check`, or run the same command again."
+    )

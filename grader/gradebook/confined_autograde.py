@@ -1,0 +1,244 @@
+"""Autograde's kernels. Each one runs in a cell (grader.sandbox), behind a relay with a budget (relay.py).
+
+The cells of a notebook are student code. A sandbox cell has only its own loopback network and its own disks, so the
+relay communicates with the kernel through pipes. Interrupts are sent as messages, because a signal would go to the
+relay.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jupyter_client.kernelspec import KernelSpec
+from jupyter_client.manager import AsyncKernelManager
+from nbclient.exceptions import CellControlSignal, CellTimeoutError, DeadKernelError
+from nbgrader.preprocessors import Execute
+from traitlets import Bool, Instance, Integer, Unicode
+
+from grader.common.interpreter import interpreter
+from grader.errors import GraderError, MachineError
+from grader.exercise.model import course_folder
+from grader.gradebook.cell_outputs import MOST_OUTPUT, TOO_MUCH, honest, mark, put_right
+from grader.gradebook.relay import WHY_FILE, Order
+from grader.notebook.mode import CONFINED
+from grader.ros.installation import environment, find_ros
+from grader.ros.underlay import with_turtlesim
+from grader.sandbox import bubblewrap
+from grader.sandbox.bubblewrap import HOME, WORKSPACE, View, ros_view
+from grader.submission import tree
+from grader.submission.package import Submission, write_copy
+from grader.submission.reader import read
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+CHECK_S = 300
+"""The time limit for an instructor's cell (s). Such a cell builds and runs a package, perhaps in wall time."""
+SHOWN = ("stream", "display_data", "execute_result", "error", "update_display_data")
+"""The types of messages that become outputs of a notebook cell."""
+
+
+class ConfinedKernelManager(AsyncKernelManager):
+    """Start a kernel in a cell. The kernel gets a copy of the folder `submission`."""
+
+    submission = Unicode("")
+    trusted = Bool(default_value=False)
+    why = ""
+    """The reason why the kernel was stopped, or an empty string if it exited by itself."""
+    _folder = Instance(tempfile.TemporaryDirectory, allow_none=True)
+    _life = -1
+
+    @property
+    def kernel_spec(self) -> KernelSpec:
+        """The course's own kernel, whatever kernel the notebook names."""
+        argv = interpreter("-m", "grader.gradebook.relay", "{relay_folder}").argv
+        return KernelSpec(argv=argv, display_name="", language="python", interrupt_mode="message")
+
+    async def _async_pre_start_kernel(self, **kw: Any) -> Any:  # noqa: ANN401 - as the base class
+        # Only the current user can access this folder. It is not visible in the cell.
+        self._folder = tempfile.TemporaryDirectory(prefix="kernel-")
+        folder = Path(self._folder.name)
+        self.transport = "ipc"
+        self.connection_file = str(folder / "kernel.json")
+        self.ip = str(folder / "socket")
+        return await super()._async_pre_start_kernel(**kw)
+
+    async def _async_launch_kernel(self, kernel_cmd: list[str], **kw: Any) -> None:  # noqa: ANN401 - as the base class
+        assert self._folder is not None
+        folder = Path(self._folder.name)
+        _order(Path(self.submission), folder, self.connection_file, trusted=self.trusted).write(folder)
+        argv = [word.replace("{relay_folder}", str(folder)) for word in kernel_cmd]
+        kw.pop("cwd", None)
+        # The relay exits when this pipe is closed, however this process exits.
+        ends, self._life = os.pipe()
+        try:
+            kw |= {"env": interpreter("-c", "").env, "cwd": "/", "stdin": ends, "stdout": subprocess.DEVNULL}
+            await super()._async_launch_kernel(argv, **kw)
+        finally:
+            os.close(ends)
+
+    def read_why(self) -> str:
+        """Return the reason why the relay stopped the kernel, or an empty string if it did not."""
+        if self._folder is not None and not self.why:
+            with suppress(OSError):
+                self.why = (Path(self._folder.name) / WHY_FILE).read_text("utf-8")
+        return self.why
+
+    async def _async_cleanup_resources(self, restart: bool = False) -> None:
+        self.read_why()
+        if self._life >= 0:
+            os.close(self._life)
+            self._life = -1
+        await super()._async_cleanup_resources(restart)
+        if self._folder is not None:
+            with suppress(OSError):
+                self._folder.cleanup()
+            self._folder = None
+
+
+class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
+    """Run a submitted notebook in a cell. If the kernel dies, the remaining cells of the notebook get an error."""
+
+    trust_submissions = Bool(
+        default_value=False,
+        help="Run submitted notebooks even without a sandbox, on a machine that you can lose.",
+    ).tag(config=True)
+
+    cell_s = Integer(20, help="Time limit for a student's own cell, in seconds.").tag(config=True)
+
+    def __init__(self, *arguments: Any, **keywords: Any) -> None:  # noqa: ANN401 - as the base class
+        keywords.setdefault("kernel_manager_class", ConfinedKernelManager)
+        super().__init__(*arguments, **keywords)
+        self._ended = ""
+        self._printed = 0
+
+    def preprocess(self, nb: NotebookNode, resources: Any = None, km: Any = None) -> tuple[NotebookNode, Any]:  # noqa: ANN401
+        """Run all cells."""
+        self._ended, self._printed = "", 0
+        course, about = self.parent.parent.coursedir, resources["nbgrader"]
+        folder = course.format_path(course.submitted_directory, about["student"], about["assignment"])
+        self._submission = folder
+        try:
+            nb, resources = super().preprocess(nb, resources, km)
+        except MachineError:
+            raise
+        except Exception as error:
+            # The kernel did not start or stop, or nbclient could not process what it sent.
+            self._ended = self._ended or self._reason(error)
+            self.log.warning("The kernel ended: %s", self._ended)
+            for cell in nb.cells:
+                if cell.cell_type == "code" and not cell.get("outputs") and cell.get("execution_count") is None:
+                    mark(cell, self._ended)
+        put_right(nb)
+        for cell in nb.cells:
+            honest(cell)
+        return nb, resources
+
+    def create_kernel_manager(self) -> Any:  # noqa: ANN401 - as the base class
+        """Create the manager of this submission's kernel, whatever kernel the notebook's metadata names."""
+        self.km = ConfinedKernelManager(submission=self._submission, trusted=self.trust_submissions, config=self.config)
+        self._manager = self.km
+        return self.km
+
+    def preprocess_cell(self, cell: NotebookNode, resources: Any, index: int) -> tuple[NotebookNode, Any]:  # noqa: ANN401
+        """Run one cell, if the kernel is still alive."""
+        if self._ended:
+            if cell.cell_type == "code":
+                mark(cell, self._ended)
+            return cell, resources
+        try:
+            cell, resources = super().preprocess_cell(cell, resources, index)
+        except Exception as error:
+            self._end(self._reason(error))
+        if self._ended and cell.cell_type == "code":
+            mark(cell, self._ended)
+        return cell, resources
+
+    def process_message(self, msg: dict[str, Any], cell: NotebookNode, cell_index: int) -> NotebookNode | None:
+        """Process a message from the kernel, unless the total size of its output is too large."""
+        if msg["msg_type"] in SHOWN:
+            self._printed += len(str(msg["content"]))
+            if self._printed > MOST_OUTPUT:
+                self._end(TOO_MUCH)
+                return None
+        try:
+            return super().process_message(msg, cell, cell_index)  # type: ignore[no-any-return, unused-ignore]
+        except CellControlSignal:
+            raise
+        except Exception as error:
+            self._end(self._reason(error))
+            return None
+
+    def on_comm_open_jupyter_widget(self, msg: dict[str, Any]) -> None:
+        """Do not act as the front end of a widget, because the kernel could make the replies arbitrarily long."""
+
+    def _get_timeout(self, cell: NotebookNode | None) -> int | None:
+        locked = cell is not None and cell.get("metadata", {}).get("nbgrader", {}).get("locked")
+        return CHECK_S if locked or cell is None else self.cell_s
+
+    def _reason(self, error: Exception) -> str:
+        """Return the reason why no more cells can be run."""
+        why: str = self._manager.read_why()
+        if why or isinstance(error, DeadKernelError):
+            return why or "The kernel died."
+        if isinstance(error, CellTimeoutError):
+            return "A cell did not end in time, and did not stop when it was interrupted."
+        if isinstance(error, RuntimeError | GraderError):
+            return str(error).partition("\n")[0]
+        self.log.debug("Could not process the kernel's messages", exc_info=error)
+        return "The kernel sent messages that nbgrader could not process."
+
+    def _end(self, why: str) -> None:
+        if not self._ended:
+            self._ended = why
+            if self.km is not None and self.km.has_kernel:
+                _kill(self.km.provisioner.process.pid)  # type: ignore[union-attr]
+
+
+def _copy(folder: Path, copy: Path) -> None:
+    """Copy the files of the submission that are safe to read. Links that point outside the folder are left out."""
+    found = read(tree.read_folder, folder)
+    files = {path: data for path, data in found.files.items() if not path.endswith(".ipynb")}
+    write_copy(Submission("", folder, files, (), "", frozenset(found.executable & files.keys())), copy)
+
+
+def _order(submission: Path, folder: Path, connection_file: str, *, trusted: bool) -> Order:
+    """Return the order that says what the relay must start. `folder` is the relay's own folder."""
+    confined = bubblewrap.require(trusted=trusted)
+    copy, home, workspace = folder / "submission", HOME, WORKSPACE
+    _copy(submission, copy)
+    if not confined:
+        home, workspace = folder / "home", folder / "workspace"
+        home.mkdir()
+        workspace.mkdir()
+    env, view = _environment(copy, home)
+    start = interpreter("-m", "grader.notebook.bridge", str(copy), str(workspace), env=env, searches=True)
+    return Order(start.argv, start.env, view, confined, connection_file)
+
+
+def _environment(copy: Path, home: Path) -> tuple[dict[str, str], View]:
+    ros = with_turtlesim(find_ros())
+    course = course_folder()
+    package = Path(__file__).resolve().parent.parent
+    exercises = course.parent / "exercises"
+    shown = ros_view(ros, *(path for path in (package, course, exercises, copy) if path.exists()))
+    # Solutions are also in the grader's tests, and next to the course if it is installed.
+    hidden = [path for path in shown.hidden if path.name == "solutions"]
+    hidden += [path for path in (package / "tests",) if path.is_dir()]
+    view = View(shown.read_only, tuple(hidden))
+    env = environment(ros, home=home)
+    env |= {CONFINED: "1", "NBGRADER_EXECUTION": "autograde", "IPYTHONDIR": str(home / "ipython")}
+    if ros.underlay:
+        env["XDG_CACHE_HOME"] = str(ros.underlay.parent.parent)
+    return env, view
+
+
+def _kill(pid: int) -> None:
+    with suppress(ProcessLookupError):
+        os.kill(pid, signal.SIGKILL)

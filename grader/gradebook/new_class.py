@@ -1,0 +1,69 @@
+"""Make a course folder in which nbgrader's commands work as in its manual: `grader class new DIR`."""
+
+from __future__ import annotations
+
+import shutil
+from typing import TYPE_CHECKING
+
+from grader.authoring.release import release
+from grader.classroom.roster import read_roster
+from grader.common.words import shorten
+from grader.errors import MachineError, UsageError
+from grader.exercise.model import catalogue, course_folder
+from grader.gradebook.class_folders import CONFIG, open_class
+from grader.submission.search import IGNORE_MARKER
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+COLUMNS = ("id", "first_name", "last_name", "email")
+_LEFTOVERS = shutil.ignore_patterns("__pycache__", "*.pyc", ".ipynb_checkpoints", "build", "install", "log")
+
+
+def make_class(folder: Path, roster: Path | None) -> int:
+    """Make the folder and add the students of the roster to its gradebook. Return the number of students.
+
+    Raises:
+        UsageError: the folder is not empty, the roster is invalid, or this copy of the course has no solutions.
+        MachineError: the folder cannot be written, or nbgrader is not installed.
+    """
+    students = read_students(roster) if roster else []
+    root = course_folder().parent
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        message = f"{folder} is not an empty folder. Name a new one."
+        raise UsageError(message)
+    if not (root / "solutions").is_dir():
+        message = "This copy of the course has no solutions. A class needs a complete checkout of the course."
+        raise UsageError(message)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        # Without this file, colcon in this folder would run the setup.py of every submission outside the sandbox.
+        (folder / IGNORE_MARKER).touch()
+        shutil.copytree(root / "course", folder / "course", ignore=_LEFTOVERS)
+        for name in catalogue():
+            shutil.copytree(root / "solutions" / name, folder / "solutions" / name, ignore=_LEFTOVERS)
+            release(folder / "solutions" / name, folder / "exercises" / name)
+    except OSError as error:
+        message = f"{error.filename or folder} could not be written: {error.strerror}."
+        raise MachineError(message) from error
+    assert (folder / "course" / CONFIG).is_file()
+    folders = open_class(folder / "course")
+    from nbgrader.api import Gradebook
+
+    with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
+        for student in students:
+            about = {key: value for key, value in student.items() if key != "id" and value}
+            gradebook.update_or_create_student(student["id"], **about)
+    return len(students)
+
+
+def read_students(file: Path) -> list[dict[str, str]]:
+    """Return the students of a roster, each as a dict of COLUMNS. Raises UsageError if the file is not a roster."""
+    rows = read_roster(file, COLUMNS[:1], COLUMNS[1:])
+    for line, student in rows.items():
+        # nbgrader uses ids as folder names, and puts + into names in the exchange.
+        if "/" in student["id"] or student["id"].startswith(".") or "+" in student["id"]:
+            why = 'nbgrader uses it as a folder name, so it must not contain "/" or "+" or begin with "."'
+            message = f'{file}, line {line}: the id is "{shorten(student["id"])}"; {why}.'
+            raise UsageError(message)
+    return list(rows.values())

@@ -1,0 +1,136 @@
+"""The screen and the keys of `grader watch`."""
+
+from __future__ import annotations
+
+from contextlib import closing, contextmanager
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from grader.errors import GraderError, UsageError
+from grader.grading.options import Options
+from grader.learner import hints, steps
+from grader.learner.key_presses import single_keys
+from grader.learner.watch import Events, Watched
+from grader.report import terminal
+from grader.sandbox import bubblewrap
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from grader.exercise.model import Exercise
+    from grader.report.report import Report
+
+BELOW = 5
+"""The number of lines below a report, for the watched folder, the keys and the response to a key."""
+KEYS = "h hint · l list · n next · r rerun · q quit"
+
+
+def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
+    """Grade now and after every save, until the user presses q or Ctrl-C, or the terminal is closed.
+
+    Raises:
+        UsageError: there is no such folder.
+    """
+    if not folder.is_dir():
+        message = f"There is no folder {folder}. Start a step with `grader start`, or name the folder of your package."
+        raise UsageError(message)
+    console = Console(highlight=False)
+    options = Options(in_cell=bubblewrap.usable())
+    with single_keys() as read_key, closing(Events(read_key)) as events:
+        told = ""
+        while True:
+            screen = _Screen(exercise, folder, workspace, options, console)
+            events.watch(folder)
+            with closing(screen.watched):
+                begun = screen.show(events, told)
+            if begun is None:
+                return
+            exercise, folder, told = begun.exercise, begun.started.folder, steps.told(begun)
+
+
+class _Screen:
+    """One exercise on the screen."""
+
+    def __init__(
+        self, exercise: Exercise, folder: Path, workspace: Path | None, options: Options, console: Console
+    ) -> None:
+        self.watched = Watched(exercise, folder, options)
+        self._exercise = exercise
+        self._workspace = workspace
+        self._console = console
+
+    def show(self, events: Events, told: str) -> steps.Begun | None:
+        """Show verdicts until the learner quits or goes on. Return the step to continue with, or None to quit.
+
+        The first verdict clears the screen. `told` is printed below it.
+        """
+        self._grade(told)
+        for happened in events:
+            if happened.kind == "saved":
+                if self.watched.changed():
+                    self._grade()
+            elif happened.key == "r":
+                self._grade()
+            elif happened.key == "h":
+                self._hint()
+            elif happened.key == "l":
+                steps.print_status(self._workspace, self._console)
+            elif happened.key == "n":
+                begun = self._next()
+                if begun is not None:
+                    return begun
+            elif happened.key in ("q", "\x04"):
+                return None
+        return None
+
+    def _grade(self, told: str = "") -> None:
+        if self._console.is_terminal:
+            self._console.clear()
+        try:
+            with self._working() as tell:
+                graded = self.watched.grade(tell)
+        except GraderError as error:
+            self._say(str(error))
+        else:
+            self._render(graded.report, len(told.splitlines()))
+            following = steps.note(self._exercise, self.watched.folder, graded.report, self._workspace)
+            if following:
+                self._say(following)
+        if told:
+            self._say(f"\n{told}")
+        self._say(f"\nWatching {self.watched.folder}   {KEYS if self._console.is_terminal else ''}".rstrip())
+
+    def _render(self, report: Report, more: int) -> None:
+        """Print the full report if it and the lines below fit into the window. Otherwise, print only what failed."""
+        with self._console.capture() as whole:
+            terminal.render(report, self._console)
+        fits = whole.get().count("\n") + more + BELOW <= self._console.height
+        terminal.render(report, self._console, brief=self._console.is_terminal and not fits)
+
+    def _hint(self) -> None:
+        # If the progress cannot be written, watching continues.
+        try:
+            told = hints.hint(self._exercise.id, self._workspace)
+        except GraderError as error:
+            told = str(error)
+        self._console.print(told, markup=False, soft_wrap=not self._console.is_terminal)
+
+    def _next(self) -> steps.Begun | None:
+        try:
+            return steps.start("next", self._workspace)
+        except GraderError as error:
+            self._say(str(error))
+            return None
+
+    @contextmanager
+    def _working(self) -> Iterator[Callable[[str], None]]:
+        if not self._console.is_terminal:
+            yield lambda _: None
+            return
+        with self._console.status("Reading") as status:
+            yield lambda text: status.update(f"{text} ...")
+
+    def _say(self, text: str) -> None:
+        self._console.print(text, markup=False, soft_wrap=True)

@@ -1,0 +1,54 @@
+"""Make a single-file page from a template, a style sheet and a script, with a strict Content-Security-Policy.
+
+The policy allows the style sheet and the script by their hashes. Nothing else on the page can run or be loaded,
+regardless of what a submission contains. In addition, all text from a student is escaped.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup
+
+from grader.report.escaped_template import ASSETS, fill
+from grader.report.output_file import not_written
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+
+def make_page(template: str, script: str, data: object, values: Mapping[str, object]) -> str:
+    """Return a page with the style sheet, a script and its data; `template` and `script` name files in assets/."""
+    style, code = _text("page.css"), _text(script)
+    policy = (
+        f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(code)}; img-src data:; base-uri 'none'; "
+        "form-action 'none'; require-trusted-types-for 'script'; trusted-types 'none'"
+    )
+    parts = {"policy": policy, "style": Markup(style), "script": Markup(code), "data": _json(data)}
+    return fill(template, {**values, **parts})
+
+
+def save_page(page: str, file: Path) -> None:
+    """Write a page. Raises the error that `not_written` returns if that is not possible."""
+    try:
+        file.write_text(page, encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise not_written(file, error) from error
+
+
+def _text(name: str) -> str:
+    return (ASSETS / name).read_text(encoding="utf-8")
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def _json(data: object) -> Markup:
+    """Return JSON in which no HTML parser can find the end of the script element."""
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False)
+    return Markup(text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"))

@@ -1,0 +1,40 @@
+"""Write files that the user named on the command line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.common.system_errors import of_the_machine
+from grader.errors import MachineError, UsageError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def check_writable(file: Path | None) -> None:
+    """Check that a file can be written, before time is spent on its content. Raises UsageError if it cannot."""
+    if file is not None and not file.absolute().parent.is_dir():
+        message = f"There is no folder {file.absolute().parent} to write {file.name} to."
+        raise UsageError(message)
+    if file is not None and file.is_dir():
+        message = f"{file} is a folder. Name a file."
+        raise UsageError(message)
+
+
+def write(file: Path, content: bytes) -> None:
+    """Write the file.
+
+    Raises:
+        UsageError: the file cannot be written there.
+        MachineError: the disk is full, or the machine failed in another way.
+    """
+    try:
+        file.write_bytes(content)
+    except OSError as error:
+        raise not_written(file, error) from error
+
+
+def not_written(file: Path, error: OSError) -> UsageError | MachineError:
+    """Return the error to raise when a file could not be written: UsageError or MachineError, with the reason."""
+    message = f"{file} cannot be written: {error.strerror or error}."
+    return MachineError(message) if of_the_machine(error) else UsageError(message)

@@ -1,0 +1,33 @@
+"""How verbs look at the graph: through the daemon, or with their own node."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.graph.graph_info import Look, from_dict
+from grader.ros2.daemon import client
+
+if TYPE_CHECKING:
+    import argparse
+
+
+def look(args: argparse.Namespace) -> Look:
+    """Return the current graph, either from the daemon or from a node in this process.
+
+    If no daemon is running, start one for the next command. With `args.no_daemon`, never use or start the daemon.
+
+    Raises:
+        Ros2Error: the node could not be created.
+    """
+    if not getattr(args, "no_daemon", False):
+        answer = client.ask("look")
+        if answer is not None:
+            return from_dict(answer)
+        client.start_for_later()
+    # Import these modules only here, since importing rclpy takes a long time.
+    from grader.graph.discovery import cli_node, settle
+    from grader.graph.snapshot import snapshot
+
+    with cli_node() as node:
+        settle(node, deadline_s=getattr(args, "spin_time", None))
+        return snapshot(node)

@@ -1,0 +1,112 @@
+"""One sentence about why a set-up stopped and what to do, derived from an error or from an installer's output.
+
+Like machine.py, this runs under any Python 3 before anything is installed, so it uses the syntax of Python 3.6.
+"""
+
+import errno
+import os
+import re
+import shutil
+import sys
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+from typing import Callable, List, Optional
+
+from grader.common.system_errors import refusal, sentence
+
+MACHINE_BROKEN = 3
+NEEDED_MB = 700
+"""The size of a learner's .venv, including a reserve."""
+AGAIN = "the same command continues from here, and the downloads are kept"
+NO_NETWORK = (
+    "This machine cannot reach the Python packages ({}). Is it online? A proxy is read from HTTPS_PROXY, a mirror "
+    "from pip's own configuration; " + AGAIN + "."
+)
+_FULL_MB = 50
+"""If there is less free space than this, the disk is taken to be the reason for any failure."""
+_NUMBER = re.compile(r"\[Errno (\d+)\]|\(os error (\d+)\)")
+_OFFLINE = re.compile(
+    "(?:Temporary failure in )?name resolution|Name or service not known|No address associated with hostname|"
+    "Network is unreachable|No route to host|failed to lookup address",
+    re.IGNORECASE,
+)
+_WRITE = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
+
+
+def guarded(main: Callable[[], int]) -> int:
+    """Run a program of the set-up and return its exit code. System errors and Ctrl-C are printed as one sentence."""
+    try:
+        code = main()
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        print("\nStopped. The same command continues from here; the downloads are kept.", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        _silence()  # The program that reads the output has exited.
+        return 1
+    except Exception as error:
+        if os.environ.get("GRADER_DEBUG"):
+            raise
+        fault = f"An error in the set-up itself: {type(error).__name__}: {error}. Set GRADER_DEBUG=1 to see where."
+        print(of_error(error) or fault, file=sys.stderr)
+        _silence()
+        return MACHINE_BROKEN
+    return code
+
+
+def _silence() -> None:
+    """Keep the interpreter from failing again when it exits and flushes its buffers."""
+    with suppress(OSError):  # it may be impossible to open a file
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+
+
+def of_error(error: BaseException) -> Optional[str]:
+    """Return the sentence for a system error in the set-up, or None for any other error."""
+    if isinstance(error, OSError) and isinstance(error.filename, (str, bytes)):
+        return _of_number(error.errno or 0, Path(os.fsdecode(error.filename)))
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return _of_number(error.errno, None)
+    return refusal(error)
+
+
+def of_output(said: str, folder: Path) -> Optional[str]:
+    """Return one sentence about why an installer failed, or None. It printed `said` and writes to `folder`."""
+    found = _NUMBER.search(said)
+    number = int(found.group(1) or found.group(2)) if found else 0
+    if number in (errno.ENOSPC, errno.EDQUOT) or _fullest([folder]):
+        return _of_number(errno.ENOSPC, _fullest([folder, Path(tempfile.gettempdir()), cache()]) or folder)
+    if number in _WRITE or number in (errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN):
+        return _of_number(number, folder)
+    return None
+
+
+def offline(said: str) -> Optional[str]:
+    """Return the part of an installer's output that indicates a missing network, or None if there is none."""
+    found = _OFFLINE.search(said)
+    return found.group() if found else None
+
+
+def cache() -> Path:
+    """Return the folder where uv keeps its downloads."""
+    named = os.environ.get("UV_CACHE_DIR") or "{}/uv".format(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
+    return Path(named).expanduser()
+
+
+def _of_number(number: int, where: Optional[Path]) -> str:
+    if number in (errno.ENOSPC, errno.EDQUOT):
+        room = f"free some space there ({NEEDED_MB} MB for a learner); {AGAIN}"
+        return sentence(number, str(where or ""), room)
+    if number in _WRITE:
+        told = f"{where} cannot be written to ({os.strerror(number)})"
+        return f"{told}: copy the course's folder to where you may write, such as your home, and try again there."
+    return sentence(number, str(where or ""))
+
+
+def _fullest(folders: List[Path]) -> Optional[Path]:
+    """Return the first of the folders whose disk is nearly full, or None."""
+    for folder in folders:
+        there = next((above for above in [folder, *folder.parents] if above.exists()), None)
+        if there and shutil.disk_usage(str(there)).free < _FULL_MB * 2**20:
+            return folder
+    return None

@@ -1,0 +1,124 @@
+"""Which submissions are found, and which students they belong to."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.exercises import find_exercise
+from grader.classroom.content import Refused, fingerprint, read
+from grader.classroom.find_submissions import Found, find_submissions, passed_over
+from grader.tests.case import copy_solution
+from grader.tests.classroom.a_class import zipped
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+STEP = "03-circle-publisher"
+
+
+def names(folder: Path, exercise: str | None = STEP) -> list[tuple[str, str, str]]:
+    found = find_submissions([folder], exercise, folder / "grades")
+    return [(each.student, each.exercise, str(each.path.relative_to(folder))) for each in found]
+
+
+def test_a_folder_of_folders_and_archives(tmp_path: Path) -> None:
+    for name in ("anna", "Zoe", ".git", "__MACOSX", "grades"):
+        (tmp_path / name).mkdir()
+    for name in ("ben.zip", "clara.tar.gz", "roster.csv", ".DS_Store"):
+        (tmp_path / name).touch()
+    (tmp_path / "link").symlink_to("/etc")
+    assert passed_over([tmp_path], tmp_path / "grades") == ("link", "roster.csv")
+    assert names(tmp_path) == [
+        ("Zoe", STEP, "Zoe"),
+        ("anna", STEP, "anna"),
+        ("ben", STEP, "ben.zip"),
+        ("clara", STEP, "clara.tar.gz"),
+    ]
+
+
+def test_nbgraders_tree(tmp_path: Path) -> None:
+    for path in (f"anna/{STEP}", "anna/01-first-node", "ben/01-first-node", "ben/notes"):
+        (tmp_path / path).mkdir(parents=True)
+    assert names(tmp_path, None) == [
+        ("anna", "01-first-node", "anna/01-first-node"),
+        ("anna", STEP, f"anna/{STEP}"),
+        ("ben", "01-first-node", "ben/01-first-node"),
+    ]
+    assert names(tmp_path, "01") == [
+        ("anna", "01-first-node", "anna/01-first-node"),
+        ("ben", "01-first-node", "ben/01-first-node"),
+    ]
+
+
+def test_a_folder_of_clones(tmp_path: Path) -> None:
+    for student in ("anna", "ben"):
+        for step in (STEP, "01-first-node"):
+            copy_solution(step, tmp_path / student / "exercises" / step / "my_robot_controller")
+        (tmp_path / student / ".git").mkdir()
+    assert names(tmp_path) == [
+        ("anna", STEP, f"anna/exercises/{STEP}"),
+        ("ben", STEP, f"ben/exercises/{STEP}"),
+    ]
+
+
+def test_a_link_to_the_exercise_of_another_student_is_not_followed(tmp_path: Path) -> None:
+    copy_solution(STEP, tmp_path / "anna" / "exercises" / STEP / "my_robot_controller")
+    (tmp_path / "ben").mkdir()
+    (tmp_path / "ben" / "exercises").symlink_to(tmp_path / "anna" / "exercises")
+    found = find_submissions([tmp_path], STEP, tmp_path / "grades")[1]
+    assert isinstance(read(found, find_exercise(STEP), "ben"), Refused)
+
+
+def test_two_submissions_of_one_student_are_a_usage_error(tmp_path: Path) -> None:
+    (tmp_path / "anna").mkdir()
+    (tmp_path / "anna.zip").touch()
+    (tmp_path / "ben").mkdir()
+    anna, ben = find_submissions([tmp_path], STEP, tmp_path / "grades")
+    assert re.search(r"anna has 2 submissions: .*anna and .*anna\.zip", anna.refused)
+    assert (ben.student, ben.refused) == ("ben", "")
+
+
+def test_a_package_or_an_archive_alone_is_one_submission(tmp_path: Path) -> None:
+    copy_solution(STEP, tmp_path / "anna")
+    zipped(tmp_path / "anna", tmp_path / "ben.zip", "my_robot_controller")
+    found = find_submissions([tmp_path / "anna", tmp_path / "ben.zip"], STEP, tmp_path / "grades")
+    assert [each.student for each in found] == ["anna", "ben"]
+
+
+def test_an_archive_alone_in_a_students_folder_is_the_submission(tmp_path: Path) -> None:
+    copy_solution(STEP, tmp_path / "made")
+    (tmp_path / "Anna_123_assignsubmission_file").mkdir()
+    zipped(tmp_path / "made", tmp_path / "Anna_123_assignsubmission_file" / "work.zip", "my_robot_controller")
+    found = Found("anna", STEP, tmp_path / "Anna_123_assignsubmission_file")
+    content = read(found, find_exercise(STEP), "anna")
+    assert not isinstance(content, Refused)
+    assert "package.xml" in content.files
+
+
+def test_answers_are_found_below_a_folder(tmp_path: Path) -> None:
+    copy_solution("02-discover-topics", tmp_path / "made" / "02")
+    zipped(tmp_path / "made", tmp_path / "anna.zip", "work")
+    content = read(Found("anna", "02-discover-topics", tmp_path / "anna.zip"), find_exercise("02"), "anna")
+    assert not isinstance(content, Refused)
+    assert list(content.files) == ["answers.toml"]
+
+
+@pytest.mark.parametrize("change", ["content", "mode", "new file"])
+def test_the_fingerprint_changes_only_with_files_that_are_read(tmp_path: Path, change: str) -> None:
+    copy_solution(STEP, tmp_path / "anna")
+    exercise, found = find_exercise(STEP), Found("anna", STEP, tmp_path / "anna")
+    before = fingerprint(found, exercise)
+    (tmp_path / "anna" / "build").mkdir()
+    (tmp_path / "anna" / "build" / "left.txt").write_text("of colcon")
+    assert fingerprint(found, exercise) == before
+    file = tmp_path / "anna" / "setup.py"
+    if change == "content":
+        file.write_text(file.read_text() + "\n")
+    elif change == "mode":
+        file.chmod(0o755 if not file.stat().st_mode & 0o100 else 0o644)
+    else:
+        (tmp_path / "anna" / "more.py").touch()
+    assert fingerprint(found, exercise) != before

@@ -1,0 +1,57 @@
+"""A graded submission as a folder: every trial comes back as it was."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.exercises import find_exercise
+from grader.checks.judge import judge
+from grader.errors import UsageError
+from grader.evidence import recording_format
+from grader.evidence.evidence import Evidence, Run
+from grader.evidence.tries import Tries, Try
+from grader.tests.checks.made import every, evidence, good, recording
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+CHALLENGES = find_exercise("07-challenges")
+
+
+def some_trials() -> Evidence:
+    """Two trials that were run, one that the node brought down, one that was not made."""
+    runs = {
+        "circle": Run(good()),
+        "eight": Run(recording(every(0.1, 1.0, 1.0))),
+        "square": Run(overwhelmed="MemoryError"),
+    }
+    return evidence(exercise=CHALLENGES, runs=runs)
+
+
+def test_each_trial_comes_back_as_it_was(tmp_path: Path) -> None:
+    given = some_trials()
+    recording_format.save(tmp_path / "kept", given, "none", ())
+    kept = recording_format.load(tmp_path / "kept", lambda _: CHALLENGES).evidence
+    assert list(kept.runs) == ["circle", "eight", "square"]
+    assert kept.runs["square"] == Run(overwhelmed="MemoryError")
+    assert judge(kept) == judge(given)
+    for trial in ("circle", "eight"):
+        assert kept.from_trial(trial).commands == given.from_trial(trial).commands != ()
+
+
+def test_what_was_tried_comes_back_so_that_a_report_can_tell_it_again(tmp_path: Path) -> None:
+    tries = Tries((Try("rate", "timer-period", "passes", "-1\n+2"),), behind=1, stopped="there was no time to try more")
+    recording_format.save(tmp_path / "kept", replace(some_trials(), tries=tries), "none", ())
+    assert recording_format.load(tmp_path / "kept", lambda _: CHALLENGES).evidence.tries == tries
+
+
+def test_a_recording_of_an_older_grader_is_refused(tmp_path: Path) -> None:
+    recording_format.save(tmp_path / "kept", some_trials(), "none", ())
+    file = tmp_path / "kept" / "submission.json"
+    file.write_text(json.dumps({**json.loads(file.read_text()), "schema": 1}))
+    with pytest.raises(UsageError, match=r"submission\.json is not of schema 2"):
+        recording_format.load(tmp_path / "kept", lambda _: CHALLENGES)

@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.errors import UsageError
+from grader.gradebook.class_folders import CONFIG, open_class, remember
+from grader.gradebook.new_class import make_class, read_students
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def roster(folder: Path, text: str) -> Path:
+    file = folder / "roster.csv"
+    file.write_text(text, encoding="utf-8-sig")
+    return file
+
+
+def test_a_class_has_its_students_and_no_other_data(tmp_path: Path) -> None:
+    file = roster(tmp_path, "id,last_name,first_name,room\nada,Lovelace,Ada,12\nbob,,,\n")
+    assert make_class(tmp_path / "new", file) == 2
+    folders = open_class(tmp_path / "new")  # its course/ is found
+    assert open_class(tmp_path / "new" / "course").course.root == folders.course.root == str(tmp_path / "new")
+    from nbgrader.api import Gradebook
+
+    with Gradebook(folders.course.db_url, folders.course.course_id) as gradebook:
+        assert [(s.id, s.first_name, s.last_name) for s in gradebook.students] == [
+            ("bob", None, None),
+            ("ada", "Ada", "Lovelace"),
+        ]
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == [
+        "COLCON_IGNORE",
+        "class",
+        "course",
+        "exercises",
+        "solutions",
+    ]
+    with pytest.raises(UsageError, match="is not an empty folder"):
+        make_class(tmp_path / "new", file)
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("name\nada\n", 'name the columns "id"'),
+        ("id\nada\n\nb/c\n", 'line 4: the id is "b/c"'),
+        ("id\n../ada\n", "nbgrader uses it as a folder name"),
+        ("id\na+b\n", "nbgrader uses it as a folder name"),
+    ],
+)
+def test_an_invalid_roster_is_a_usage_error(tmp_path: Path, text: str, why: str) -> None:
+    with pytest.raises(UsageError, match=why):
+        read_students(roster(tmp_path, text))
+
+
+def test_a_folder_without_a_course_is_a_usage_error(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"There is no nbgrader_config\.py"):
+        open_class(tmp_path)
+
+
+@pytest.fixture
+def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A student's clone of the course, in which the instructor stands; its configuration leaves a trace."""
+    folder = tmp_path / "clone"
+    (folder / "course").mkdir(parents=True)
+    (folder / "course" / CONFIG).write_text(f"open({str(tmp_path / 'touched')!r}, 'w').close()\n")
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def test_the_configuration_of_an_unknown_folder_is_not_run(clone: Path) -> None:
+    for place in (clone, clone / "course"):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.chdir(place)
+            with pytest.raises(UsageError, match=r"is a program, but .* has not made this folder for you.*--course "):
+                open_class(None)
+    assert not (clone.parent / "touched").exists()
+
+
+def test_a_configuration_runs_if_the_instructor_names_or_made_the_folder(clone: Path) -> None:
+    open_class(clone)
+    (clone.parent / "touched").unlink()
+    remember(clone.parent / "another")
+    remember(clone)
+    open_class(None)
+    assert (clone.parent / "touched").exists()

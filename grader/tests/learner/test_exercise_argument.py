@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from grader.checks.exercises import find_exercise
+from grader.errors import UsageError
+from grader.learner import steps
+from grader.learner.exercise_argument import guessed, meant
+
+
+@pytest.fixture(autouse=True)
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A workspace in which step 03 was started, and an empty current folder."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setenv("ROS2_WORKSPACE", str(tmp_path / "ros2_ws"))
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    steps.start("3", None)
+    return tmp_path / "ros2_ws"
+
+
+@pytest.mark.parametrize("typed", ["3", "03", "03-circle-publisher"])
+def test_a_number_or_a_name_means_a_step(workspace: Path, typed: str) -> None:
+    known, place = meant(Path(typed), None)
+    assert (known.id, place) == ("03-circle-publisher", workspace / "src/my_robot_controller")
+
+
+@pytest.mark.parametrize("typed", [None, "{}", "{}/src", "{}/src/my_robot_controller"])
+def test_no_path_the_workspace_or_its_package_mean_the_current_step(workspace: Path, typed: str | None) -> None:
+    path = Path(typed.format(workspace)) if typed else None
+    assert meant(path, None)[0].id == "03-circle-publisher"
+
+
+def test_an_existing_folder_with_the_name_of_a_step_is_a_folder() -> None:
+    Path("03").mkdir()
+    assert guessed(Path("03"), None) == (None, Path("03"))
+
+
+def test_a_step_that_was_not_started_names_the_start_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS2_WORKSPACE", str(tmp_path / "another"))
+    with pytest.raises(UsageError, match="`grader start 03`"):
+        meant(Path("3"), None)
+
+
+def test_an_unknown_exercise_lists_all_of_them() -> None:
+    with pytest.raises(UsageError, match=r"01-first-node, .*, 07-challenges"):
+        meant(Path(), None)
+
+
+@pytest.mark.parametrize("typed", ["3", "03", "03-"])
+def test_a_number_may_omit_the_zero(typed: str) -> None:
+    assert find_exercise(typed).id == "03-circle-publisher"
+
+
+def test_the_list_of_steps_is_complete() -> None:
+    with pytest.raises(UsageError, match=r"01-first-node, .*06-pose-subscriber and 07-challenges"):
+        find_exercise("99")

@@ -1,0 +1,71 @@
+from __future__ import annotations
+
+import pytest
+
+from grader.checks.exercises import find_exercise
+from grader.errors import UsageError
+from grader.notebook.cell_files import Part, counts, part_path, parts_of
+
+CIRCLE = find_exercise("03")
+ANSWERS = find_exercise("02")
+
+
+@pytest.mark.parametrize(
+    ("magic", "name", "path"),
+    [
+        ("node", "draw_circle.py", "my_robot_controller/my_robot_controller/draw_circle.py"),
+        ("package", "package.xml", "my_robot_controller/package.xml"),
+        ("answers", "", "my_robot_controller/answers.toml"),
+    ],
+)
+def test_a_cell_writes_into_the_package(magic: str, name: str, path: str) -> None:
+    assert part_path(magic, name, CIRCLE) == path
+
+
+def test_without_a_package_answers_are_next_to_the_notebook() -> None:
+    assert part_path("answers", "", ANSWERS) == "answers.toml"
+    with pytest.raises(UsageError, match="has no package"):
+        part_path("node", "a.py", ANSWERS)
+
+
+@pytest.mark.parametrize(
+    ("magic", "name"),
+    [
+        ("node", "../a.py"),
+        ("node", "a"),
+        ("node", ""),
+        ("package", "../x"),
+        ("package", "/etc/x"),
+        ("package", "a/../../x"),
+    ],
+)
+def test_nothing_is_written_outside_of_the_folder(magic: str, name: str) -> None:
+    with pytest.raises(UsageError, match=f"%%{magic} needs"):
+        part_path(magic, name, CIRCLE)
+
+
+def test_the_files_of_a_notebook_are_read_from_its_cells() -> None:
+    node = "my_robot_controller/my_robot_controller/a.py"
+    cells = [
+        "%%node a.py\nold",
+        "print(1)",
+        "%%node ../b.py\nx",
+        "  %%node a.py  \nnew\n\n",
+        "%%nodes a.py\nx",
+        "%%node",
+    ]
+    assert parts_of(cells, CIRCLE) == [Part(node, "new\n")]
+
+
+@pytest.mark.parametrize(
+    ("file", "start", "what"),
+    [
+        (None, "start", "cell"),
+        (None, None, "cell"),
+        ("start\n", "start", "cell"),
+        ("mine", "start", "file"),
+        ("mine", None, "file"),
+    ],
+)
+def test_a_file_counts_if_the_student_changed_it(file: str | None, start: str | None, what: str) -> None:
+    assert counts(file, start) == what

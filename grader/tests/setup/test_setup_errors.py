@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+import errno
+import subprocess
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+import pytest
+
+from grader.setup import machine, setup_errors
+
+HERE = Path("/nowhere/course/.venv")
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ("Error: [Errno 28] No space left on device", "The disk is full for /nowhere/course/.venv: free some space"),
+        ("  cause: failed to copy: No space left on device (os error 28)", "The disk is full for "),
+        ("Error: [Errno 30] Read-only file system: '/x'", "/.venv cannot be written to (Read-only file system): copy"),
+        ("Error: [Errno 13] Permission denied: '/x'", "/.venv cannot be written to (Permission denied): copy"),
+        ("OSError: [Errno 24] Too many open files", "`ulimit -n 4096`"),
+        ("BlockingIOError: [Errno 11] Resource temporarily unavailable", "cannot start more processes for you"),
+    ],
+)
+def test_what_an_installer_printed_is_one_sentence(said: str, told: str) -> None:
+    sentence = setup_errors.of_output(f"Collecting uv\n{said}\n", HERE)
+    assert sentence is not None
+    assert told in sentence
+    assert sentence.endswith(".")
+    assert "\n" not in sentence
+
+
+def test_a_disk_without_room_is_the_cause_whatever_was_printed(monkeypatch: pytest.MonkeyPatch) -> None:
+    said = "Error: Command '[...]' returned non-zero exit status 1."
+    assert setup_errors.of_output(said, HERE) is None
+    monkeypatch.setattr(setup_errors, "_FULL_MB", 10**9)
+    assert "The disk is full for /nowhere/course/.venv" in (setup_errors.of_output(said, HERE) or "")
+
+
+def test_words_of_a_missing_network_are_found() -> None:
+    assert setup_errors.offline("[Errno -3] Temporary failure in name resolution')") == (
+        "Temporary failure in name resolution"
+    )
+    assert setup_errors.offline("dns error: failed to lookup address information") == "failed to lookup address"
+    assert setup_errors.offline("ERROR: THESE PACKAGES DO NOT MATCH THE HASHES") is None
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EACCES, errno.EMFILE, errno.ENOMEM, errno.EAGAIN])
+def test_what_the_system_refuses_the_set_up_is_a_sentence(number: int) -> None:
+    code = "import sys; from grader.setup import refused\ndef main(): raise OSError({}, 'x', '/course')\n"
+    done = subprocess.run(
+        [sys.executable, "-c", code.format(number) + "sys.exit(refused.guarded(main))"],
+        cwd=Path(setup_errors.__file__).parents[2],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (3, "", 1), done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_a_full_disk_behind_standard_output_is_a_sentence() -> None:
+    code = "import sys; from grader.setup import refused; sys.exit(refused.guarded(lambda: print('x') or 0))"
+    root = Path(setup_errors.__file__).parents[2]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-c", code], cwd=root, stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert (done.returncode, done.stderr.count("\n")) == (3, 1), done.stderr
+    assert done.stderr.startswith("The disk is full: free some space there")
+
+
+def test_ctrl_c_says_how_to_go_on(capsys: pytest.CaptureFixture[str]) -> None:
+    def main() -> NoReturn:
+        raise KeyboardInterrupt
+
+    assert setup_errors.guarded(main) == 130
+    assert "The same command continues from here" in capsys.readouterr().err
+
+
+def test_a_machine_that_starts_no_process_says_nothing_about_its_pythons(monkeypatch: pytest.MonkeyPatch) -> None:
+    def check_output(*_: object, **__: object) -> NoReturn:
+        raise BlockingIOError(errno.EAGAIN, "x")
+
+    monkeypatch.setattr(subprocess, "check_output", check_output)
+    with pytest.raises(BlockingIOError):
+        machine.probe(sys.executable)

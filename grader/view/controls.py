@@ -1,0 +1,93 @@
+"""The input from a view: keys that drive while they are held, keys that turn, and buttons for the simulator."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from grader.turtlesim.programs.teleop_keys import Cancel, Drive, Key, Turn, keys
+
+if TYPE_CHECKING:
+    import socket
+
+    from grader.view.state import State
+    from grader.view.system import Ears
+
+BUTTONS = ("pause", "resume", "clear", "reset")
+ARROWS = {
+    "up": Drive(1.0, 0.0),
+    "down": Drive(-1.0, 0.0),
+    "left": Drive(0.0, 1.0),
+    "right": Drive(0.0, -1.0),
+}
+
+
+def together(held: list[str]) -> Drive:
+    """Return the drive command for all held arrow keys combined."""
+    drives = [ARROWS[key] for key in dict.fromkeys(held) if key in ARROWS]
+    return Drive(sum(drive.linear for drive in drives), sum(drive.angular for drive in drives))
+
+
+class Hands:
+    """Passes keys on to ROS and buttons on to the simulator. `state` contains the turtles."""
+
+    def __init__(self, ears: Ears, state: State, simulator: socket.socket | None) -> None:
+        self._ears = ears
+        self._state = state
+        self._simulator = simulator
+        self._driving: dict[object, str] = {}
+        """The turtle that each page drives."""
+        self._drivers: set[object] = set()
+
+    def held(self, page: object, turtle: str, keys: list[str]) -> None:
+        """Drive while keys are held; stop when they are released."""
+        topic = self._full(turtle)
+        if topic is None:
+            return
+        arrows = [key for key in keys if key in ARROWS]
+        if arrows:
+            self._driving[page] = topic
+            self._drivers.add(page)
+            self._ears.drive(topic, together(arrows))
+        elif self._driving.pop(page, None) is not None:
+            self._ears.drive(topic, Drive(0.0, 0.0))
+
+    def let_go(self, page: object) -> None:
+        """Stop the turtle that this page drives."""
+        topic = self._driving.pop(page, None)
+        if topic is not None:
+            self._ears.drive(topic, Drive(0.0, 0.0))
+
+    def gone(self, page: object) -> None:
+        """Forget a closed page. When the last page that drove a turtle is closed, the driving node leaves the graph."""
+        self.let_go(page)
+        if page in self._drivers:
+            self._drivers.discard(page)
+            if not self._drivers:
+                self._ears.leave()
+
+    def pressed(self, turtle: str, key: str) -> None:
+        """Turn towards the key, as seen from the key F, or stop turning."""
+        typed, _ = keys(key[:1])
+        if typed:
+            self.turn(turtle, typed[0])
+
+    def turn(self, turtle: str, key: Key) -> None:
+        """Handle a key that acts once when it is pressed, not while it is held."""
+        topic = self._full(turtle)
+        if topic is not None and isinstance(key, Turn | Cancel):
+            self._ears.drive(topic, key)
+
+    def request(self, what: str) -> None:
+        """Ask the simulator to pause, resume, clear or reset."""
+        if what in BUTTONS and self._simulator is not None:
+            # A simulator that is exiting no longer reads requests.
+            with suppress(OSError):
+                self._simulator.send(json.dumps(what).encode())
+
+    def _full(self, turtle: str) -> str | None:
+        """Return the turtle's full name, or None if there is no such turtle, since pages must not create topics."""
+        if turtle not in self._state.turtles:
+            return None
+        return f"{self._state.namespace.rstrip('/')}/{turtle}"
