@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Optional
 import typer
 
 from grader.authoring import cli as authoring
+from grader.book import cli as book
 from grader.classroom import cli as classroom
 from grader.common.interpreter import clean_own
 from grader.common.system_errors import refusal
@@ -172,6 +173,7 @@ setup.add_to(app)
 classroom.add_to(app)
 gradebook.add_to(app)
 authoring.add_to(app)
+book.add_to(app)
 
 
 def main() -> None:

@@ -6,12 +6,12 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.report.coloured_code import coloured
 from grader.report.plain import LONGEST_LINE, plain_line, size
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from grader.evidence.evidence import Evidence
+    from grader.report.coloured_code import Piece
     from grader.submission.where import Where
 
 AROUND = 4
@@ -21,9 +21,6 @@ MOST_COLOURED = 60_000
 
 NEWLINE = re.compile(r"\r\n|\r|\n")
 """The line endings that Python recognizes. str.splitlines recognizes more, so it would count lines differently."""
-
-Piece = tuple[str, str]
-"""A pair (class, text). The class is empty, or it is one that has a colour in the page's style sheet."""
 
 
 @dataclass(frozen=True)
@@ -72,41 +69,4 @@ def excerpt(evidence: Evidence, where: Where | None) -> Excerpt | None:
 
 def _coloured(text: str) -> list[list[Piece]]:
     """Return the pieces of each line of Python code, or an empty list if colouring would take too long."""
-    if len(text) > MOST_COLOURED:
-        return []
-    from pygments.lexers.python import PythonLexer
-
-    lines: list[list[Piece]] = [[]]
-    for kind, part in PythonLexer(stripnl=False, ensurenl=False).get_tokens(text):
-        for index, piece in enumerate(part.split("\n")):
-            if index:
-                lines.append([])
-            if piece:
-                lines[-1].append((_class(str(kind)), piece))
-    return [list(_joined(line)) for line in lines]
-
-
-def _class(token: str) -> str:
-    """Return the style sheet's class for a token type of pygments."""
-    for name, kinds in (
-        ("c", ("Token.Comment",)),
-        ("s", ("Token.Literal.String",)),
-        ("n", ("Token.Literal.Number",)),
-        ("k", ("Token.Keyword", "Token.Operator.Word")),
-        ("d", ("Token.Name.Function", "Token.Name.Class", "Token.Name.Decorator")),
-    ):
-        if token.startswith(kinds):
-            return name
-    return ""
-
-
-def _joined(line: list[Piece]) -> Iterator[Piece]:
-    """Join neighbouring pieces of the same class, so that the browser gets fewer elements."""
-    kind, text = "", ""
-    for each, part in line:
-        if each != kind and text:
-            yield kind, text
-            text = ""
-        kind, text = each, text + part
-    if text:
-        yield kind, text
+    return [] if len(text) > MOST_COLOURED else coloured(text)

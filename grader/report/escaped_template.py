@@ -16,16 +16,19 @@ if TYPE_CHECKING:
 ASSETS = Path(__file__).parent / "assets"
 
 
-def fill(template: str, values: Mapping[str, object]) -> str:
+def fill(template: str, values: Mapping[str, object], *folders: Path) -> str:
     """Return the text of a template with these values. Raises jinja2.UndefinedError if a value is missing."""
-    return compiled(template).render(values)
+    return compiled(template, *folders).render(values)
 
 
 @cache
-def compiled(template: str) -> Template:
-    """Return the compiled template. Compile it before forking a child process, because compiling is slow."""
+def compiled(template: str, *folders: Path) -> Template:
+    """Return the compiled template. Compile it before forking a child process, because compiling is slow.
+
+    Templates are searched in `folders`, and then in the assets of the reports.
+    """
     environment = Environment(
-        loader=FileSystemLoader(ASSETS),
+        loader=FileSystemLoader([*folders, ASSETS]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -1,0 +1,32 @@
+// A button next to each block of code. Of a terminal, it copies what is typed, without the prompt and the output.
+
+const SHOWN_MS = 2000;
+
+export function textOf(block) {
+  const typed = [...block.querySelectorAll("kbd")].map((each) => each.textContent);
+  if (block.classList.contains("console")) return typed.join("\n");
+  return block.querySelector("code").textContent;
+}
+
+export function addCopyButtons(root) {
+  // The clipboard is available only on this machine and with https.
+  if (!navigator.clipboard) return;
+  for (const block of root.querySelectorAll(".code")) {
+    if (!textOf(block)) continue;
+    const button = document.createElement("button");
+    button.type = "button";
+    button.className = "copy";
+    button.textContent = "Copy";
+    button.setAttribute("aria-label", block.classList.contains("console") ? "Copy the command" : "Copy the code");
+    button.addEventListener("click", async () => {
+      try {
+        await navigator.clipboard.writeText(textOf(block));
+        button.textContent = "Copied";
+      } catch {
+        button.textContent = "Not allowed";
+      }
+      setTimeout(() => { button.textContent = "Copy"; }, SHOWN_MS);
+    });
+    block.prepend(button);
+  }
+}

@@ -1,0 +1,86 @@
+// The search: all words must occur in a section. A word in a heading counts more than one in the text.
+
+const MOST = 8;
+const AROUND = 60;
+
+const words = (text) => text.toLowerCase().split(/\s+/).filter(Boolean);
+
+// The sections that have all words, the best first.
+export function find(index, query) {
+  const wanted = words(query);
+  if (wanted.length === 0) return [];
+  const found = [];
+  index.forEach((entry, place) => {
+    const title = entry.title.toLowerCase();
+    const text = entry.text.toLowerCase();
+    if (!wanted.every((word) => title.includes(word) || text.includes(word))) return;
+    const score = wanted.reduce((sum, word) => sum + (title.includes(word) ? 10 : 0) + Math.min(text.split(word).length - 1, 5), 0);
+    found.push({ entry, score, place });
+  });
+  found.sort((a, b) => b.score - a.score || a.place - b.place);
+  return found.slice(0, MOST).map((each) => each.entry);
+}
+
+// The text around the first word.
+export function excerpt(text, query) {
+  const at = Math.max(...words(query).map((word) => text.toLowerCase().indexOf(word)), 0);
+  const from = Math.max(at - AROUND, 0);
+  const part = text.slice(from, at + 2 * AROUND).trim();
+  return `${from > 0 ? "… " : ""}${part}${at + 2 * AROUND < text.length ? " …" : ""}`;
+}
+
+function result(entry, query, root) {
+  const link = document.createElement("a");
+  link.href = root + entry.page;
+  const place = document.createElement("span");
+  place.className = "place";
+  place.textContent = entry.lesson;
+  const title = document.createElement("b");
+  title.textContent = entry.title;
+  const text = document.createElement("span");
+  text.className = "excerpt";
+  text.textContent = excerpt(entry.text, query);
+  link.append(title, " ", place, text);
+  const item = document.createElement("li");
+  item.append(link);
+  return item;
+}
+
+export function addSearch(box, root) {
+  const input = box.querySelector("input");
+  const found = box.querySelector("#search-found");
+  let index = null;
+
+  async function show() {
+    const query = input.value;
+    if (!query.trim()) {
+      found.replaceChildren();
+      return;
+    }
+    try {
+      index ??= fetch(`${root}search.json`).then((answer) => answer.json());
+      const entries = find(await index, query);
+      if (query !== input.value) return;
+      const list = document.createElement(entries.length ? "ul" : "p");
+      if (entries.length) list.append(...entries.map((entry) => result(entry, query, root)));
+      else list.textContent = "No section has all of these words.";
+      found.replaceChildren(list);
+    } catch {
+      index = null;
+      found.textContent = "The search needs a web server.";
+    }
+  }
+
+  input.addEventListener("input", show);
+  box.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    input.value = "";
+    found.replaceChildren();
+    input.focus();
+  });
+  // A link to a section of the same page does not load another page.
+  found.addEventListener("click", (event) => {
+    if (event.target.closest("a")) found.replaceChildren();
+  });
+  box.hidden = false;
+}

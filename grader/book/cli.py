@@ -1,0 +1,39 @@
+"""The command `grader book`: the lessons as static pages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+PANEL = "Teach"
+Out = Annotated[Path, typer.Argument(help="The folder for the pages.", metavar="OUT")]
+
+
+def add_to(app: typer.Typer) -> None:
+    """Add this command to `app`."""
+    app.command(rich_help_panel=PANEL, epilog="Example: grader book build/book")(book)
+
+
+def book(
+    out: Out,
+    repository: Annotated[
+        str, typer.Option(help="The URL of your course's repository. Each page links to it.", metavar="URL")
+    ] = "",
+) -> None:
+    """Write the lessons as pages for a web server. They need no server of ours, and load nothing from elsewhere."""
+    from grader.book.site import write_book
+    from grader.common.words import count
+
+    amount = write_book(out, _checked(repository))
+    typer.echo(f"{count(amount, 'lesson')}: {out / 'index.html'}")
+
+
+def _checked(repository: str) -> str:
+    from grader.errors import UsageError
+
+    if repository and not repository.startswith(("https://", "http://")):
+        message = f"--repository needs a URL that begins with https://, not {repository!r}."
+        raise UsageError(message)
+    return repository

@@ -1,0 +1,144 @@
+"""`grader book`: the lessons as pages for a web server."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+from typer.testing import CliRunner
+
+from grader.book.lesson import lessons
+from grader.book.site import write_book
+from grader.cli import app
+from grader.errors import UsageError
+from grader.exercise.model import catalogue
+from grader.tests.book.served import served
+from grader.tests.browser import browser_or_reason, launched, violations
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from playwright.sync_api import Browser, Page
+
+CIRCLE = "03-circle-publisher/index.html"
+
+
+@pytest.fixture(scope="module")
+def book(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("book")
+    write_book(out, "https://git.example/course")
+    return out
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with launched(browser_or_reason()) as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def url(book: Path) -> Iterator[str]:
+    with served(book) as url:
+        yield url
+
+
+@pytest.fixture
+def requests() -> list[str]:
+    """What the tab has requested and what it has complained about."""
+    return []
+
+
+@pytest.fixture
+def page(browser: Browser, requests: list[str]) -> Iterator[Page]:
+    tab = browser.new_page(viewport={"width": 1280, "height": 900})
+    tab.on("request", lambda request: requests.append(request.url))
+    tab.on("console", lambda message: requests.append(message.text))
+    tab.on("pageerror", lambda error: requests.append(str(error)))
+    yield tab
+    tab.close()
+
+
+def test_every_step_has_a_page(book: Path) -> None:
+    contents = (book / "index.html").read_text("utf-8")
+    for name in catalogue():
+        assert (book / name / "index.html").is_file()
+        assert f'href="{name}/index.html"' in contents
+
+
+def test_all_links_inside_the_book_lead_somewhere(book: Path) -> None:
+    for page in book.rglob("*.html"):
+        text = page.read_text("utf-8")
+        anchors = set(re.findall(r'id="([^"]+)"', text))
+        for link in re.findall(r'(?:href|src)="([^"]+)"', text):
+            place, _, anchor = link.partition("#")
+            if "://" not in link:
+                target = (page.parent / place).resolve() if place else page
+                assert target.is_file(), f"{page}: {link}"
+                assert not anchor or place or anchor in anchors, f"{page}: {link}"
+
+
+def test_pages_contain_no_path_of_this_machine(book: Path) -> None:
+    for page in book.rglob("*.html"):
+        assert str(lessons()[0].folder.parent.parent) not in page.read_text("utf-8")
+
+
+def test_out_is_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "out"
+    file.touch()
+    with pytest.raises(UsageError, match="is a file"):
+        write_book(file)
+
+
+def test_the_repository_must_be_a_url(tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, ["book", str(tmp_path), "--repository", "javascript:alert(1)"])
+    assert isinstance(done.exception, UsageError)
+
+
+def test_the_page_loads_nothing_from_elsewhere(page: Page, url: str, requests: list[str]) -> None:
+    page.goto(url + CIRCLE)
+    page.get_by_role("link", name="The repository of this course").wait_for()
+    page.get_by_label("Search").fill("radius")
+    page.locator("#search-found li").first.wait_for()
+    assert [each for each in requests if not each.startswith(url)] == []
+
+
+def test_the_search_leads_to_a_section(page: Page, url: str) -> None:
+    page.goto(url + "index.html")
+    page.get_by_label("Search").press_sequentially("queue size create_publisher")
+    page.get_by_role("link", name="The parts you need").click()
+    page.wait_for_url(f"{url}{CIRCLE}#the-parts-you-need")
+    page.get_by_label("Search").fill("nobody wrote this")
+    page.get_by_text("No section has all of these words.").wait_for()
+    page.keyboard.press("Escape")
+    assert page.get_by_label("Search").input_value() == ""
+
+
+def test_copy_takes_what_is_typed(browser: Browser, url: str) -> None:
+    context = browser.new_context(permissions=["clipboard-read", "clipboard-write"])
+    tab = context.new_page()
+    tab.goto(url + CIRCLE)
+    tab.get_by_role("button", name="Copy the command").first.click()
+    tab.get_by_text("Copied").wait_for()
+    assert tab.evaluate("navigator.clipboard.readText()") == "ros2 topic info /turtle1/cmd_vel"
+    context.close()
+
+
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 360)])
+def test_axe_finds_nothing_and_nothing_is_cut(page: Page, url: str, scheme: str, width: int) -> None:
+    page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    page.set_viewport_size({"width": width, "height": 800})
+    for name in ("index.html", CIRCLE, "07-challenges/index.html"):
+        page.goto(url + name)
+        page.locator(".search").wait_for()
+        assert violations(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_a_printed_lesson_is_only_the_lesson(page: Page, url: str) -> None:
+    page.goto(url + CIRCLE)
+    page.emulate_media(media="print")
+    assert not page.get_by_label("Steps", exact=True).is_visible()
+    assert not page.locator(".copy").first.is_visible()
+    assert page.get_by_role("heading", level=1).is_visible()
