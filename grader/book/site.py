@@ -11,7 +11,7 @@ from grader.book.page import ASSETS, contents_page, lesson_page
 from grader.book.search import INDEX, search_index
 from grader.errors import UsageError
 from grader.report.escaped_template import ASSETS as REPORT_ASSETS
-from grader.report.files import not_written
+from grader.report.output_file import not_written
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
