@@ -182,7 +182,7 @@ class TurtlesimNode(Node):
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters as rclpy does, but reject invalid ones with the messages of turtlesim."""
-        return parameters.refusal(parameter_list) or super().set_parameters_atomically(parameter_list)
+        return parameters.refusal(self, parameter_list) or super().set_parameters_atomically(parameter_list)
 
     def _parameters_of_ours(self) -> list[Parameter]:
         ours: list[Parameter] = self.get_parameters([*parameters.CHANNELS, parameters.HOLONOMIC])

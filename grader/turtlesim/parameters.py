@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rcl_interfaces.msg import IntegerRange, ParameterDescriptor, SetParametersResult
+from rclpy.parameter import Parameter
 
 from grader.turtlesim.canvas import BACKGROUND
 
@@ -12,7 +13,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from rclpy.node import Node
-    from rclpy.parameter import Parameter
 
 CHANNELS = ("background_r", "background_g", "background_b")
 HOLONOMIC = "holonomic"
@@ -44,10 +44,37 @@ def declare(node: Node) -> None:
     every_nodes.description = "Start the ~/get_type_description service for this node."
 
 
-def refusal(parameters: Iterable[Parameter]) -> SetParametersResult | None:
-    """Reject a colour that is out of range, using rclcpp's message like turtlesim. rclpy's message is different."""
-    for parameter in parameters:
-        if parameter.name in CHANNELS and isinstance(parameter.value, int) and not 0 <= parameter.value <= 255:
-            reason = f"Parameter {{{parameter.name}}} doesn't comply with integer range."
-            return SetParametersResult(successful=False, reason=reason)
+def refusal(node: Node, parameters: Iterable[Parameter]) -> SetParametersResult | None:
+    """Return why these parameters cannot be set, as rclcpp says it, or None. The messages of rclpy are different.
+
+    Source: rclcpp/src/rclcpp/node_interfaces/node_parameters.cpp, in the order in which it examines a request.
+    """
+    given = list(parameters)
+    rules = (_undeclared_or_read_only, _undeclares, _does_not_fit)
+    reasons = (rule(node, parameter) for rule in rules for parameter in given)
+    reason = next(filter(None, reasons), None)
+    return SetParametersResult(successful=False, reason=reason) if reason is not None else None
+
+
+def _undeclared_or_read_only(node: Node, parameter: Parameter) -> str | None:
+    if not node.has_parameter(parameter.name):
+        return f"parameter '{parameter.name}' cannot be set because it was not declared"
+    if node.describe_parameter(parameter.name).read_only:
+        return f"parameter '{parameter.name}' cannot be set because it is read-only"
+    return None
+
+
+def _undeclares(_: Node, parameter: Parameter) -> str | None:
+    return "cannot undeclare a statically typed parameter" if parameter.type_ == Parameter.Type.NOT_SET else None
+
+
+def _does_not_fit(node: Node, parameter: Parameter) -> str | None:
+    name, old, new = parameter.name, node.get_parameter(parameter.name).type_, parameter.type_
+    if old != new:
+        return (
+            f"Wrong parameter type, parameter {{{name}}} is of type {{{old.name.lower()}}}, setting it to "
+            f"{{{new.name.lower()}}} is not allowed."
+        )
+    if name in CHANNELS and not 0 <= parameter.value <= 255:
+        return f"Parameter {{{name}}} doesn't comply with integer range."
     return None

@@ -65,7 +65,7 @@ def parameters() -> dict[str, Any]:
 
         names = rig.call(ListParameters, "/turtlesim/list_parameters").result.names
         described = rig.call(DescribeParameters, "/turtlesim/describe_parameters", names=names).descriptors
-        found = {
+        found: dict[str, Any] = {
             "names": sorted(names),
             "described": {
                 d.name: [
@@ -77,7 +77,11 @@ def parameters() -> dict[str, Any]:
                 for d in described
             },
             "refused": change("background_r", integer(999)),
-            "wrong type": change("background_r", ParameterValue(type=ParameterType.PARAMETER_STRING))[0],
+            "wrong type": change("background_r", ParameterValue(type=ParameterType.PARAMETER_STRING)),
+            "undeclared": change("nope", integer(1)),
+            "read-only": change("qos_overrides./parameter_events.publisher.depth", integer(1)),
+            "deleted": change("background_r", ParameterValue(type=ParameterType.PARAMETER_NOT_SET)),
+            "kept": rig.turtlesim.world.canvas.background,
             "accepted": change("background_r", integer(150)),
         }
         found["background"] = rig.turtlesim.world.canvas.background

@@ -105,7 +105,18 @@ def test_parameters_are_described_as_by_the_real_one(parameters: dict[str, Any])
 def test_a_colour_out_of_range_is_refused_in_the_same_words(parameters: dict[str, Any]) -> None:
     said = golden("param_set_out_of_range.stderr.txt")[0].removeprefix("Setting parameter failed: ")
     assert parameters["refused"] == [False, said]
-    assert not parameters["wrong type"]
+
+
+def test_other_refusals_have_the_words_of_rclcpp(parameters: dict[str, Any]) -> None:
+    depth = "qos_overrides./parameter_events.publisher.depth"
+    assert parameters["undeclared"] == [False, "parameter 'nope' cannot be set because it was not declared"]
+    assert parameters["read-only"] == [False, f"parameter '{depth}' cannot be set because it is read-only"]
+    assert parameters["deleted"] == [False, "cannot undeclare a statically typed parameter"]
+    assert parameters["wrong type"] == [
+        False,
+        "Wrong parameter type, parameter {background_r} is of type {integer}, setting it to {string} is not allowed.",
+    ]
+    assert parameters["kept"] == [69, 86, 255]
 
 
 def test_parameters_take_effect(parameters: dict[str, Any]) -> None:
