@@ -111,16 +111,16 @@ def check(
         check_writable(file)
     if recording:
         recording_format.check_free(recording)
-    asked, opened = _opened(submission, exercise)
+    requested, opened = _opened(submission, exercise)
     in_cell = bubblewrap.require() if confined else bubblewrap.usable()
     options = Options(in_cell, clock.value, seed, explain)
     with progress() as tell:
-        graded = grade(asked, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)))
+        graded = grade(requested, opened, options, tell, early=lambda failed: tell.keep_all(early(failed)))
         if recording:
             recording_format.save(recording, graded.evidence, graded.report.ros, graded.prefixes)
     from grader.learner import steps
 
-    following = steps.note(asked, opened.package_dir, graded.report)
+    following = steps.note(requested, opened.package_dir, graded.report)
     _show(graded.report, graded.evidence, json, image, html, verbose=verbose, following=following, changes=explain)
 
 
@@ -203,9 +203,9 @@ def main() -> None:
             typer.secho(f"grader: {refused}", err=True)
             _drop_unwritten()
             sys.exit(3)
-        told = f"grader: internal error of the grader, not of your work: {type(error).__name__}: {error}"
+        reported = f"grader: internal error of the grader, not of your work: {type(error).__name__}: {error}"
         typer.secho(
-            f"{told}\nPut GRADER_DEBUG=1 before the command to see where it happened. Please report it.", err=True
+            f"{reported}\nPut GRADER_DEBUG=1 before the command to see where it happened. Please report it.", err=True
         )
         sys.exit(3)
 

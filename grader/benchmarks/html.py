@@ -34,12 +34,12 @@ _PAGE = """
 import sys, time
 from pathlib import Path
 from rich.console import Console
-from grader.evidence import archive
+from grader.evidence import recording_format
 from grader.checks.exercises import load_exercise
 from grader.checks.judge import judge
 from grader.report.report import report_of
 from grader.report import json, terminal
-kept = archive.load(Path(sys.argv[1]), load_exercise)
+kept = recording_format.load(Path(sys.argv[1]), load_exercise)
 report = report_of(kept.evidence, judge(kept.evidence), kept.ros, {})
 json.to_json(report)
 terminal.render(report, Console(file=open("/dev/null", "w")))

@@ -41,18 +41,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("--times", type=int, default=20, help="repetitions; medians are printed")
     parser.add_argument("--submission", type=Path, default=course_folder().parent / "solutions/03-circle-publisher")
-    asked = parser.parse_args()
+    args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        bare = bare_costs(asked.submission, Path(folder))
+        bare = bare_costs(args.submission, Path(folder))
         kept = Path(folder) / "recording"
-        argv = [_GRADER, "check", str(asked.submission), "--recording", str(kept)]
+        argv = [_GRADER, "check", str(args.submission), "--recording", str(kept)]
         subprocess.run(argv, check=True, capture_output=True)
         evidence = recording_format.load(kept, load_exercise).evidence
     costs: dict[bool, list[tuple[float, float]]] = {True: [], False: []}
-    for turn in range(2 * (asked.times + 1)):
+    for turn in range(2 * (args.times + 1)):
         inside = reader._Child.inside = bool(turn % 2)
         before = _now()
-        _read(asked.submission, evidence)
+        _read(args.submission, evidence)
         if turn > 1:  # the first turn of each kind includes late imports
             after = _now()
             costs[inside].append((after[0] - before[0], after[1] - before[1]))

@@ -28,6 +28,6 @@ class Cause:
         """Return the cause with this place to look at, unless it already has one."""
         return self if self.where is not None else replace(self, where=where)
 
-    def mended_by(self, edits: tuple[Edit, ...]) -> Cause:
+    def fixed_by(self, edits: tuple[Edit, ...]) -> Cause:
         """Return the cause with the change that would fix it."""
         return replace(self, fix=edits)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
-from grader.classroom.engine import Finished, Tells
+from grader.classroom.engine import Finished, Progress
 from grader.classroom.task import set_aside
 
 if TYPE_CHECKING:
@@ -72,19 +72,19 @@ class _Run:
             one = self.waiting.popleft()
             task = self.order.task(one.found)
             self.running[task.name] = one
-            self.screen.tells(task.name, "Starting")
+            self.screen.show(task.name, "Starting")
             self.engine.start(task)
 
     def hear(self, event: Event) -> None:
         """Handle an event of a task."""
         name = event.task.name
-        if isinstance(event, Tells):
-            self.screen.tells(name, event.text)
+        if isinstance(event, Progress):
+            self.screen.show(name, event.text)
         elif isinstance(event, Finished):
             self._keep(name, event.done)
         elif self.failures[name] + 1 < TRIES:
             self.failures[name] += 1
-            self.screen.tells(name, "Its worker was lost. It will be tried again later")
+            self.screen.show(name, "Its worker was lost. It will be tried again later")
             self.waiting.append(self.running.pop(name))
         else:
             self._keep(name, set_aside(event.task, _in_words(event.why)))
@@ -98,7 +98,7 @@ class _Run:
         self.graded[name] = result
         if broken and self.failures[name] < TRIES:
             self.again[name] = one
-            self.screen.tells(name, "It could not be judged. It will be tried again later")
+            self.screen.show(name, "It could not be judged. It will be tried again later")
         else:
             self.screen.finished(result)
 

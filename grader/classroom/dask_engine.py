@@ -87,7 +87,7 @@ class DaskEngine:
         self._ended: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._threads: dict[str, int] = {}
         self._looked = 0.0
-        self._last_seen = time.monotonic()
+        self._last_heard_from = time.monotonic()
 
     def __enter__(self) -> DaskEngine:  # noqa: PYI034 - typing.Self is Python 3.11's
         self._look()
@@ -164,8 +164,8 @@ class DaskEngine:
             )
             raise MachineError(message) from error
         if self._threads:
-            self._last_seen = time.monotonic()
-        elif time.monotonic() - self._last_seen > WORKERS_S:
+            self._last_heard_from = time.monotonic()
+        elif time.monotonic() - self._last_heard_from > WORKERS_S:
             message = (
                 f"Dask has had no worker for {WORKERS_S:.0f} s: start one with `python -I -m dask worker HOST:PORT`."
             )

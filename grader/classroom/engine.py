@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Tells:
+class Progress:
     """The current state of a task, in words."""
 
     task: Task
@@ -35,7 +35,7 @@ class Died:
     why: str
 
 
-Event = Tells | Finished | Died
+Event = Progress | Finished | Died
 
 
 class Engine(Protocol):

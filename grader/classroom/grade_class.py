@@ -85,7 +85,7 @@ def grade_found(
     with results.opened(request.out) as folder:
         tell(f"Reading {count(len(found), 'submission')}")
         kept, todo = sort_out(order, folder)
-        say(_told(kept, todo))
+        say(_reported(kept, todo))
         if beside:
             say(f"Ignored, because these are neither folders nor archives: {a_list(beside)}.")
         graded: list[Result] = []
@@ -144,7 +144,7 @@ def _engine(request: Request, *, local: bool) -> Engine:
     return DaskEngine(request.engine.removeprefix(DASK), request.jobs)
 
 
-def _told(kept: Sequence[Result], todo: Sequence[Todo]) -> str:
+def _reported(kept: Sequence[Result], todo: Sequence[Todo]) -> str:
     reasons = Counter(one.why for one in todo)
     why = ", ".join(f"{amount} {reason}" for reason, amount in reasons.most_common())
     before = f"{len(kept)} graded before, " if kept else ""

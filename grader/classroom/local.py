@@ -9,7 +9,7 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.classroom.engine import Died, Event, Finished, Tells
+from grader.classroom.engine import Died, Event, Finished, Progress
 from grader.classroom.worker import Worker
 from grader.errors import MachineError
 
@@ -119,7 +119,7 @@ class LocalEngine:
         if kind == "now":
             busy.waits = what == "waits"
             return None
-        return Tells(busy.task, str(what))
+        return Progress(busy.task, str(what))
 
     def _lost(self, worker: Worker, why: str) -> Died:
         busy = self._busy.pop(worker)

@@ -33,7 +33,7 @@ Name = tuple[str, str]
 class Screen(Protocol):
     """An observer of a run."""
 
-    def tells(self, name: Name, text: str) -> None:
+    def show(self, name: Name, text: str) -> None:
         """Show what is being done with a submission."""
 
     def finished(self, result: Result) -> None:
@@ -78,7 +78,7 @@ class Lines:
         self._amount, self._several, self._done = amount, several, 0
         self._begun = time.monotonic()
 
-    def tells(self, name: Name, text: str) -> None:
+    def show(self, name: Name, text: str) -> None:
         """Print nothing, because one line for each step would be too much."""
 
     def finished(self, result: Result) -> None:
@@ -98,7 +98,7 @@ class Table:
         self._tones: list[str] = []
         self._begun = time.monotonic()
 
-    def tells(self, name: Name, text: str) -> None:
+    def show(self, name: Name, text: str) -> None:
         """Show what is being done with a submission."""
         since = self._now[name][1] if name in self._now else time.monotonic()
         self._now = {**self._now, name: (text, since)}

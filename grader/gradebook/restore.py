@@ -30,7 +30,7 @@ class RestoreCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
                 cell.name: (_metadata(cell, points.get(cell.name), solution=cell.name in solutions), cell.source)
                 for cell in notebook.source_cells
             }
-        seen: set[str] = set()
+        observed: set[str] = set()
         cells = []
         for cell in nb.cells:
             name = _name(cell)
@@ -38,13 +38,13 @@ class RestoreCells(NbGraderPreprocessor):  # type: ignore[misc, unused-ignore]
                 cell.get("metadata", {}).pop("nbgrader", None)
                 cells.append(cell)
                 continue
-            seen.add(name)
+            observed.add(name)
             metadata, source = known[name]
             cells.append(_cell(metadata, source if metadata["nbgrader"]["locked"] else cell.source))
         missing = [
             _cell(metadata, source)
             for name, (metadata, source) in known.items()
-            if name not in seen and metadata["nbgrader"]["locked"]
+            if name not in observed and metadata["nbgrader"]["locked"]
         ]
         # The cell that loads the magics comes first, and cells with points come last.
         nb.cells = [

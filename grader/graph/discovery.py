@@ -124,13 +124,13 @@ class Settling:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._begun = self._changed = time.monotonic()
-        self._seen: object = None
+        self._observed: object = None
 
     def observe(self) -> None:
         """Look at the graph, and note whether it has changed since the last look."""
         graph = _graph(self._node)
-        if graph != self._seen:
-            self._seen, self._changed = graph, time.monotonic()
+        if graph != self._observed:
+            self._observed, self._changed = graph, time.monotonic()
 
     def settle(self, enough: Callable[[], bool] = lambda: False, deadline_s: float | None = None) -> bool:
         """Wait until nothing new has arrived for 0.2 s and all participants on this machine have sent their data.

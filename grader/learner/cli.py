@@ -43,7 +43,7 @@ def start(
     from grader.learner import steps
 
     begun = steps.start(step, workspace, student=student, fresh=fresh)
-    typer.echo(steps.told(begun))
+    typer.echo(steps.begin_message(begun))
 
 
 def hint(

@@ -52,7 +52,7 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
     return Begun(exercise, started, root)
 
 
-def told(begun: Begun) -> str:
+def begin_message(begun: Begun) -> str:
     """Return the text that `start` prints: what was added, what was left unchanged, and what to type next."""
     started = begun.started
     lines = [f"{begun.exercise.id}: {begun.exercise.title}, in {started.folder}"]

@@ -39,15 +39,15 @@ def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
     console = Console(highlight=False)
     options = Options(in_cell=bubblewrap.usable())
     with single_keys() as read_key, closing(Events(read_key)) as events:
-        told = ""
+        notice = ""
         while True:
             screen = _Screen(exercise, folder, workspace, options, console)
             events.watch(folder)
             with closing(screen.watched):
-                begun = screen.show(events, told)
+                begun = screen.show(events, notice)
             if begun is None:
                 return
-            exercise, folder, told = begun.exercise, begun.started.folder, steps.told(begun)
+            exercise, folder, notice = begun.exercise, begun.started.folder, steps.begin_message(begun)
 
 
 class _Screen:
@@ -61,12 +61,12 @@ class _Screen:
         self._workspace = workspace
         self._console = console
 
-    def show(self, events: Events, told: str) -> steps.Begun | None:
+    def show(self, events: Events, notice: str) -> steps.Begun | None:
         """Show verdicts until the learner quits or goes on. Return the step to continue with, or None to quit.
 
         The first verdict clears the screen. `told` is printed below it.
         """
-        self._grade(told)
+        self._grade(notice)
         for happened in events:
             if happened.kind == "saved":
                 if self.watched.changed():
@@ -85,7 +85,7 @@ class _Screen:
                 return None
         return None
 
-    def _grade(self, told: str = "") -> None:
+    def _grade(self, notice: str = "") -> None:
         if self._console.is_terminal:
             self._console.clear()
         try:
@@ -94,12 +94,12 @@ class _Screen:
         except GraderError as error:
             self._say(str(error))
         else:
-            self._render(graded.report, len(told.splitlines()))
+            self._render(graded.report, len(notice.splitlines()))
             following = steps.note(self._exercise, self.watched.folder, graded.report, self._workspace)
             if following:
                 self._say(following)
-        if told:
-            self._say(f"\n{told}")
+        if notice:
+            self._say(f"\n{notice}")
         self._say(f"\nWatching {self.watched.folder}   {KEYS if self._console.is_terminal else ''}".rstrip())
 
     def _render(self, report: Report, more: int) -> None:
@@ -112,10 +112,10 @@ class _Screen:
     def _hint(self) -> None:
         # If the progress cannot be written, watching continues.
         try:
-            told = hints.hint(self._exercise.id, self._workspace)
+            notice = hints.hint(self._exercise.id, self._workspace)
         except GraderError as error:
-            told = str(error)
-        self._console.print(told, markup=False, soft_wrap=not self._console.is_terminal)
+            notice = str(error)
+        self._console.print(notice, markup=False, soft_wrap=not self._console.is_terminal)
 
     def _next(self) -> steps.Begun | None:
         try:

@@ -58,11 +58,11 @@ def _details(student: str, report: Report) -> str:
             "\N{INFORMATION SOURCE}" if outcome.advice and outcome.status is Status.FAILED else _SIGNS[outcome.status]
         )
         points = f"{outcome.points:g}/{outcome.max:g}" if outcome.max else ""
-        lines.append(f"| {sign} | {_text(outcome.title)} | {points} | {_told(outcome)} |")
+        lines.append(f"| {sign} | {_text(outcome.title)} | {points} | {_reported(outcome)} |")
     return "\n".join(lines) + "\n"
 
 
-def _told(outcome: Outcome) -> str:
+def _reported(outcome: Outcome) -> str:
     finding = outcome.finding
     if outcome.status is Status.PASSED:
         return ""

@@ -30,11 +30,11 @@ _TEMPORARY = ".building-"
 _LOG_LINES = 15
 
 
-def _say_nothing(_: str) -> None:
+def _report_nothing(_: str) -> None:
     """Discard the message, because nobody reads it."""
 
 
-def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _say_nothing) -> installation.Ros:
+def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing) -> installation.Ros:
     """Return this ROS 2 with the turtlesim interfaces added. Build them first if necessary (see `ensure`).
 
     Raises:
@@ -43,7 +43,7 @@ def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _say_not
     return replace(ros, underlay=ensure(ros, tell))
 
 
-def ensure(ros: installation.Ros, tell: Callable[[str], None] = _say_nothing) -> Path | None:
+def ensure(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing) -> Path | None:
     """Return the prefix of our turtlesim, or None if this ROS 2 has its own. Build our turtlesim first if necessary.
 
     A build takes about ten seconds and passes its progress to `tell` line by line. If there is a build already, this

@@ -104,11 +104,11 @@ def _check_qos(node: Node) -> Examination:
 
     found = Examination("middleware")
     for topic, _, _, fits, reason in _pairs(node):
-        told = reason.partition(": ")[2] or reason
+        reported = reason.partition(": ")[2] or reason
         if fits == QoSCompatibility.WARNING:
-            found.warnings.append(f"QoS compatibility warning found on topic '{topic}': {told}")
+            found.warnings.append(f"QoS compatibility warning found on topic '{topic}': {reported}")
         elif fits == QoSCompatibility.ERROR:
-            found.errors.append(f"QoS compatibility error found on topic '{topic}': {told}")
+            found.errors.append(f"QoS compatibility error found on topic '{topic}': {reported}")
     return found
 
 

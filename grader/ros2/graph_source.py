@@ -20,7 +20,7 @@ def look(args: argparse.Namespace) -> Look:
         Ros2Error: the node could not be created.
     """
     if not getattr(args, "no_daemon", False):
-        answer = client.ask("look")
+        answer = client.request("look")
         if answer is not None:
             return from_dict(answer)
         client.start_for_later()

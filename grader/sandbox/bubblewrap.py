@@ -224,17 +224,17 @@ def _disk(view: View) -> list[str]:
     command += [word for parent in parents for word in ("--dir", str(parent))]
     # Visible parts of a hidden folder are added after the folder was emptied.
     within = {path: folder for path in shown for folder in view.hidden if path.is_relative_to(folder)}
-    command += [word for path in shown if path not in within for word in _seen(path)]
+    command += [word for path in shown if path not in within for word in _observed(path)]
     command += [word for folder in view.hidden for word in ("--tmpfs", str(folder))]
     for path, folder in within.items():
         inner = [parent for parent in reversed(path.parents) if parent.is_relative_to(folder) and parent != folder]
         command += [word for parent in inner for word in ("--dir", str(parent))]
-        command += _seen(path)
+        command += _observed(path)
     command += [word for folder in view.hidden for word in ("--remount-ro", str(folder))]
     return [*command, "--dev", "/dev"]
 
 
-def _seen(path: Path) -> tuple[str, str, str]:
+def _observed(path: Path) -> tuple[str, str, str]:
     return "--ro-bind", str(path), str(path)
 
 

@@ -131,7 +131,7 @@ def look(
     return python, machine.missing_of_python(python, version, newer, refused) + tools
 
 
-def tell_lacks(needs: Sequence[Need], why: str) -> bool:
+def report_missing(needs: Sequence[Need], why: str) -> bool:
     """Print what the system lacks, and `why` it was not installed. Return whether the set-up must stop."""
     root = os.getuid() == 0
     manager = package_managers.find_manager(os.environ.get("PATH", ""))
@@ -171,11 +171,11 @@ def read_arguments(arguments: Sequence[str]) -> argparse.Namespace:
     """Parse the arguments: `parts`, which is a name in PARTS, and `python`, which defaults to None."""
     parser = argparse.ArgumentParser(prog="python3 -m grader.setup.bootstrap", description=__doc__.splitlines()[0])
     parser.add_argument("parts", choices=list(PARTS), help="what .venv is for; other parts in it are kept")
-    parser.add_argument("--python", type=asked_python, help="the Python for .venv: a name or a path")
+    parser.add_argument("--python", type=requested_python, help="the Python for .venv: a name or a path")
     return parser.parse_args(arguments)
 
 
-def asked_python(name: str) -> machine.Python:
+def requested_python(name: str) -> machine.Python:
     """Return the interpreter with this name. Raises ArgumentTypeError if it does not run."""
     python = machine.probe(shutil.which(name) or name)
     if python is None:
@@ -186,7 +186,7 @@ def asked_python(name: str) -> machine.Python:
 
 def main(arguments: Sequence[str]) -> int:
     """Bring .venv up to date. Return the exit code."""
-    asked = read_arguments(arguments)
+    requested = read_arguments(arguments)
     ros = machine.sourced_ros(os.environ, VENV)
     problem = machine.platform_problem(platform.system(), platform.machine(), platform.libc_ver(), ros)
     if problem:
@@ -194,7 +194,7 @@ def main(arguments: Sequence[str]) -> int:
         return MACHINE_BROKEN
     with (ROOT / "requirements.lock").open() as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # A second `make` waits for the first one.
-        return set_up(PARTS[asked.parts], ros, asked.python)
+        return set_up(PARTS[requested.parts], ros, requested.python)
 
 
 def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional[machine.Python]) -> int:
@@ -209,7 +209,7 @@ def set_up(parts: List[str], ros: Optional[machine.SourcedRos], wanted: Optional
     if any(unfinished or not need.lost for need in needs):
         why = provide(needs, os.environ, say)
         python, needs = look(ros, wanted, parts, made=made)
-    if tell_lacks(needs, why):
+    if report_missing(needs, why):
         return MACHINE_BROKEN
 
     if not unfinished:

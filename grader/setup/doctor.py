@@ -47,7 +47,7 @@ class Line:
     """The result of one test. The state `advice` does not prevent grading; `broken` must be fixed before grading."""
 
     subject: str
-    seen: str
+    observed: str
     state: Literal["ok", "advice", "broken"] = "ok"
     todo: str = ""
 
@@ -56,8 +56,8 @@ def run_doctor(env: Mapping[str, str] = os.environ, tell: Callable[[str], None] 
     """Return all lines, each one after the lines that it depends on. `tell` is called if a test takes a long time."""
     lines = [look_at_system(), look_at_python(), *look_at_set_up(env), *look_at_tools(env), look_at_colcon()]
     lines += [look_at_disk(xdg.cache()), look_at_memory(Path("/proc/meminfo").read_text(encoding="ascii"))]
-    seen, todo = shares()
-    lines.append(Line("shares", seen, "advice" if todo else "ok", todo))
+    observed, todo = shares()
+    lines.append(Line("shares", observed, "advice" if todo else "ok", todo))
     sandbox_line = look_at_sandbox()
     confined = sandbox_line.state == "ok"
     lines.append(sandbox_line)
@@ -87,7 +87,7 @@ def render(lines: Iterable[Line], console: Console) -> None:
     styles = {"ok": "green", "advice": "yellow", "broken": "bold red"}
     for line in lines:
         console.print(f"{line.state:<8}", style=styles[line.state], end="", highlight=False)
-        console.print(f"{line.subject:<12}{line.seen}", markup=False, highlight=False, soft_wrap=True)
+        console.print(f"{line.subject:<12}{line.observed}", markup=False, highlight=False, soft_wrap=True)
         if line.todo:
             console.print(f"{'':<20}-> {line.todo}", markup=False, highlight=False, soft_wrap=True)
 
@@ -97,17 +97,17 @@ def render(lines: Iterable[Line], console: Console) -> None:
 
 def look_at_system() -> Line:
     """Return a line with the kernel, the machine and the distribution."""
-    seen = f"{_distribution()}, {platform.system()} on {platform.machine()}, {os.cpu_count()} cores"
-    return Line("system", seen)
+    observed = f"{_distribution()}, {platform.system()} on {platform.machine()}, {os.cpu_count()} cores"
+    return Line("system", observed)
 
 
 def look_at_python() -> Line:
     """Return a line with this interpreter, and whether the course supports it."""
-    seen = f"CPython {platform.python_version()}, {Path(sys.executable).parent}"
+    observed = f"CPython {platform.python_version()}, {Path(sys.executable).parent}"
     if machine.OLDEST <= sys.version_info[:2] <= machine.NEWEST:
-        return Line("Python", seen)
+        return Line("Python", observed)
     versions = f"3.{machine.OLDEST[1]} to 3.{machine.NEWEST[1]}"
-    return Line("Python", seen, "broken", f"ROS 2 Jazzy needs Python {versions}: make demo PYTHON=python3.12")
+    return Line("Python", observed, "broken", f"ROS 2 Jazzy needs Python {versions}: make demo PYTHON=python3.12")
 
 
 def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None) -> Iterator[Line]:
@@ -127,8 +127,8 @@ def look_at_set_up(env: Mapping[str, str], stamp: bootstrap.Stamp | None = None)
         todo = f"source {stamp.ros}/setup.bash; or make demo, for the course's own ROS 2"
         yield Line("set-up", f"made for {made_for}, which is not sourced", "broken", todo)
     else:
-        seen = f"made for {made_for}, and {now} is sourced and used"
-        yield Line("set-up", seen, "advice", "nothing, if the lines below are ok; else make demo, with it sourced")
+        observed = f"made for {made_for}, and {now} is sourced and used"
+        yield Line("set-up", observed, "advice", "nothing, if the lines below are ok; else make demo, with it sourced")
 
 
 def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
@@ -148,9 +148,9 @@ def look_at_tools(env: Mapping[str, str]) -> Iterator[Line]:
     # Each optional program has its own line elsewhere, which says what does not work without it.
     needs = [need for need in needs if not need.lost]
     if needs:
-        seen = "missing: " + "; ".join(need.what for need in needs)
+        observed = "missing: " + "; ".join(need.what for need in needs)
         manager = package_managers.find_manager(env.get("PATH", ""))
-        yield Line("programs", seen, "broken", package_managers.command(manager, needs, root=os.getuid() == 0))
+        yield Line("programs", observed, "broken", package_managers.command(manager, needs, root=os.getuid() == 0))
 
 
 def look_at_colcon() -> Line:
@@ -168,12 +168,12 @@ def look_at_disk(folder: Path) -> Line:
     """Return a line with the free space on the disk that holds the built interfaces."""
     there = next(path for path in [folder, *folder.parents] if path.is_dir())
     free = shutil.disk_usage(there).free
-    seen = f"{free / GIB:.1f} GiB free for {folder}"
+    observed = f"{free / GIB:.1f} GiB free for {folder}"
     if free >= LITTLE_DISK:
-        return Line("disk", seen)
+        return Line("disk", observed)
     return Line(
         "disk",
-        seen,
+        observed,
         "broken" if free < LEAST_DISK else "advice",
         "free some space; XDG_CACHE_HOME chooses another folder",
     )
@@ -184,10 +184,10 @@ def look_at_memory(meminfo: str) -> Line:
     kib = next((int(line.split()[1]) for line in meminfo.splitlines() if line.startswith("MemAvailable:")), None)
     if kib is None:
         return Line("memory", "unknown: the system does not report it")
-    seen = f"{kib * 1024 / GIB:.1f} GiB available"
+    observed = f"{kib * 1024 / GIB:.1f} GiB available"
     if kib * 1024 >= LITTLE_MEMORY:
-        return Line("memory", seen)
-    return Line("memory", seen, "advice", "close other programs, or grade one submission at a time")
+        return Line("memory", observed)
+    return Line("memory", observed, "advice", "close other programs, or grade one submission at a time")
 
 
 def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:

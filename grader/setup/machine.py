@@ -106,16 +106,16 @@ def platform_problem(system: str, machine: str, libc: Tuple[str, str], ros: Opti
     if system == "Linux" and ros:
         return ""
     if system != "Linux" or machine != "x86_64":
-        seen = "{} on {}".format({"Darwin": "macOS"}.get(system, system or "unknown"), machine or "unknown")
+        observed = "{} on {}".format({"Darwin": "macOS"}.get(system, system or "unknown"), machine or "unknown")
     elif libc[0] != "glibc":
-        seen = "a Linux with a C library other than glibc"
+        observed = "a Linux with a C library other than glibc"
     elif tuple(int(number) for number in libc[1].split(".")[:2]) < (2, 28):
-        seen = f"a Linux with glibc {libc[1]}"
+        observed = f"a Linux with glibc {libc[1]}"
     else:
         return ""
     return (
         "The course installs ROS 2 from packages for Linux on x86-64 with glibc 2.28 or newer (Debian 10, "
-        f"Ubuntu 20.04 or later). This is {seen}.\nYou can use one of these instead:\n{CONTAINER}"
+        f"Ubuntu 20.04 or later). This is {observed}.\nYou can use one of these instead:\n{CONTAINER}"
     )
 
 
@@ -177,12 +177,12 @@ def for_ros(python: Python, ros: SourcedRos) -> Python:
 def find_pythons(path: str) -> Iterator[Python]:
     """Yield the interpreters on PATH and in the system's folders: first `python3`, then the others from the newest."""
     folders = list(dict.fromkeys([*filter(None, path.split(os.pathsep)), *SYSTEM_PATH]))
-    seen = set()
+    observed = set()
     for name in ["python3", *(f"python3.{minor}" for minor in range(NEWEST[1], OLDEST[1] - 1, -1))]:
         for executable in [Path(folder, name) for folder in folders]:
             python = probe(str(executable)) if os.access(str(executable), os.X_OK) else None
-            if python and python.path not in seen:
-                seen.add(python.path)
+            if python and python.path not in observed:
+                observed.add(python.path)
                 yield python
 
 

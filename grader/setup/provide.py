@@ -80,6 +80,6 @@ def _run(command: Sequence[str], program: str, env: Mapping[str, str]) -> str:
     if done.returncode == 0:
         return ""
     lines = [line.strip() for line in done.stdout.decode("utf-8", "replace").splitlines()]
-    told = [line for line in lines if _ERROR.match(line)] or list(filter(None, lines))[-1:]
-    words = "; ".join(line.rstrip(".?") for line in list(dict.fromkeys(told))[:TOLD_LINES])
+    reported = [line for line in lines if _ERROR.match(line)] or list(filter(None, lines))[-1:]
+    words = "; ".join(line.rstrip(".?") for line in list(dict.fromkeys(reported))[:TOLD_LINES])
     return f"{program} failed: {words or 'it gave no reason'}"

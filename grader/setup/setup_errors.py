@@ -98,8 +98,8 @@ def _of_number(number: int, where: Optional[Path]) -> str:
         room = f"free some space there ({NEEDED_MB} MB for a learner); {AGAIN}"
         return sentence(number, str(where or ""), room)
     if number in _WRITE:
-        told = f"{where} cannot be written to ({os.strerror(number)})"
-        return f"{told}: copy the course's folder to where you may write, such as your home, and try again there."
+        reported = f"{where} cannot be written to ({os.strerror(number)})"
+        return f"{reported}: copy the course's folder to where you may write, such as your home, and try again there."
     return sentence(number, str(where or ""))
 
 

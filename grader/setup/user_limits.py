@@ -21,9 +21,9 @@ def shares() -> tuple[str, str]:
         os.close(reads)
         os.close(writes)
     unlimited = processes == resource.RLIM_INFINITY
-    seen = f"{files} open files, {'any number of' if unlimited else processes} processes"
+    observed = f"{files} open files, {'any number of' if unlimited else processes} processes"
     if files < LEAST_FILES:
-        return seen, f"ulimit -n {4 * LEAST_FILES}"
+        return observed, f"ulimit -n {4 * LEAST_FILES}"
     if not unlimited and processes < LEAST_PROCESSES:
-        return seen, f"ulimit -u {4 * LEAST_PROCESSES}"
-    return seen if large else f"{seen}; pipes stay small while other programs use many", ""
+        return observed, f"ulimit -u {4 * LEAST_PROCESSES}"
+    return observed if large else f"{observed}; pipes stay small while other programs use many", ""

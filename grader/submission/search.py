@@ -108,8 +108,10 @@ def _is_folder_behind(name: str, folder: int) -> bool:
 
 
 def _several(packages: list[str], name: str) -> str:
-    ways = [shown(posixpath.join(name, package)) for package in packages]
-    return f"{shown(name)} holds {len(ways)} packages: {_listed(ways)}. Give the one to grade, for example {ways[0]}."
+    paths = [shown(posixpath.join(name, package)) for package in packages]
+    return (
+        f"{shown(name)} holds {len(paths)} packages: {_listed(paths)}. Give the one to grade, for example {paths[0]}."
+    )
 
 
 def _none(search: _Search, root: int, name: str) -> str:

@@ -78,9 +78,9 @@ def grade_here(case: Case, clock: ClockChoice, folder: Path, builds: Builds) -> 
         submission = open_submission(given) if exercise.package else open_answers(given)
     except UsageError as error:
         return Graded(2, "", str(error), None)
-    told: list[str] = []
-    report = grade(exercise, submission, Options(bubblewrap.usable(), clock), told.append, build=builds).report
+    reported: list[str] = []
+    report = grade(exercise, submission, Options(bubblewrap.usable(), clock), reported.append, build=builds).report
     page = Console(file=io.StringIO(), width=120)
     terminal.render(report, page)
     assert isinstance(page.file, io.StringIO)
-    return Graded(report.exit_code, page.file.getvalue(), "\n".join(told), to_data(report))
+    return Graded(report.exit_code, page.file.getvalue(), "\n".join(reported), to_data(report))

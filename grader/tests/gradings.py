@@ -121,24 +121,24 @@ def check_report(case: Case, graded: Graded) -> None:
 
 def compare(case: Case, graded: Graded) -> None:
     outcomes = graded.outcomes()
-    told = all_told(graded)
+    reported = all_reported(graded)
     not_passed = {id_: outcome["status"] for id_, outcome in outcomes.items() if outcome["status"] != "passed"}
     expected = {**dict.fromkeys((*case.failed, *case.advice), "failed"), **dict.fromkeys(case.skipped, "skipped")}
-    assert not_passed == expected, told
-    assert graded.exit_code == EXIT_CODES[case.result], told
-    assert {id_: outcomes[id_]["diagnosis"] for id_ in case.diagnosis} == dict(case.diagnosis), told
-    assert {id_: place_of(outcomes[id_]) for id_ in case.where} == dict(case.where), told
+    assert not_passed == expected, reported
+    assert graded.exit_code == EXIT_CODES[case.result], reported
+    assert {id_: outcomes[id_]["diagnosis"] for id_ in case.diagnosis} == dict(case.diagnosis), reported
+    assert {id_: place_of(outcomes[id_]) for id_ in case.where} == dict(case.where), reported
     for id_, texts in case.says.items():
         said = " ".join(str(outcomes[id_][key]) for key in ("seen", "expected", "cause"))
-        assert [text for text in texts if text not in said] == [], told
+        assert [text for text in texts if text not in said] == [], reported
     assert graded.report is not None
     if case.points is not None:
         assert graded.report["points"] == pytest.approx(case.points)
     if case.clock:
-        assert graded.report["clock"]["used"] == case.clock, told
+        assert graded.report["clock"]["used"] == case.clock, reported
 
 
-def all_told(graded: Graded) -> str:
+def all_reported(graded: Graded) -> str:
     """What did not pass, a line each, for whoever reads the failed test."""
     keys = ("id", "diagnosis", "seen", "expected", "cause")
     lines = [
@@ -162,4 +162,6 @@ def check_clocks_agree(case: Case, gradings: Gradings) -> None:
         {id_: tuple(outcome[key] for key in keys) for id_, outcome in gradings.of(case, clock).outcomes().items()}
         for clock in ("auto", "wall")
     )
-    assert auto == wall, f"auto:\n{all_told(gradings.of(case, 'auto'))}\nwall:\n{all_told(gradings.of(case, 'wall'))}"
+    assert auto == wall, (
+        f"auto:\n{all_reported(gradings.of(case, 'auto'))}\nwall:\n{all_reported(gradings.of(case, 'wall'))}"
+    )

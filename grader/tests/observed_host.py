@@ -91,17 +91,17 @@ class Host:
             env={**SOURCED_ENV, "PATH": "/usr/local/bin:/usr/bin:/bin", "LANG": "C.UTF-8"},
         )
         try:
-            told = json.loads(done.stdout)
+            reported = json.loads(done.stdout)
         except ValueError:
             said = done.stderr.decode("utf-8", "replace")
-            told = {"exit_code": None, "stdout": "", "stderr": said, "processes": [], "sockets": []}
+            reported = {"exit_code": None, "stdout": "", "stderr": said, "processes": [], "sockets": []}
         return Left(
-            told["exit_code"],
-            told["stdout"],
-            told["stderr"],
+            reported["exit_code"],
+            reported["stdout"],
+            reported["stderr"],
             frozenset(self._files() - before),
-            tuple(told["processes"]),
-            tuple(told["sockets"]),
+            tuple(reported["processes"]),
+            tuple(reported["sockets"]),
             time.monotonic() - begun,
         )
 
@@ -184,8 +184,8 @@ def inside(command: list[str]) -> None:
         own = _sockets_of(os.getpid())
         listening = sorted(_listening() - own)
         alive = [line for pid, line in _processes() if pid not in (1, os.getpid())]
-    told = {"stdout": stdout.decode("utf-8", "replace"), "stderr": stderr.decode("utf-8", "replace")}
-    print(json.dumps({**told, "exit_code": child.returncode, "processes": alive, "sockets": listening}))
+    reported = {"stdout": stdout.decode("utf-8", "replace"), "stderr": stderr.decode("utf-8", "replace")}
+    print(json.dumps({**reported, "exit_code": child.returncode, "processes": alive, "sockets": listening}))
     sys.stdout.flush()
     with contextlib.suppress(OSError):
         os.kill(-1, signal.SIGKILL)

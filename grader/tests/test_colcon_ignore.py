@@ -40,7 +40,7 @@ def colcon_list(folder: Path) -> list[str]:
     return done.stdout.splitlines()
 
 
-def tell_tale(folder: Path) -> Path:
+def marker_maker(folder: Path) -> Path:
     """A submission in `folder`, and the file that is there once somebody has run its setup.py."""
     shutil.copytree(PACKAGE, folder / "my_robot_controller", dirs_exist_ok=True)
     trace = folder / "setup.py was run"
@@ -94,13 +94,13 @@ def test_a_workspace_that_holds_the_course_has_no_package_twice(tmp_path: Path) 
 
 def test_a_class_is_not_run_by_colcon(tmp_path: Path) -> None:
     make_class(tmp_path / "class-of-2027", None)
-    trace = tell_tale(tmp_path / "class-of-2027/class/submitted/ada" / STEP)
+    trace = marker_maker(tmp_path / "class-of-2027/class/submitted/ada" / STEP)
     assert colcon_list(tmp_path) == []
     assert not trace.exists()
 
 
 def test_a_recording_is_not_run_by_colcon(tmp_path: Path) -> None:
-    trace = tell_tale(tmp_path / "given")
+    trace = marker_maker(tmp_path / "given")
     submission = open_submission(tmp_path / "given/my_robot_controller")
     shutil.rmtree(tmp_path / "given/my_robot_controller")
     save(tmp_path / "recording", Evidence(find_exercise(STEP), submission), "none", ())

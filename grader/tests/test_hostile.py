@@ -74,23 +74,24 @@ class Runs:
 
     def __init__(self, wanted: list[tuple[Attack, str]], folder: Path, pool: ThreadPoolExecutor) -> None:
         self._futures: dict[tuple[str, str], Future[Graded]] = {
-            (attack.name, way): pool.submit(run, attack, way, folder / f"{attack.name}.{way}") for attack, way in wanted
+            (attack.name, mode): pool.submit(run, attack, mode, folder / f"{attack.name}.{mode}")
+            for attack, mode in wanted
         }
 
-    def of(self, attack: Attack, way: str) -> Graded:
-        return self._futures[attack.name, way].result()
+    def of(self, attack: Attack, mode: str) -> Graded:
+        return self._futures[attack.name, mode].result()
 
 
-def run(attack: Attack, way: str, folder: Path) -> Graded:
-    host = Host(folder, underlay.ensure(installation.find_ros()), as_user=way == "as-user")
+def run(attack: Attack, mode: str, folder: Path) -> Graded:
+    host = Host(folder, underlay.ensure(installation.find_ros()), as_user=mode == "as-user")
     make_attack(attack, host.work)
-    if way == "undefended" and attack.raw:
+    if mode == "undefended" and attack.raw:
         raw = attack.raw.replace("{python}", shlex.quote(sys.executable))
         script = f"cd my_robot_controller && {{ {raw}; }} 2>&1"
         return Graded(host.run(["sh", "-c", script], defended=False), host.work)
     wanted = ["--json", "report.json", "--html", "report.html", "--recording", "recording", "--clock", attack.clock]
     check = [sys.executable, "-m", "grader.cli", "check", "my_robot_controller", "--exercise", EXERCISE, *wanted]
-    return Graded(host.run(check, defended=way != "undefended"), host.work)
+    return Graded(host.run(check, defended=mode != "undefended"), host.work)
 
 
 @pytest.fixture(scope="session")
@@ -100,7 +101,7 @@ def runs(request: pytest.FixtureRequest) -> Iterator[Runs]:
         attack = getattr(item, "callspec", None) and item.callspec.params.get("attack")  # type: ignore[attr-defined]
         if isinstance(attack, Attack):
             for mark in item.iter_markers("clocks"):
-                wanted.update({(attack.name, way): (attack, way) for way in mark.args})
+                wanted.update({(attack.name, mode): (attack, mode) for mode in mark.args})
     # Other users cannot read pytest's own folders.
     with tempfile.TemporaryDirectory(prefix="hostile-") as folder, ThreadPoolExecutor(AT_ONCE) as pool:
         Path(folder).chmod(0o755)

@@ -47,7 +47,7 @@ def graded(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     futures: dict[tuple[str, str], Future[Graded]] = {}
     with ThreadPoolExecutor(AT_ONCE) as pool:
 
-        def ask(case: Case, clock: ClockChoice) -> Future[Graded]:
+        def submit(case: Case, clock: ClockChoice) -> Future[Graded]:
             if (case.name, clock) not in futures:
                 place = folder / f"{case.name}.{clock}"
                 futures[case.name, clock] = pool.submit(grade_here, case, clock, place, builds)
@@ -57,8 +57,8 @@ def graded(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
             if item.path == request.path and hasattr(item, "callspec"):
                 for mark in item.iter_markers("clocks"):
                     for clock in mark.args:
-                        ask(item.callspec.params["case"], clock)
-        yield lambda case, clock: ask(case, clock).result()
+                        submit(item.callspec.params["case"], clock)
+        yield lambda case, clock: submit(case, clock).result()
         pool.shutdown(cancel_futures=True)
 
 
@@ -130,7 +130,7 @@ def test_the_authors_page_is_up_to_date() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "reported"),
     [
         ("122", ["entry-point"]),
         ("305", ["build"]),
@@ -139,11 +139,13 @@ def test_the_authors_page_is_up_to_date() -> None:
         ("101", []),
     ],
 )
-def test_what_the_files_alone_tell_is_known_before_anything_runs(name: str, told: list[str], tmp_path: Path) -> None:
+def test_what_the_files_alone_tell_is_known_before_anything_runs(
+    name: str, reported: list[str], tmp_path: Path
+) -> None:
     case = next(case for case in CASES if case.name.startswith(name))
     submission = open_submission(make_submission(case, tmp_path / "in"))
     early = judge_early(Evidence(find_exercise(case.exercise or case.base), submission))
-    assert [outcome.id for outcome in early.failed] == told
+    assert [outcome.id for outcome in early.failed] == reported
 
 
 def failures(of: Graded) -> list[dict[str, Any]]:

@@ -126,7 +126,7 @@ def test_every_process_start_is_known_or_made_by_the_door() -> None:
         for function, call in process_starts(tree)
         if not is_made_by_the_door(call, tree)
     }
-    unknown = [told for where, told in others.items() if where not in OTHERS]
+    unknown = [reported for where, reported in others.items() if where not in OTHERS]
     assert (unknown, OTHERS.keys() - others.keys()) == ([], set()), "see common/interpreter.py, or tell what it is"
 
 
@@ -137,7 +137,7 @@ def test_no_other_place_names_an_interpreter() -> None:
         for function, node in in_functions(tree)
         if names_an_interpreter(node) and not is_harmless(node, tree)
     }
-    unknown = [told for where, told in named.items() if where not in NAMED]
+    unknown = [reported for where, reported in named.items() if where not in NAMED]
     assert (unknown, NAMED.keys() - named.keys()) == ([], set())
 
 

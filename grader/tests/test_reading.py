@@ -87,7 +87,7 @@ def test_all_reading_is_behind_the_door_or_of_what_is_ours() -> None:
         for function, name in reading(tree)
     }
     known = {**BEHIND_THE_DOOR, **OURS}
-    unknown = [told for where, told in found.items() if where not in known]
+    unknown = [reported for where, reported in found.items() if where not in known]
     assert (unknown, known.keys() - found.keys() - {("clues", "wall_clues")}) == ([], set()), "see submission/reader.py"
 
 

@@ -66,12 +66,12 @@ def _without_us(kind: type[BaseException], error: BaseException, trace: types.Tr
 
 def _chain(error: BaseException | None) -> Iterator[BaseException]:
     """Yield the error and all of its causes."""
-    seen: set[int] = set()
+    observed: set[int] = set()
     waiting = [error]
     while waiting:
         each = waiting.pop()
-        if each is not None and id(each) not in seen:
-            seen.add(id(each))
+        if each is not None and id(each) not in observed:
+            observed.add(id(each))
             waiting += [each.__cause__, each.__context__]
             yield each
 

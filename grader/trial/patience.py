@@ -16,7 +16,7 @@ HANDSHAKE_S = 100.0
 TICK_CPU_S = 1.0
 """If a node works longer than this on one frame, it counts as never idle (s of CPU time)."""
 TICK_S = 30.0
-ASK_EVERY_S = 0.02
+REQUEST_EVERY_S = 0.02
 """The interval at which its CPU time is checked (s)."""
 
 
@@ -27,7 +27,7 @@ class HandshakePatience:
     """
 
     def __init__(self, now_s: float) -> None:
-        self._begun_s = self._seen_s = now_s
+        self._begun_s = self._cpu_observed_s = now_s
         self._asleep_s = 0.0
 
     def ended(self, now_s: float, *, asleep: bool, wrote: bool, worked_s: float) -> bool:
@@ -40,8 +40,8 @@ class HandshakePatience:
             worked_s: the CPU time of the node so far (s).
         """
         if asleep and not wrote:
-            self._asleep_s += now_s - self._seen_s
-        self._seen_s = now_s
+            self._asleep_s += now_s - self._cpu_observed_s
+        self._cpu_observed_s = now_s
         return self._asleep_s > ASLEEP_S or worked_s > WORKED_S or now_s - self._begun_s > HANDSHAKE_S
 
 
@@ -56,13 +56,13 @@ class TickPatience:
         self._node = node
         self._cpu_s: float | None = None
         self._deadline_s = now_s + TICK_S
-        self._ask_s = now_s + ASK_EVERY_S
+        self._request_s = now_s + REQUEST_EVERY_S
 
     def ended(self, now_s: float) -> bool:
         """Return whether the node has worked too long. The CPU time counts from the first call that reads it."""
-        if now_s < self._ask_s:
+        if now_s < self._request_s:
             return False
-        self._ask_s = now_s + ASK_EVERY_S
+        self._request_s = now_s + REQUEST_EVERY_S
         if self._cpu_s is None:
             self._cpu_s = self._node.run_time_s()
         return now_s > self._deadline_s or self._node.run_time_s() - self._cpu_s > TICK_CPU_S

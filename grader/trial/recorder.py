@@ -33,7 +33,7 @@ MOST_TOPICS = 100
 MOST_TYPES = 200
 """The maximum number of types on one topic."""
 MOST_NODES = 100
-MOST_SEEN = 50_000
+MOST_OBSERVED = 50_000
 """The maximum number of nodes and endpoints in all snapshots together."""
 MOST_MESSAGES = 20_000
 MOST_BYTES = 32 * 1024 * 1024
@@ -64,12 +64,12 @@ class Recorder(Node):
         self._judged = frozenset(judged)
         self._subscribed: Counter[str] = Counter()
         """The number of types for each judged topic. The empty string stands for all other topics together."""
-        self._told: set[tuple[str, str, str]] = set()
+        self._reported: set[tuple[str, str, str]] = set()
         self._prefixes = prefixes
         self._simulated = simulated
         self._known: set[tuple[str, str]] = set()
         self._bytes = 0
-        self._seen = 0
+        self._observed = 0
         self._participant = self._own_participant()
 
     def keep(self, topic: str, type_name: str, data: bytes) -> bool:
@@ -139,15 +139,15 @@ class Recorder(Node):
         if last is not None and (graph.nodes, graph.endpoints) == (last.nodes, last.endpoints):
             return
         judged = [end for end in graph.endpoints if end.topic in self._judged]
-        self._seen += len(graph.nodes) + len(graph.endpoints)
-        if self._seen > MOST_SEEN:
+        self._observed += len(graph.nodes) + len(graph.endpoints)
+        if self._observed > MOST_OBSERVED:
             # The recording is full. New types on a judged topic are still stored, because there are only a few.
             self.graph_dropped += 1
-            fresh = tuple(end for end in judged if (end.kind, end.topic, end.type) not in self._told)
+            fresh = tuple(end for end in judged if (end.kind, end.topic, end.type) not in self._reported)
             graph = Graph(graph.t_s, (), fresh)
         if graph.nodes or graph.endpoints:
             self.graphs.append(graph)
-        self._told |= {(end.kind, end.topic, end.type) for end in judged}
+        self._reported |= {(end.kind, end.topic, end.type) for end in judged}
 
     def _endpoints(
         self, kind: Literal["publisher", "subscription"], topic: str, found: list[TopicEndpointInfo]

@@ -178,7 +178,7 @@ class SimulatedTrial(Simulation):
 
     def _take_in(self) -> bool:
         """Handle everything that has arrived. Return whether the node may continue because of it."""
-        if not self.may_ask():
+        if not self.may_request():
             self.hear()
             return False
         # Messages and acknowledgements are not answered, so the node stays idle.

@@ -134,7 +134,7 @@ class Simulation:
                 break
         return handled
 
-    def may_ask(self) -> bool:
+    def may_request(self) -> bool:
         """Return whether any node has a client for one of our services or actions."""
         if not self._services:
             self._services = [

@@ -63,7 +63,7 @@ class TurtleInterface:
             self._pose = _Sender(node, Pose, f"{name}/pose", parts)
             self._color = _Sender(node, Color, f"{name}/color_sensor", parts)
             self._state: State | None = None
-            self._seen: Rgb | None = None
+            self._observed: Rgb | None = None
             for service_type, service_name, serve in (
                 (SetPen, "set_pen", self._set_pen),
                 (TeleportRelative, "teleport_relative", self._teleport_relative),
@@ -112,8 +112,8 @@ class TurtleInterface:
             pose.x, pose.y, pose.theta = _narrow(state.x), _narrow(state.y), state.theta
             pose.linear_velocity, pose.angular_velocity = _narrow(state.linear), _narrow(state.angular)
             self._pose.serialize()
-        if turtle.color != self._seen:
-            self._seen = turtle.color
+        if turtle.color != self._observed:
+            self._observed = turtle.color
             color = self._color.message
             color.r, color.g, color.b = turtle.color
             self._color.serialize()

@@ -81,7 +81,7 @@ class TurtlesimNode(Node):
         self._frames = 0
         self.get_logger().info(f"Starting turtlesim with node name {self.get_fully_qualified_name()}")
         self._show("turtle1")
-        self._tell_spawned("turtle1")
+        self._log_spawned("turtle1")
 
     def frame(self, now_s: float) -> None:
         """Compute one frame (16 ms) at `now_s` on the caller's clock (s), and publish it."""
@@ -119,7 +119,7 @@ class TurtlesimNode(Node):
         # Remove it later, since this runs in a callback, and the executor may hold other callbacks of the same turtle.
         self._leaving.append((self._frames + _FRAMES_TO_LEAVE, self._interfaces.pop(name)))
 
-    def _tell_spawned(self, name: str) -> None:
+    def _log_spawned(self, name: str) -> None:
         turtle = self.world.turtles[name]
         self.get_logger().info(
             f"Spawning turtle [{name}] at x=[{turtle.x:f}], y=[{turtle.y:f}], theta=[{turtle.theta:f}]"
@@ -141,7 +141,7 @@ class TurtlesimNode(Node):
             self.world.kill(name)
             self.get_logger().error(f"A turtle cannot be named [{name}]: {str(error).partition(chr(10))[0]}")
             return response
-        self._tell_spawned(name)
+        self._log_spawned(name)
         response.name = name
         return response
 
@@ -176,7 +176,7 @@ class TurtlesimNode(Node):
             self._hide(name)
         if "turtle1" not in self._interfaces:
             self._show("turtle1")
-        self._tell_spawned("turtle1")
+        self._log_spawned("turtle1")
 
     # --- parameters -------------------------------------------------------------------------------------------
 

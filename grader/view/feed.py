@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 EVERY_FRAMES = 2
 """While something changes, a view receives every second frame (32 ms), which means 31 pictures per second."""
-TOLD_EVERY_S = 0.25
+SENT_EVERY_S = 0.25
 """The interval between messages while nothing changes. They let a view update the rates and show that the simulator
 is running.
 """
@@ -77,7 +77,7 @@ class Feed:
     sent: dict[str, int] = field(default_factory=dict)
     _frames: int = 0
     _shown: object = None
-    _told_s: float = -math.inf
+    _reported_s: float = -math.inf
     _too_long: bool = False
 
     def __post_init__(self) -> None:
@@ -105,10 +105,10 @@ class Feed:
             "paused": paused,
             "namespace": self.namespace,
             "background": self.canvas.background,
-            "turtles": {name: _told(turtle) for name, turtle in turtles.items()},
+            "turtles": {name: _reported(turtle) for name, turtle in turtles.items()},
         }
         changed = bool(self.canvas.lines) or self.canvas.cleared or bool(self.received) or state != self._shown
-        if (changed or now - self._told_s >= TOLD_EVERY_S) and self._view_listens():
+        if (changed or now - self._reported_s >= SENT_EVERY_S) and self._view_listens():
             self._tell(state, now)
 
     def _view_listens(self) -> bool:
@@ -134,7 +134,7 @@ class Feed:
         except (BlockingIOError, BrokenPipeError):
             # If the view has exited, reading its requests will detect it.
             return
-        self._shown, self._told_s = state, now
+        self._shown, self._reported_s = state, now
         canvas.lines, canvas.cleared, self._too_long = [], False, False
         self.received, self.sent = {}, {}
 
@@ -156,7 +156,7 @@ class Feed:
             wanted.append(str(json.loads(data)))
 
 
-def _told(turtle: Turtle) -> tuple[object, ...]:
+def _reported(turtle: Turtle) -> tuple[object, ...]:
     """Return x, y (m), theta (rad), linear (m/s), angular (rad/s), and red, green, blue, width, down of the pen."""
     state, pen = turtle.state(), turtle.pen
     return (state.x, state.y, state.theta, state.linear, state.angular, *pen.color, pen.width, pen.down)

@@ -17,21 +17,21 @@ _AT_LEAST_S = 1.0
 class Arrivals:
     """The arrivals of messages on one topic."""
 
-    _seen: deque[tuple[float, int]] = field(default_factory=deque)
+    _observed: deque[tuple[float, int]] = field(default_factory=deque)
     """The time of the last arrival of each group, and the size of the group."""
 
     def add(self, when_s: float, count: int = 1) -> None:
         """Record that `count` messages have arrived since the last call, the last of them at `when_s`."""
-        self._seen.append((when_s, count))
-        while len(self._seen) > 2 and self._seen[1][0] < when_s - WINDOW_S:
-            self._seen.popleft()
+        self._observed.append((when_s, count))
+        while len(self._observed) > 2 and self._observed[1][0] < when_s - WINDOW_S:
+            self._observed.popleft()
 
     def hertz(self, now_s: float) -> float | None:
         """Return the mean rate, or None if the messages have stopped or fewer than two groups have arrived."""
-        if len(self._seen) < 2:
+        if len(self._observed) < 2:
             return None
-        (first_s, _), (last_s, _) = self._seen[0], self._seen[-1]
-        count = sum(count for _, count in self._seen) - self._seen[0][1]
+        (first_s, _), (last_s, _) = self._observed[0], self._observed[-1]
+        count = sum(count for _, count in self._observed) - self._observed[0][1]
         if last_s <= first_s:
             return None
         gap_s = (last_s - first_s) / count

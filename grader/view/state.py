@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from grader.view.rates import Arrivals
-from grader.view.trail import Stroke, Trail, told
+from grader.view.trail import Stroke, Trail, as_lists
 
 Rgb = tuple[int, int, int]
 
 
-class Seen(NamedTuple):
+class TurtleState(NamedTuple):
     """The state of a turtle and its pen. The units are m, m, rad, m/s and rad/s."""
 
     x: float
@@ -43,7 +43,7 @@ class State:
     paused: bool = False
     namespace: str = "/"
     background: Rgb = (69, 86, 255)
-    turtles: dict[str, Seen] = field(default_factory=dict)
+    turtles: dict[str, TurtleState] = field(default_factory=dict)
     trail: Trail = field(default_factory=Trail)
     pieces: list[Stroke] = field(default_factory=list)
     """The lines that the last message added."""
@@ -58,7 +58,7 @@ class State:
         self.namespace = str(message["namespace"])
         red, green, blue = message["background"]
         self.background = (red, green, blue)
-        self.turtles = {name: Seen(*values) for name, values in message["turtles"].items()}
+        self.turtles = {name: TurtleState(*values) for name, values in message["turtles"].items()}
         if message["cleared"]:
             self.trail.clear()
         if message["picture"] is not None:
@@ -71,15 +71,15 @@ class State:
             self.rates.setdefault(topic, Arrivals()).add(self.now_s, count)
         for topic in [topic for topic in self.commands if topic.split("/")[-2] not in self.turtles]:
             del self.commands[topic]
-        news: dict[str, object] = {**self._now(), "lines": told(self.pieces)}
+        news: dict[str, object] = {**self._now(), "lines": as_lists(self.pieces)}
         if message["cleared"] or message["picture"] is not None:
-            news["trail"] = self.trail.told()
+            news["trail"] = self.trail.as_message()
             del news["lines"]
         return news
 
     def whole(self) -> dict[str, object]:
         """Return the whole state for a new page."""
-        return {**self._now(), "trail": self.trail.told()}
+        return {**self._now(), "trail": self.trail.as_message()}
 
     def _now(self) -> dict[str, object]:
         return {

@@ -27,12 +27,12 @@ def rows(system: System, state: State, show: Show) -> list[dict[str, object]]:
     for end in system.observed.ends:
         if end.node.startswith(VIEWS):
             continue
-        for seen, value in (
+        for observed, value in (
             (types.setdefault(end.topic, []), end.type),
             (ends.setdefault((end.topic, end.kind), []), end.node),
         ):
-            if value not in seen:
-                seen.append(value)
+            if value not in observed:
+                observed.append(value)
     drawn = picture(system.observed.nodes, system.observed.ends, show)
     rates = {**system.rates, **{topic: arrivals.hertz(time.monotonic()) for topic, arrivals in state.rates.items()}}
     return [

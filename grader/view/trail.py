@@ -124,15 +124,15 @@ class Trail:
         paint(picture, self.strokes, side / SIDE_PX, least)
         return picture
 
-    def told(self) -> dict[str, object]:
+    def as_message(self) -> dict[str, object]:
         """Return the whole trail for a new page."""
         return {
             "picture": base64.b64encode(self.picture).decode() if self.picture else None,
-            "strokes": told(self.strokes),
+            "strokes": as_lists(self.strokes),
         }
 
 
-def told(strokes: Iterable[Stroke]) -> list[list[int]]:
+def as_lists(strokes: Iterable[Stroke]) -> list[list[int]]:
     """Convert strokes for a page: each is a list of red, green, blue, width, and x, y of each point."""
     return [[*stroke.pen, *(value for point in stroke.points for value in point)] for stroke in strokes]
 

@@ -24,7 +24,7 @@ def bad_entry_point(point: EntryPoint) -> Finding:
         why = Cause("entry-point-comma", "A comma is missing between two strings, so Python joins them into one.")
     elif "/" in point.text:
         why = Cause("entry-point-slash", "This is a file path. A module name has a dot between folder and file.")
-        why = why.mended_by(at(where, "/", "."))
+        why = why.fixed_by(at(where, "/", "."))
     elif ":" not in point.text:
         text = "It does not name a function. After the module comes a colon, then the function name."
         why = Cause("entry-point-no-function", text)

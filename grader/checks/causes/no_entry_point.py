@@ -45,7 +45,7 @@ def no_entry_point(evidence: Evidence) -> Finding:
             where = next((Where("setup.py", point.line) for point in points if point.name == guess), line(evidence))
             text = "Compare the two names letter by letter. The name is the part before the = sign."
             observed = f"There is no executable {executable}, but there is {shorten(guess)}."
-            why = Cause("entry-point-name", text, where).mended_by(at(where, guess, executable))
+            why = Cause("entry-point-name", text, where).fixed_by(at(where, guess, executable))
             return failed(observed, expected, why)
         cause = _missing(evidence, points)
     return failed(observed, expected, cause.at(line(evidence)))
@@ -112,7 +112,7 @@ def _missing(evidence: Evidence, points: tuple[EntryPoint, ...]) -> Cause:
                 f"The entry point of {file} has another name, {shorten(point.name)}. The name stands before the = sign."
             )
             where = Where("setup.py", point.line)
-            return Cause("entry-point-name", text, where).mended_by(at(where, point.name, executable))
+            return Cause("entry-point-name", text, where).fixed_by(at(where, point.name, executable))
     file = evidence.node_file or _looks_like_a_node(evidence, [point.target for point in points])
     if file is not None:
         text = f"{shorten(file)} is there, but setup.py has no entry point for it."

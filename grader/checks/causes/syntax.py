@@ -86,7 +86,7 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
         return Cause("bracket-open", text, Where(file, int(other["line"])))
     for pattern, diagnosis, text in CAUSES:
         if re.search(pattern, unreadable.message):
-            return Cause(diagnosis, text).mended_by(_fix(diagnosis, file, unreadable, data))
+            return Cause(diagnosis, text).fixed_by(_fix(diagnosis, file, unreadable, data))
     return Cause("syntax-error", OTHERWISE)
 
 

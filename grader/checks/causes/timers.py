@@ -22,7 +22,7 @@ def timer_fault(evidence: Evidence) -> Cause | None:
         period = number(timer.argument(0, "timer_period_sec"), timer.module.names)
         if period is not None and period >= evidence.recording.duration_s:
             text = f"The timer waits {period:g} s before its first call. The period is in seconds, not milliseconds."
-            return Cause("timer-milliseconds", text, timer.where).mended_by(_in_seconds(timer, period))
+            return Cause("timer-milliseconds", text, timer.where).fixed_by(_in_seconds(timer, period))
         if _is_call(timer.argument(1, "callback")):
             text = (
                 "create_timer needs the method itself. "
@@ -32,7 +32,7 @@ def timer_fault(evidence: Evidence) -> Cause | None:
             assert isinstance(called, ast.Call)
             name = ast.unparse(called.func)
             fix = at(Where(timer.module.file, called.lineno), f"{name}()", name)
-            return Cause("callback-called", text, timer.where).mended_by(fix)
+            return Cause("callback-called", text, timer.where).fixed_by(fix)
     return None
 
 

@@ -62,7 +62,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
         guess = nearest(name, fields)
         more = f" Did you mean {guess}?" if guess else ""
         fix = at(scene.crash.where, name, guess) if guess else ()
-        return Cause("message-field", f"A {owner} has {a_list(fields)}.{more}").mended_by(fix)
+        return Cause("message-field", f"A {owner} has {a_list(fields)}.{more}").fixed_by(fix)
     if owner in ros_names.OTHERS:
         return _misspelt(scene, name, ros_names.OTHERS[owner]) or Cause(
             "attribute-missing", f"A {owner} has no attribute or method with that name."
@@ -91,7 +91,7 @@ def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | Non
     if guess is None:
         return None
     text = f"There is {guess}. Compare the two letter by letter, including upper and lower case."
-    return Cause("attribute-misspelt", text).mended_by(at(scene.crash.where, name, guess))
+    return Cause("attribute-misspelt", text).fixed_by(at(scene.crash.where, name, guess))
 
 
 def _class_for_object(name: str) -> Cause:
@@ -137,7 +137,7 @@ def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
             text = "__init__ never calls super().__init__, which creates the node."
             line = f'{" " * made.body[0].col_offset}super().__init__("{scene.evidence.trial.node}")'
             first = scene.at(made.body[0])
-            return Cause("super-init-missing", text, scene.at(made)).mended_by(at(first, "", line))
+            return Cause("super-init-missing", text, scene.at(made)).fixed_by(at(first, "", line))
         text = "super().__init__ creates the node. You cannot use the node before that line."
         return Cause("super-init-late", text)
     lines = [line for attribute, line in attributes_set(own) if attribute == name]
@@ -154,14 +154,14 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
     compared = [each for each in scene.on_line if isinstance(each, ast.Expr) and isinstance(each.value, ast.Compare)]
     if compared:
         place = scene.at(compared[0])
-        return Cause("equals", "== compares two values. = gives a value to a name.", place).mended_by(
+        return Cause("equals", "== compares two values. = gives a value to a name.", place).fixed_by(
             at(place, "==", "=")
         )
     local = [node for node in ast.walk(own) if isinstance(node, ast.Name) and _is_store(node) and node.id == name]
     if local:
         text = f"Line {local[0].lineno} sets {name} without self, so it is not an attribute. Write self.{name} there."
         place = scene.at(local[0])
-        return Cause("missing-self", text, place).mended_by(at(place, name, f"self.{name}"))
+        return Cause("missing-self", text, place).fixed_by(at(place, name, f"self.{name}"))
     outside = next((each for each in scene.top_functions() if each.name == name), None)
     if outside is not None:
         text = f"{name} is outside the class. Indent it like the other methods."

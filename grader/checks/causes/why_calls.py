@@ -49,7 +49,7 @@ def callback_called(scene: CrashScene) -> Cause | None:
             if isinstance(given, ast.Call) and (dotted(given.func) or "").startswith("self."):
                 text = f"{name} needs the method itself. With () after its name, the method is called immediately."
                 fix = at(scene.at(given), f"{ast.unparse(given.func)}()", ast.unparse(given.func))
-                return Cause("callback-called", text, scene.at(call)).mended_by(fix)
+                return Cause("callback-called", text, scene.at(call)).fixed_by(fix)
     return None
 
 
@@ -112,7 +112,7 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
         set_to = scene.module.names.get(name) if scene.module is not None else None
         text = f"rclpy.spin was called with {shorten(name)}, which is a class. {CREATE_OBJECT}"
         fix = at(scene.at(set_to), ast.unparse(set_to), f"{ast.unparse(set_to)}()") if set_to is not None else ()
-        return Cause("class-for-object", text, scene.at(set_to)).mended_by(fix)
+        return Cause("class-for-object", text, scene.at(set_to)).fixed_by(fix)
     if "descriptor '__init__'" in text and "'super'" in text:
         return Cause("not-called", "super is a function. Write super().__init__, with parentheses after super.")
     if STRING_AND_NUMBER.search(text):
@@ -150,7 +150,7 @@ def _init_misspelt(scene: CrashScene) -> Cause | None:
                 "init with two underscores on each side."
             )
             place = scene.at(names[found[0]])
-            return Cause("init-misspelt", text, place).mended_by(at(place, found[0], "__init__"))
+            return Cause("init-misspelt", text, place).fixed_by(at(place, found[0], "__init__"))
     return None
 
 
@@ -164,10 +164,10 @@ def _too_many(scene: CrashScene, function: str) -> Cause | None:
             fix = at(place, f"{function}(", f"{function}(self{more}")
             return Cause(
                 "self-parameter", f"{function} is a method, so its first parameter must be self.", place
-            ).mended_by(fix)
+            ).fixed_by(fix)
         text = f"{function} is called with an argument but has no parameter for it. A subscription passes the message."
         place = scene.at(own[0])
-        return Cause("callback-parameters", text, place).mended_by(at(place, "(self)", "(self, _)"))
+        return Cause("callback-parameters", text, place).fixed_by(at(place, "(self)", "(self, _)"))
     if function in ros_names.OTHERS["RcutilsLogger"]:
         return Cause(
             "log-arguments",
@@ -225,7 +225,7 @@ def why_refused(scene: CrashScene) -> Cause | None:
         made = next(iter(scene.calls_on_line("create_timer")), None)
         fix = at(scene.at(made), "(-", "(") if made is not None else ()
         text = "The period is a time in seconds, so it cannot be negative."
-        return Cause("timer-period-negative", text).mended_by(fix)
+        return Cause("timer-period-negative", text).fixed_by(fix)
     return None
 
 

@@ -34,7 +34,7 @@ def why_field(scene: CrashScene) -> Cause | None:
     resolved = value and _resolved(scene, value)
     cause = _why_no_float(field, resolved)
     if isinstance(resolved, ast.Constant) and resolved is value:
-        return cause.mended_by(_as_float(scene, resolved))
+        return cause.fixed_by(_as_float(scene, resolved))
     return cause
 
 

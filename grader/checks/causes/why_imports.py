@@ -40,7 +40,7 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
         return Cause(
             "turtlesim-msgs",
             "Newer ROS 2 distributions have these messages in turtlesim_msgs. In Jazzy they are in turtlesim.",
-        ).mended_by(at(scene.crash.where, "turtlesim_msgs", "turtlesim"))
+        ).fixed_by(at(scene.crash.where, "turtlesim_msgs", "turtlesim"))
     if top in NOT_HERE:
         return Cause("module-missing", f"{NOT_HERE[top]} This grader does not have it, so it cannot run this node.")
     files = scene.evidence.submission.files
@@ -54,7 +54,7 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
     guess = nearest(name, {*ros_names.MODULES, *(each.partition(".")[0] for each in ros_names.MODULES)}, alike=0.8)
     if guess is not None:
         text = f"There is a module {guess}. Compare the two names letter by letter."
-        return Cause("module-misspelt", text).mended_by(at(scene.crash.where, name, guess.partition(".")[0]))
+        return Cause("module-misspelt", text).fixed_by(at(scene.crash.where, name, guess.partition(".")[0]))
     return Cause(
         "module-missing",
         f"No installed package has a module {shorten(name)}. Compare the name letter by letter.",
@@ -66,11 +66,11 @@ def _no_name(scene: CrashScene, name: str, module: str) -> Cause:
     known = plain.get(name.lower())
     if known is not None and ros_names.MODULE_OF[known] == module:
         text = f"In this module it is called {known}. Upper and lower case matter."
-        return Cause("import-name", text).mended_by(at(scene.crash.where, name, known))
+        return Cause("import-name", text).fixed_by(at(scene.crash.where, name, known))
     if known is not None:
         right = ros_names.MODULE_OF[known]
         fix = at(scene.crash.where, f"from {module} ", f"from {right} ")
-        return Cause("import-wrong-place", f"{known} is in the module {right}.").mended_by(fix)
+        return Cause("import-wrong-place", f"{known} is in the module {right}.").fixed_by(fix)
     guess = nearest(name, [each for each, place in ros_names.MODULE_OF.items() if place == module])
     fix = at(scene.crash.where, name, guess) if guess else ()
-    return Cause("import-name", f"The module {shorten(module)} has {guess or 'nothing with that name'}.").mended_by(fix)
+    return Cause("import-name", f"The module {shorten(module)} has {guess or 'nothing with that name'}.").fixed_by(fix)

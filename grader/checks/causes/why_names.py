@@ -60,7 +60,7 @@ def _of_self(scene: CrashScene, name: str) -> Cause | None:
     known = {*(each.name for each in methods(own)), *(each for each, _ in attributes_set(own))}
     if name in known or (name in ros_names.NODE and _is_called(scene, name)):
         text = f"{name} belongs to the object. Inside a method, write self.{name}."
-        return Cause("missing-self", text).mended_by(at(scene.crash.where, name, f"self.{name}"))
+        return Cause("missing-self", text).fixed_by(at(scene.crash.where, name, f"self.{name}"))
     return None
 
 
@@ -72,18 +72,18 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
     if name in ros_names.MODULE_OF:
         module = ros_names.MODULE_OF[name]
         text = f"The file does not import {name}. It is in the module {module}."
-        return Cause("missing-import", text).mended_by(_import(scene, f"from {module} import {name}"))
+        return Cause("missing-import", text).fixed_by(_import(scene, f"from {module} import {name}"))
     if name in WELL_KNOWN:
         text = f"The file does not import the module {name}."
-        return Cause("missing-import", text).mended_by(_import(scene, f"import {name}"))
+        return Cause("missing-import", text).fixed_by(_import(scene, f"import {name}"))
     for module, members in MEMBERS.items():
         if name in members:
             if module in _imported(scene):
                 text = f"{name} belongs to the module {module}. Write {module}.{name}."
-                return Cause("module-prefix", text).mended_by(at(scene.crash.where, name, f"{module}.{name}"))
+                return Cause("module-prefix", text).fixed_by(at(scene.crash.where, name, f"{module}.{name}"))
             if module != "rclpy":
                 text = f"The file does not import {name}. It is in the module {module}."
-                return Cause("missing-import", text).mended_by(_import(scene, f"from {module} import {name}"))
+                return Cause("missing-import", text).fixed_by(_import(scene, f"from {module} import {name}"))
     return None
 
 
@@ -118,14 +118,14 @@ def _stores(scene: CrashScene, name: str) -> Iterator[tuple[int, Function | None
 def _alike(scene: CrashScene, name: str) -> Cause | None:
     if name in CONSTANTS:
         text = f"Python spells it {CONSTANTS[name]}. Upper and lower case matter."
-        return Cause("name-misspelt", text).mended_by(at(scene.crash.where, name, CONSTANTS[name]))
+        return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, CONSTANTS[name]))
     guess = nearest(name, _bound(scene) - {name}, alike=0.8)
     if guess is None and _is_called(scene, name):
         plain = {each.lower(): each for each in _bound(scene)}
         guess = plain.get(name.lower())
     if guess is not None:
         text = f"There is a name {shorten(guess)}. Compare the two names letter by letter."
-        return Cause("name-misspelt", text).mended_by(at(scene.crash.where, name, guess))
+        return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, guess))
     return None
 
 
@@ -150,7 +150,7 @@ def why_unbound(scene: CrashScene) -> Cause:
     own = scene.own_class
     if own is not None and name in {each for each, _ in attributes_set(own)}:
         text = f"{name} belongs to the object. Inside a method, write self.{name}."
-        return Cause("missing-self", text).mended_by(at(scene.crash.where, name, f"self.{name}"))
+        return Cause("missing-self", text).fixed_by(at(scene.crash.where, name, f"self.{name}"))
     stores = list(_stores(scene, name))
     local = sorted(line for line, function in stores if function is not None and function is scene.function)
     if name in _imported(scene) and local:

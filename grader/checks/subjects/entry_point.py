@@ -82,13 +82,13 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
     if module_name.endswith(".py"):
         cause = "Write the module name without the ending .py."
         why = Cause("entry-point-py", cause, line(evidence))
-        return failed(observed, expected, why.mended_by(at(why.where, ".py:", ":")))
+        return failed(observed, expected, why.fixed_by(at(why.where, ".py:", ":")))
     outer, _dot, last = module_name.rpartition(".")
     file = module_file(outer, files) if outer else None
     if file is not None and any(_bindings(read_module(file, files[file]), last)):
         cause = f"{shorten(last)} is a function in {file}. Between module and function there is a colon, not a dot."
         why = Cause("entry-point-no-function", cause, line(evidence))
-        return failed(observed, f"{FORM}.", why.mended_by(at(why.where, module_name, f"{outer}:{last}")))
+        return failed(observed, f"{FORM}.", why.fixed_by(at(why.where, module_name, f"{outer}:{last}")))
     if module_name in evidence.exercise.package or "." not in module_name:
         cause = "Write the folder first, then a dot, then the file name without .py."
     else:
@@ -98,7 +98,7 @@ def _no_module(evidence: Evidence, module_name: str) -> Finding:
             cause = f"{last}.py is beside setup.py. It belongs in the folder {shorten(outer)}."
     right = nearest(module_name, modules, alike=0.7)
     fix = at(line(evidence), module_name, right) if right is not None else ()
-    return failed(observed, expected, Cause("entry-point-module", cause, line(evidence)).mended_by(fix))
+    return failed(observed, expected, Cause("entry-point-module", cause, line(evidence)).fixed_by(fix))
 
 
 def _is_installed(evidence: Evidence, file: str) -> bool:
@@ -155,7 +155,7 @@ def _no_function(evidence: Evidence, module: Module, name: str) -> Finding:
         cause = f"It has a function {shorten(guess or top[0])}."
     right = guess or (top[0] if len(top) == 1 else None)
     fix = at(line(evidence), f":{name}", f":{right}") if right is not None else ()
-    return failed(observed, expected, Cause("entry-point-function", cause, line(evidence)).mended_by(fix))
+    return failed(observed, expected, Cause("entry-point-function", cause, line(evidence)).fixed_by(fix))
 
 
 def _is_top_level(module: Module, call: ast.Call) -> bool:

@@ -84,7 +84,7 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
     if re.search(r"\{[\w.:]+\}", line):
         text = "The braces are in the line as they are in the code. Only in an f-string do they stand for a value."
         where = evidence.place(*LEVELS)
-        why = Cause("log-numbers", text, where).mended_by(at(where, '("', '(f"'))
+        why = Cause("log-numbers", text, where).fixed_by(at(where, '("', '(f"'))
     elif re.fullmatch(pattern.pattern, line, re.IGNORECASE | re.ASCII):
         why = Cause("log-capitals", "Upper and lower case matter.")
     elif re.search(rf"{pattern.pattern}(?!\.?\d)", line, re.ASCII):  # (not only the first digits of a number)
@@ -164,7 +164,7 @@ def _thrown_away(evidence: Evidence) -> Cause | None:
             if isinstance(node, ast.Expr) and isinstance(node.value, ast.BinOp | ast.Compare):
                 text = f"This line calculates {shorten(ast.unparse(node.value), 40)} and keeps the result nowhere."
                 where = Where(module.file, node.lineno)
-                return Cause("counter-stuck", text, where).mended_by(at(where, " + ", " += "))
+                return Cause("counter-stuck", text, where).fixed_by(at(where, " + ", " += "))
     return None
 
 

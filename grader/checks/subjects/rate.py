@@ -141,7 +141,7 @@ def _slow_timer(evidence: Evidence, params: Rate, amount: int) -> Cause | None:
     """Return the cause if a timer is so slow that no more than this amount can have arrived, else None."""
     for timer, period in _timers(evidence):
         if period is not None and abs(evidence.recording.duration_s / period - amount) <= 1.0:
-            why = Cause("timer-period", PERIOD, timer.where).mended_by(_right_period(timer, params))
+            why = Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, params))
             return _period_cause(why, period, params)
     return None
 
@@ -218,7 +218,7 @@ def _why_mean(evidence: Evidence, what: Subject, mean: float, params: Rate) -> C
     timers = _timers(evidence)
     for timer, period in timers:
         if period is not None and abs(period - mean) <= SAME * mean:
-            return Cause("timer-period", PERIOD, timer.where).mended_by(_right_period(timer, params))
+            return Cause("timer-period", PERIOD, timer.where).fixed_by(_right_period(timer, params))
     asleep = why_sleep_in_callback(evidence)
     if asleep is not None:
         return asleep

@@ -79,7 +79,7 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     shown = [guess] if guess is not None else topics
     observed = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but no turtle subscribes to that."
     why = why_topic(params.topic, shown[0])
-    why = why.mended_by(right_name(evidence, "create_publisher", shown[0], params.topic))
+    why = why.fixed_by(right_name(evidence, "create_publisher", shown[0], params.topic))
     return failed(observed, _expected(params), why.at(_publisher_line(evidence, shown[0])))
 
 
@@ -169,7 +169,7 @@ def subscribes(evidence: Evidence, params: Topic) -> Finding:
         observed = f"The node subscribes to {a_list(sorted({shorten(each.topic) for each in found}))}."
         cause = "The topic name is the second argument of create_subscription. Compare it letter by letter."
         fixes = [right_name(evidence, "create_subscription", each.topic, params.topic) for each in found]
-        why = Cause("wrong-topic", cause, where).mended_by(next(filter(None, fixes), ()))
+        why = Cause("wrong-topic", cause, where).fixed_by(next(filter(None, fixes), ()))
         return failed(observed, expected, why)
     crash = crash_of(evidence)
     if crash is not None:

@@ -79,7 +79,7 @@ def values(evidence: Evidence, params: Values) -> Finding:
     if why.diagnosis == "wrong-value" and bad < total:
         why = Cause("values-change", "The other commands were right. Something changes the values while the node runs.")
     if bad == total and alike:
-        why = why.mended_by(_right_values(evidence, params.wanted, off))
+        why = why.fixed_by(_right_values(evidence, params.wanted, off))
     return failed(observed, expected, why.at(_line(evidence, field)), near_edge=near)
 
 

@@ -76,11 +76,11 @@ def run(args: argparse.Namespace) -> int:
 def _follow(node: Any, client: Any, goal: Any, *, feedback: bool) -> None:  # noqa: ANN401
     from grader.graph.discovery import spin_until
 
-    def told(message: Any) -> None:  # noqa: ANN401
+    def print_feedback(message: Any) -> None:  # noqa: ANN401
         print(f"Feedback:\n    {to_yaml(message.feedback, _WHOLE)}", flush=True)
 
     print(f"Sending goal:\n     {to_yaml(goal, _WHOLE)}", flush=True)
-    sent = client.send_goal_async(goal, feedback_callback=told if feedback else None)
+    sent = client.send_goal_async(goal, feedback_callback=print_feedback if feedback else None)
     spin_until(node, sent.done)
     handle = sent.result()
     if not handle.accepted:

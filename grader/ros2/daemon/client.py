@@ -17,7 +17,7 @@ ANSWER_S = 8.0
 _POLL_S = 0.02
 
 
-def ask(call: str) -> dict[str, Any] | None:
+def request(call: str) -> dict[str, Any] | None:
     """Return the daemon's answer to "look", "ping" or "stop", or None if there is no daemon."""
     folder = socket_path.folder()
     if folder is None:
@@ -41,7 +41,7 @@ def ask(call: str) -> dict[str, Any] | None:
 
 def is_running() -> bool:
     """Return whether a daemon responds."""
-    return ask("ping") is not None
+    return request("ping") is not None
 
 
 def start(*, debug: bool = False) -> None:

@@ -44,11 +44,11 @@ def main() -> int:
         if not socket_path.lock(lock):
             return 0
         with suppress(KeyboardInterrupt):
-            _serve(folder, name, _telling())
+            _serve(folder, name, _replying())
     return 0
 
 
-def _telling() -> IO[str] | None:
+def _replying() -> IO[str] | None:
     return sys.stderr if "--debug" in sys.argv[1:] else None
 
 

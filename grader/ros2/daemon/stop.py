@@ -24,7 +24,7 @@ def run(_: argparse.Namespace) -> int:
     """
     from grader.ros2.daemon import client
 
-    if client.ask("stop") is None:
+    if client.request("stop") is None:
         print("The daemon is not running")
         return 0
     if not client.wait_until_ended(_ENDED_S):

@@ -25,11 +25,11 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         Ros2Error: the node or the parameter does not exist.
     """
-    from grader.ros2.param.parameter_client import parameters_of, told
+    from grader.ros2.param.parameter_client import parameters_of, value_text
 
     with parameters_of(args) as parameters:
         value = parameters.get(args.parameter_name)
         if value is None:
             raise Ros2Error(did_you_mean(args.parameter_name, parameters.names(), "Parameter not set"))
-        print(told(value, hide_type=args.hide_type))
+        print(value_text(value, hide_type=args.hide_type))
     return 0

@@ -126,7 +126,7 @@ def type_name(kind: int) -> str:
     return _TYPES.get(kind, ("unknown", ""))[0]
 
 
-def told(value: ParameterValue, *, hide_type: bool) -> str:
+def value_text(value: ParameterValue, *, hide_type: bool) -> str:
     """Return a value as `param get` prints it."""
     python = parameter_value_to_python(value)
     text = str(python.tolist() if hasattr(python, "tolist") else python)

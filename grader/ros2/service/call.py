@@ -62,20 +62,20 @@ def run(args: argparse.Namespace) -> int:
                 time.sleep(_POLL_S)
         while True:
             print(f"requester: making request: {request!r}\n", flush=True)
-            asked = time.monotonic()
+            requested = time.monotonic()
             future = client.call_async(request)
             spin_until(node, future.done)
             print(f"response:\n{future.result()!r}\n", flush=True)
             if args.rate is None:
                 return 0
-            nap(asked + 1 / args.rate - time.monotonic())
+            nap(requested + 1 / args.rate - time.monotonic())
 
 
-def _say_why(node: Node, name: str, asked: str) -> None:
+def _say_why(node: Node, name: str, requested: str) -> None:
     """Print a hint if there is no such service, because its type or its name may be wrong."""
     found: dict[str, Any] = {name: types for name, types in node.get_service_names_and_types() if not hidden(name)}
     # Our own client also announces a type.
-    others = [kind for kind in found.pop(name, []) if kind != asked]
+    others = [kind for kind in found.pop(name, []) if kind != requested]
     hint = f"The service {name} has the type {', '.join(others)}." if others else did_you_mean(name, found)
     if hint:
         print(hint, file=sys.stderr, flush=True)

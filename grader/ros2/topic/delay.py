@@ -18,7 +18,7 @@ WINDOW = 10000
 PRINTED_EVERY_S = 1.0
 
 
-def told(delays_ns: Collection[int]) -> str:
+def summary(delays_ns: Collection[int]) -> str:
     """Return the statistics of the delays (ns) as text. There must be at least one delay."""
     mean = sum(delays_ns) / len(delays_ns)
     deviation = math.sqrt(math.fsum((delay - mean) ** 2 for delay in delays_ns) / len(delays_ns))
@@ -55,7 +55,7 @@ class Delays:
         if not self._delays_ns:
             return None
         news, self._news = self._news, False
-        return told(self._delays_ns) if news else "no new messages"
+        return summary(self._delays_ns) if news else "no new messages"
 
 
 def add(parser: argparse.ArgumentParser) -> None:

@@ -49,7 +49,7 @@ class Arrivals:
     def __init__(self, window: int) -> None:
         self._gaps_ns: deque[int] = deque(maxlen=window)
         self._last_ns = -1
-        self._told_ns = 0
+        self._reported_ns = 0
 
     def add(self, now_ns: int) -> None:
         """Count a message that has arrived."""
@@ -69,13 +69,13 @@ class Arrivals:
         """Return whether a message has arrived at least a second after the last report."""
         if not self._gaps_ns:
             return False
-        if self._told_ns == 0:
-            self._told_ns = self._last_ns
-        return self._last_ns >= self._told_ns + PRINTED_EVERY_NS
+        if self._reported_ns == 0:
+            self._reported_ns = self._last_ns
+        return self._last_ns >= self._reported_ns + PRINTED_EVERY_NS
 
     def news(self) -> Rate:
         """Return the current rate, and note that it has been reported. Call it only if `have_news` returns true."""
-        self._told_ns = self._last_ns
+        self._reported_ns = self._last_ns
         return rate(self._gaps_ns)
 
 

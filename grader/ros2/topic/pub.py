@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-_TOLD_EVERY_S = 1.0
+_REPORTED_EVERY_S = 1.0
 _ACKNOWLEDGED_S = 1.0
 """The maximum wait for acknowledgements. It is short, because Ctrl-C has no effect during the wait."""
 _POLL_S = 0.01
@@ -147,12 +147,12 @@ def _wait_for_subscriptions(
     from grader.ros2.topic import topic_lookup
 
     begun = time.monotonic()
-    told_s = begun - _TOLD_EVERY_S
+    reported_s = begun - _REPORTED_EVERY_S
     hint = topic_lookup.nearest_topic(node, topic)
     while publisher.get_subscription_count() < wanted:
         now = time.monotonic()
-        if now - told_s >= _TOLD_EVERY_S:
-            told_s = now
+        if now - reported_s >= _REPORTED_EVERY_S:
+            reported_s = now
             print(f"Waiting for at least {wanted} matching subscription(s)...", flush=True)
             if hint:
                 print(hint, file=sys.stderr, flush=True)

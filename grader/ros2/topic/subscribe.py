@@ -47,14 +47,14 @@ def subscribe(
     args: argparse.Namespace,
 ) -> None:
     """Call `show` with each message and its information. Report lost messages unless the options disable this."""
-    lost = None if args.no_lost_messages else SubscriptionEventCallbacks(message_lost=_say_lost)
+    lost = None if args.no_lost_messages else SubscriptionEventCallbacks(message_lost=_report_lost)
     try:
         node.create_subscription(kind, topic, show, profile, event_callbacks=lost, raw=args.raw)
     except UnsupportedEventTypeError:
         node.create_subscription(kind, topic, show, profile, raw=args.raw)
 
 
-def _say_lost(status: Any) -> None:  # noqa: ANN401
+def _report_lost(status: Any) -> None:  # noqa: ANN401
     print(
         f"A message was lost!!!\n\ttotal count change:{status.total_count_change}\n"
         f"\ttotal count: {status.total_count}---",

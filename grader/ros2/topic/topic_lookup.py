@@ -41,7 +41,7 @@ def find(node: Node, topic: str, args: argparse.Namespace) -> None:
     settle(node, lambda: published(node, topic), getattr(args, "spin_time", None))
 
 
-def type_of(node: Node, topic: str, asked: str) -> Any | None:  # noqa: ANN401
+def type_of(node: Node, topic: str, requested: str) -> Any | None:  # noqa: ANN401
     """Return the class of a topic's messages, or None if there is no such topic. `asked` is the name that was typed.
 
     Raises:
@@ -51,14 +51,14 @@ def type_of(node: Node, topic: str, asked: str) -> Any | None:  # noqa: ANN401
     if not types:
         return None
     if len(types) > 1:
-        message = f"Cannot echo topic '{asked}', as it contains more than one type: [{', '.join(types)}]"
+        message = f"Cannot echo topic '{requested}', as it contains more than one type: [{', '.join(types)}]"
         raise Ros2Error(message)
     return message_values.load_type(types[0], "msg", text=f"The message type '{types[0]}' is invalid")
 
 
-def not_published(asked: str) -> None:
+def not_published(requested: str) -> None:
     """Warn that the topic seems to have no publishers."""
-    print(f"WARNING: topic [{asked}] does not appear to be published yet", flush=True)
+    print(f"WARNING: topic [{requested}] does not appear to be published yet", flush=True)
 
 
 def nearest_topic(node: Node, topic: str, text: str = "") -> str:
@@ -67,17 +67,17 @@ def nearest_topic(node: Node, topic: str, text: str = "") -> str:
     return did_you_mean(topic, known, text)
 
 
-def wait_for_type(node: Node, topic: str, asked: str) -> Any:  # noqa: ANN401
+def wait_for_type(node: Node, topic: str, requested: str) -> Any:  # noqa: ANN401
     """Wait until the topic has a publisher or a subscription, and return the class of its messages."""
     import sys
 
-    made = type_of(node, topic, asked)
+    made = type_of(node, topic, requested)
     if made is None:
-        not_published(asked)
+        not_published(requested)
         hint = nearest_topic(node, topic)
         if hint:
             print(hint, file=sys.stderr, flush=True)
     while made is None:
         time.sleep(_POLL_S)
-        made = type_of(node, topic, asked)
+        made = type_of(node, topic, requested)
     return made

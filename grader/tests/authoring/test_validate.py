@@ -84,21 +84,23 @@ def other_fault_at_the_start(root: Path) -> None:
 
 def test_a_check_that_the_starting_point_fails_needs_a_hint(root: Path) -> None:
     change(root / "course" / NEW / "exercise.toml", "[[hint]]", '[[hint]]\nchecks = ["start"]')
-    told = f"{root}/course/{NEW}/exercise.toml: the starting point fails values, and no [[hint]] names it in checks."
-    assert problems(root) == [told]
+    reported = (
+        f"{root}/course/{NEW}/exercise.toml: the starting point fails values, and no [[hint]] names it in checks."
+    )
+    assert problems(root) == [reported]
 
 
 @pytest.mark.parametrize(
-    ("spoil", "told"),
+    ("spoil", "reported"),
     [
         (wrong_solution, f"solutions/{NEW} does not pass: The turtle drives straight on at 0.5 m/s: failed."),
         (solved_starting_point, f"exercises/{NEW} should fail the check 'values' but does not."),
         (other_fault_at_the_start, f"exercises/{NEW} fails for a reason that was not intended: "),
     ],
 )
-def test_unexpected_results_of_gradings_are_reported(root: Path, spoil: Callable[[Path], None], told: str) -> None:
+def test_unexpected_results_of_gradings_are_reported(root: Path, spoil: Callable[[Path], None], reported: str) -> None:
     spoil(root)
-    assert any(problem.startswith(told) for problem in problems(root))
+    assert any(problem.startswith(reported) for problem in problems(root))
 
 
 def test_all_missing_things_are_reported_together(root: Path) -> None:
@@ -108,9 +110,9 @@ def test_all_missing_things_are_reported_together(root: Path) -> None:
     assert validate([], course=root / "course")[1:] == validate([NEW], course=root / "course")[1:]
     change(course / "exercise.toml", '[[trial]]\ntext = "Two', '# "Two')
     shutil.rmtree(root / "solutions" / NEW)
-    told = "\n".join(validate([], course=root / "course"))
+    reported = "\n".join(validate([], course=root / "course"))
     for problem in ("there is no [[hint]]", "words (without code)", "links to nowhere.md", f"solutions/{NEW}"):
-        assert problem in told
+        assert problem in reported
 
 
 def test_an_unknown_exercise_is_an_error_that_lists_all(root: Path) -> None:

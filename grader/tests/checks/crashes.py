@@ -36,7 +36,7 @@ def outside():
 
 
 @dataclass(frozen=True)
-class Told:
+class Reported:
     """What is said of a crash: the diagnosis, the line to look at, the cause in words."""
 
     diagnosis: str | None
@@ -55,13 +55,13 @@ def to_look_at(source: str) -> int | None:
     return line_with(LOOK, source) or line_with(CRASHED, source)
 
 
-def told(source: str, error: str, files: dict[str, str] | None = None) -> Told:
+def reported(source: str, error: str, files: dict[str, str] | None = None) -> Reported:
     """What is told of a node with this source that ended with this error; `files` lie beside it."""
     finding = _finding(source, error, files)
-    return Told(finding.diagnosis, None if finding.where is None else finding.where.line, finding.cause)
+    return Reported(finding.diagnosis, None if finding.where is None else finding.where.line, finding.cause)
 
 
-def mended(source: str, error: str) -> str | None:
+def fixed(source: str, error: str) -> str | None:
     """The source after the fix of the cause that is told; None if there is none that fits."""
     changed = applied({NODE_FILE: source.encode()}, _finding(source, error, None).fix)
     return None if changed is None or changed[NODE_FILE] == source.encode() else changed[NODE_FILE].decode()

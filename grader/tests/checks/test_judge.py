@@ -101,7 +101,7 @@ def test_a_fault_of_the_machine_takes_nothing_out_of_the_maximum(given: Evidence
     assert made.with_status(Status.SKIPPED) == ()
 
 
-def test_a_students_fault_before_the_machines_is_told_as_the_students() -> None:
+def test_a_students_fault_before_the_machines_is_reported_as_the_students() -> None:
     no_module = replace(BUILD, entry_points={"draw_circle": "my_robot_controller.other:main"})
     outcomes = by_id(evidence(None, build=no_module, fault=Fault("trial", FULL_DISK)))
     assert outcomes["entry-point"].status is Status.FAILED

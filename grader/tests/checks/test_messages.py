@@ -49,7 +49,7 @@ FAILURES = catalogue()
 
 
 @pytest.mark.parametrize("name", sorted(FAILURES))
-def test_a_failure_says_what_was_seen_and_expected_in_few_words(name: str) -> None:
+def test_a_failure_says_what_was_observed_and_expected_in_few_words(name: str) -> None:
     finding = FAILURES[name].finding
     assert finding.diagnosis
     assert finding.observed.endswith(".")

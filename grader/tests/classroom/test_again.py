@@ -93,10 +93,10 @@ def test_an_error_that_repeats_while_others_are_judged_is_suspicious(tmp_path: P
     done = graded(tmp_path / "class", out, engine, ends)
     assert engine.graded == {"anna": 1, "ben": TRIES, "clara": TRIES}
     assert (done["ben"].errors, done["clara"].errors) == (TRIES, TRIES)
-    told = attention(out)
-    assert told["anna"] == ""
-    assert "suspicious: it could not be judged 2 times in a row" in told["ben"]
-    assert "suspicious" in told["clara"]
+    reported = attention(out)
+    assert reported["anna"] == ""
+    assert "suspicious: it could not be judged 2 times in a row" in reported["ben"]
+    assert "suspicious" in reported["clara"]
     assert "2 times in a row" in (out / "index.html").read_text("utf-8")
     # The next run continues the count until the submission is judged.
     assert graded(tmp_path / "class", out, Scripted(ends), ends)["ben"].errors == 2 * TRIES

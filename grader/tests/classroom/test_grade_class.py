@@ -126,8 +126,8 @@ def test_a_wrong_command_is_one_sentence_and_exit_code_2(
 ) -> None:
     given = [text.replace("{class}", str(undisturbed.submitted)) for text in arguments]
     done = grade(*([] if "--out" in given else ["--out", tmp_path / "new"]), *given)
-    told = " ".join(done.stderr.split())
-    assert (done.returncode, said in told) == (2, True), done.stderr
+    reported = " ".join(done.stderr.split())
+    assert (done.returncode, said in reported) == (2, True), done.stderr
     assert "Traceback" not in done.stderr
 
 

@@ -78,10 +78,10 @@ class Killer:
         return True
 
 
-def until(child: subprocess.Popen[bytes], seen: Callable[[], bool], seconds: float) -> None:
+def until(child: subprocess.Popen[bytes], observed: Callable[[], bool], seconds: float) -> None:
     """Wait until a condition holds, the child has ended, or the time is over."""
     end = time.monotonic() + seconds
-    while child.poll() is None and time.monotonic() < end and not seen():
+    while child.poll() is None and time.monotonic() < end and not observed():
         time.sleep(0.01)
 
 

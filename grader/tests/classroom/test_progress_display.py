@@ -56,8 +56,8 @@ def test_printed_text_controls_neither_terminal_nor_ci(text: str) -> None:
 def test_a_terminal_shows_submissions_in_progress_and_a_bar() -> None:
     console = Console(file=io.StringIO(), width=140, force_terminal=True, color_system=None)
     table = Table(4, console, several=False)
-    table.tells(("anna", "03"), "Building with colcon")
-    table.tells(("[red]ben", "03"), "Running 10 s of simulated time")
+    table.show(("anna", "03"), "Building with colcon")
+    table.show(("[red]ben", "03"), "Running 10 s of simulated time")
     table.finished(result("clara", "failed"))
     table.finished(result("dora", "error"))
     console.print(table.render())
@@ -73,12 +73,12 @@ def test_a_terminal_shows_submissions_in_progress_and_a_bar() -> None:
 def test_a_pipe_or_a_ci_gets_lines(capsys: pytest.CaptureFixture[str]) -> None:
     with screen(2, several=True) as shown:
         assert isinstance(shown, Lines)
-        shown.tells(("anna", "03"), "Building")
+        shown.show(("anna", "03"), "Building")
         shown.finished(result("anna", "passed"))
     exercise = report("passed").exercise
     assert capsys.readouterr().err.startswith(f"[1/2] anna, {exercise}: Passed: ")
 
 
 def test_the_summary_of_the_class() -> None:
-    told = summary([result("anna", "passed"), result("ben", "failed"), result("clara", "error")])
-    assert told.startswith("3 submissions: 1 passed, 1 not passed, 1 not judged, ")
+    reported = summary([result("anna", "passed"), result("ben", "failed"), result("clara", "error")])
+    assert reported.startswith("3 submissions: 1 passed, 1 not passed, 1 not judged, ")

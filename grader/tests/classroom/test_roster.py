@@ -56,10 +56,10 @@ def test_line_numbers_are_those_of_the_file_and_missing_columns_are_empty(file: 
 )
 def test_a_file_that_is_not_a_roster_is_a_usage_error(file: Path, data: bytes, why: str) -> None:
     file.write_bytes(data)
-    with pytest.raises(UsageError) as told:
+    with pytest.raises(UsageError) as reported:
         read_roster(file, ["id"], ["name", "email"])
-    assert why in str(told.value)
-    assert str(told.value).startswith(str(file))
+    assert why in str(reported.value)
+    assert str(reported.value).startswith(str(file))
 
 
 def test_a_file_that_cannot_be_read_is_a_usage_error(tmp_path: Path) -> None:

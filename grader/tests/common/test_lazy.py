@@ -19,6 +19,6 @@ def test_numpy_is_imported_when_it_is_first_used(then: str, loaded: bool) -> Non
     assert done.stdout.strip() == str(loaded)
 
 
-def test_what_numpy_does_not_have_is_told_as_numpy_tells_it() -> None:
+def test_what_numpy_does_not_have_is_reported_as_numpy_tells_it() -> None:
     with pytest.raises(AttributeError, match="module 'numpy' has no attribute 'hypott'"):
         np.hypott  # type: ignore[attr-defined] # noqa: B018

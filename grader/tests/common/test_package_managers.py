@@ -60,7 +60,7 @@ def test_pacman_keeps_lists_that_it_has(tmp_path: Path) -> None:
     assert line == "pacman -S --needed --noconfirm cmake"
 
 
-def test_without_a_manager_debians_names_are_told() -> None:
+def test_without_a_manager_debians_names_are_reported() -> None:
     line = package_managers.command(None, [Need("a compiler", "g++"), Need("headers", "python3-dev")], root=False)
     assert line == "your package manager (Debian's names: g++, python3-dev)"
 

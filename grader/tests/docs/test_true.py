@@ -63,8 +63,8 @@ def test_every_limit_of_a_cell_is_in_the_table() -> None:
 
 def test_the_budgets_of_reading_are_those_of_the_code() -> None:
     text = " ".join(text_of("docs/security.md").split())
-    told = f"{code.MAX_BYTES // 1000} kB per Python file and {code.MOST_BYTES // 1_000_000} MB in all"
-    assert told in text
+    reported = f"{code.MAX_BYTES // 1000} kB per Python file and {code.MOST_BYTES // 1_000_000} MB in all"
+    assert reported in text
     answers, manifest = (f"{one.MAX_BYTES // 1000} kB" for one in (answers_toml, package_xml))
     assert f"{manifest} for package.xml, {answers} for answers.toml" in text
     assert (

@@ -68,7 +68,7 @@ def same(one: Recording, other: Recording) -> bool:
     return repr(to_json(one)) == repr(to_json(other))
 
 
-def test_a_recording_survives_the_way_through_json() -> None:
+def test_a_recording_survives_a_round_trip_through_json() -> None:
     assert same(from_json(json.loads(json.dumps(to_json(RECORDING)))), RECORDING)
 
 

@@ -96,8 +96,8 @@ def test_a_check_judges_the_first_trial_unless_it_names_another(tmp_path: Path) 
 
 
 def test_an_exercise_without_trials_is_a_mistake(tmp_path: Path) -> None:
-    told = problems(tmp_path, GOOD[: GOOD.index("[[trial]]")] + GOOD[GOOD.index("[[check]]") :])
-    assert told == ["there is no [[trial]], so nothing would be run."]
+    reported = problems(tmp_path, GOOD[: GOOD.index("[[trial]]")] + GOOD[GOOD.index("[[check]]") :])
+    assert reported == ["there is no [[trial]], so nothing would be run."]
 
 
 def test_an_exercise_of_answers_alone_has_trials_without_a_node(tmp_path: Path) -> None:
@@ -221,16 +221,16 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
 )
 def test_each_mistake_of_an_author_is_named(tmp_path: Path, old: str, new: str, expected: str) -> None:
     assert old in GOOD
-    told = problems(tmp_path, GOOD.replace(old, new, 1))
-    assert [line for line in told if line.startswith(expected)], told
+    reported = problems(tmp_path, GOOD.replace(old, new, 1))
+    assert [line for line in reported if line.startswith(expected)], reported
 
 
 def test_a_circle_of_needs_is_shown(tmp_path: Path) -> None:
-    told = problems(tmp_path, GOOD.replace('kind = "rate"', 'kind = "rate"\nneeds = ["values"]'))
-    assert told == ['"needs" goes in a circle: rate -> values -> rate. Take one of them out.']
+    reported = problems(tmp_path, GOOD.replace('kind = "rate"', 'kind = "rate"\nneeds = ["values"]'))
+    assert reported == ['"needs" goes in a circle: rate -> values -> rate. Take one of them out.']
 
 
-def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
+def test_all_mistakes_are_reported_at_once(tmp_path: Path) -> None:
     text = (
         GOOD.replace("rate_hz = 2", "rate_hz = 0").replace("duration_s = 5", "").replace('node = "my_node"', "node = 3")
     )
@@ -245,17 +245,17 @@ def test_advice_is_worth_nothing(tmp_path: Path) -> None:
 
 
 def test_an_exercise_without_checks_is_a_mistake(tmp_path: Path) -> None:
-    told = problems(tmp_path, GOOD[: GOOD.index("[[check]]")])
-    assert told == ["there is no [[check]], so nothing would be judged."]
+    reported = problems(tmp_path, GOOD[: GOOD.index("[[check]]")])
+    assert reported == ["there is no [[check]], so nothing would be judged."]
 
 
 @pytest.mark.parametrize("data", [b"schema = ", b"\xff\xfe", b'schema = 2\n[exercise]\nid = "a"\nid = "b"'])
-def test_what_is_not_toml_is_told(tmp_path: Path, data: bytes) -> None:
-    (told,) = problems(tmp_path, data)
-    assert told.startswith("not TOML: ")
+def test_what_is_not_toml_is_reported(tmp_path: Path, data: bytes) -> None:
+    (reported,) = problems(tmp_path, data)
+    assert reported.startswith("not TOML: ")
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_a_file_that_is_not_there_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="cannot be read"):
         load_exercise(tmp_path)
 

@@ -151,7 +151,7 @@ def test_every_preset_is_made_of_kinds_that_there_are() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "reported"),
     [
         (
             'preset = "stop"',
@@ -170,11 +170,11 @@ def test_every_preset_is_made_of_kinds_that_there_are() -> None:
         ('title = "b) Eight"', "title = 8", '"title" must be a string.'),
     ],
 )
-def test_each_mistake_of_an_author_is_named(tmp_path: Path, old: str, new: str, told: str) -> None:
+def test_each_mistake_of_an_author_is_named(tmp_path: Path, old: str, new: str, reported: str) -> None:
     assert old in SHORT
     with pytest.raises(UsageError) as error:
         load(tmp_path, HEAD + SHORT.replace(old, new, 1))
-    assert told in str(error.value)
+    assert reported in str(error.value)
 
 
 def test_private_checks_lie_over_those_of_a_preset_and_may_use_presets() -> None:

@@ -90,14 +90,14 @@ def test_both_files_are_part_of_the_digest() -> None:
         ("schema = ", "not TOML"),
     ],
 )
-def test_a_mistake_is_told_with_the_file(private: str, said: str) -> None:
+def test_a_mistake_is_reported_with_the_file(private: str, said: str) -> None:
     with pytest.raises(UsageError) as error:
         merged(private)
     assert said in str(error.value)
     assert "mine/exercise.toml" in str(error.value)
 
 
-def test_a_folder_for_no_exercise_of_ours_is_told(tmp_path: Path) -> None:
+def test_a_folder_for_no_exercise_of_ours_is_reported(tmp_path: Path) -> None:
     (tmp_path / "03-circle-publish").mkdir()
     (tmp_path / "03-circle-publish" / "exercise.toml").write_text(PRIVATE)
     with pytest.raises(UsageError, match="Did you mean 03-circle-publisher"):
@@ -120,16 +120,16 @@ def test_students_see_of_a_hidden_check_whether_it_passed_and_no_more(tmp_path: 
     assert found["rate"] == ("failed", True)
     assert found["open"] == ("passed", False)
     assert rows(out)[0]["failed"].split() == ["rate", "secret-radius"]
-    seen = {
+    observed = {
         "page": next((out / "reports").glob("*.html")).read_text("utf-8"),
         "gradescope": next((out / "gradescope").glob("*.json")).read_text("utf-8"),
         **{name: (out / name).read_text("utf-8") for name in ("junit.xml", "github-summary.md")},
         "annotations": (out / "github-annotations.txt").read_text("utf-8"),
         "printed": done.stdout + done.stderr,
     }
-    for name, text in seen.items():
+    for name, text in observed.items():
         for secret in (SECRET, "secret-radius", "3.217", "3.0 Hz", "wrong-radius"):
             assert secret not in text, f"{secret} is in {name}"
-    tests = {test["name"]: test["output"] for test in json.loads(seen["gradescope"])["tests"]}
+    tests = {test["name"]: test["output"] for test in json.loads(observed["gradescope"])["tests"]}
     assert tests["Hidden check"] == "Hidden check: failed."
-    assert "Hidden check" in seen["page"]
+    assert "Hidden check" in observed["page"]

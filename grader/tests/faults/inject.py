@@ -84,18 +84,18 @@ class Done:
 
 def environment(folder: Path, shim: Path, fault: Fault) -> dict[str, str]:
     """The variables with which a command of ours meets the fault; `folder` holds what that takes."""
-    seen = folder / "seen"  # by rooms too
-    seen.mkdir(exist_ok=True)
-    (seen / "sitecustomize.py").write_text(ARMED)
-    preloaded = shutil.copy(shim, seen)
+    observed = folder / "seen"  # by rooms too
+    observed.mkdir(exist_ok=True)
+    (observed / "sitecustomize.py").write_text(ARMED)
+    preloaded = shutil.copy(shim, observed)
     faults = {
-        "PYTHONPATH": str(seen),
+        "PYTHONPATH": str(observed),
         "LD_PRELOAD": str(preloaded),
         "FAULT_LOG": str(folder / "failures"),
         "FAULT_FROM": fault.since,
         "FAULT": f"{fault.call} {fault.number} {fault.nth}",
     }
-    return {**os.environ, **faults, **({"FAULT_IN_ROOMS": str(seen)} if fault.in_rooms else {})}
+    return {**os.environ, **faults, **({"FAULT_IN_ROOMS": str(observed)} if fault.in_rooms else {})}
 
 
 def run(

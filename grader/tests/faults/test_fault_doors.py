@@ -38,9 +38,9 @@ EVERY_DAY = [
 ]
 SET_UP = """
 import ctypes, os, sys
-from grader.setup import bootstrap, refused
+from grader.setup import bootstrap, setup_errors
 ctypes.CDLL(os.environ["LD_PRELOAD"]).fault_arm()
-sys.exit(refused.guarded(lambda: bootstrap.main(["learner"])))
+sys.exit(setup_errors.guarded(lambda: bootstrap.main(["learner"])))
 """
 
 
@@ -53,7 +53,7 @@ def commanded(name: str, folder: Path, shim: Path, call: str, number: int, nth: 
     return run(command.split(), folder, shim, Fault(call, number, nth, since), home)
 
 
-def told(done: Done) -> None:
+def reported(done: Done) -> None:
     """It went well, or ended as a command ends that a machine does not carry."""
     no_traceback(done)
     if done.failures and done.code not in (0, 1):
@@ -66,12 +66,12 @@ def test_what_the_system_refuses_a_command_is_a_sentence(
     tmp_path: Path, shim: Path, name: str, call: str, number: int, nth: int
 ) -> None:
     done = commanded(name, tmp_path, shim, call, number, nth)
-    told(done)
+    reported(done)
     assert done.failures > 0
 
 
 @pytest.mark.parametrize(("call", "number"), [("fork", errno.EAGAIN), ("open", errno.EMFILE), ("mkdir", errno.ENOSPC)])
-def test_what_the_system_refuses_watch_is_said_and_it_ends_as_it_was_asked_to(
+def test_what_the_system_refuses_watch_is_said_and_it_ends_as_it_was_requested_to(
     tmp_path: Path, shim: Path, call: str, number: int
 ) -> None:
     package = tmp_path / "my_robot_controller"
@@ -126,7 +126,7 @@ def set_up(folder: Path, shim: Path, call: str, number: int, nth: int) -> Done:
 )
 def test_what_the_system_refuses_the_set_up_is_a_sentence(tmp_path: Path, shim: Path, call: str, number: int) -> None:
     done = set_up(tmp_path, shim, call, number, 1)
-    told(done)
+    reported(done)
     assert (done.code, done.failures > 0) == (3, True), done
 
 
@@ -136,4 +136,4 @@ def test_what_the_system_refuses_the_set_up_is_a_sentence(tmp_path: Path, shim: 
 def test_nothing_that_the_system_refuses_a_command_is_a_traceback(
     tmp_path: Path, shim: Path, name: str, call: str, number: int, nth: int
 ) -> None:
-    told(commanded(name, tmp_path, shim, call, number, nth))
+    reported(commanded(name, tmp_path, shim, call, number, nth))

@@ -22,7 +22,7 @@ def main() -> None:
     parser.add_argument("target", help="what to fuzz")
     parser.add_argument("--minutes", type=float, default=60.0)
     parser.add_argument("--again", type=Path, metavar="FILE", help="run this input alone")
-    asked = parser.parse_args()
+    requested = parser.parse_args()
     try:
         import atheris  # type: ignore[import-not-found, import-untyped, unused-ignore]
     except ImportError:
@@ -35,19 +35,19 @@ def main() -> None:
         reader.read = inline.read
         from grader.tests.fuzz.targets import TARGETS
         from grader.tests.no_ros import hide_ros
-    if asked.target not in TARGETS:
+    if requested.target not in TARGETS:
         parser.error(f"the targets are {', '.join(TARGETS)}")
-    target = TARGETS[asked.target]
+    target = TARGETS[requested.target]
     hide_ros(Path(tempfile.mkdtemp()))
-    kept = Path("build/fuzz") / asked.target.replace(" ", "-")
+    kept = Path("build/fuzz") / requested.target.replace(" ", "-")
     (kept / "corpus").mkdir(parents=True, exist_ok=True)
     for number, seed in enumerate(target.seeds()):
         (kept / "corpus" / f"seed-{number}").write_bytes(seed)
-    if asked.again:
-        target.run(asked.again.read_bytes())
+    if requested.again:
+        target.run(requested.again.read_bytes())
         return
     options = {
-        "max_total_time": round(60 * asked.minutes),
+        "max_total_time": round(60 * requested.minutes),
         "timeout": SECONDS,
         "rss_limit_mb": MEBIBYTES,
         "max_len": 65536,

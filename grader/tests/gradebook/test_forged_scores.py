@@ -152,10 +152,10 @@ def test_a_forged_score_never_counts(term: Term, monkeypatch: pytest.MonkeyPatch
     shutil.rmtree(term.root / "class" / "submitted" / "gone")
     done = sync_with_an_error_for("forger", term, monkeypatch)
     assert done.unjudged == ("forger",)
-    told = {each.student: each.why for each in done.unconfirmed}
-    assert told.keys() == {"forger", "gone", "unreadable"}
-    assert "could not judge" in told["forger"]
-    assert "could not be read" in told["unreadable"]
+    reported = {each.student: each.why for each in done.unconfirmed}
+    assert reported.keys() == {"forger", "gone", "unreadable"}
+    assert "could not judge" in reported["forger"]
+    assert "could not be read" in reported["unreadable"]
     assert all(withheld(term, student) for student in ("forger", "gone", "unreadable"))
     assert points_of(term) == {"honest": 55, "forger": 0, "gone": 0, "unreadable": 0}
     assert not any(waits for _, _, waits in grades(term, "honest").values())

@@ -47,7 +47,7 @@ def test_a_source_that_cannot_be_read_is_judged_in_wall_time(monkeypatch: pytest
     assert (clock.name, "could not be read (RecursionError)" in clock.why) == ("wall", True)
 
 
-def test_a_doubt_ends_a_trial_only_if_no_clock_was_asked_for() -> None:
+def test_a_doubt_ends_a_trial_only_if_no_clock_was_requested() -> None:
     assert [stops_at_doubt(choice) for choice in ("auto", "simulated", "wall")] == [True, False, False]
     assert after_doubt(WallTimeNeeded("the node sleeps on wall time")).why == "the node sleeps on wall time"
 

@@ -54,21 +54,21 @@ def tries(
         return judged(copy.files[NODE_FILE].decode())
 
     found = explain(evidence, outcomes, build_s, regrade)
-    told = report_of(Evidence(exercise(), evidence.submission, tries=found), outcomes, "", {})
-    return found, {outcome.id: outcome for outcome in told.outcomes}
+    reported = report_of(Evidence(exercise(), evidence.submission, tries=found), outcomes, "", {})
+    return found, {outcome.id: outcome for outcome in reported.outcomes}
 
 
 def test_a_cause_that_makes_the_check_pass_is_proved() -> None:
-    found, told = tries("a\n", lambda text: [right("values") if RIGHT in text else wrong("values")])
+    found, reported = tries("a\n", lambda text: [right("values") if RIGHT in text else wrong("values")])
     assert [each.result for each in found.made] == ["passes"]
-    assert told["values"].finding.tried == PASSES
+    assert reported["values"].finding.tried == PASSES
     assert "+right" in found.made[0].difference
 
 
-def test_a_cause_that_changes_nothing_is_refuted_and_not_told() -> None:
-    found, told = tries("a\n", lambda _: [wrong("values")])
+def test_a_cause_that_changes_nothing_is_refuted_and_not_reported() -> None:
+    found, reported = tries("a\n", lambda _: [wrong("values")])
     assert [each.result for each in found.made] == ["refuted"]
-    assert (told["values"].finding.cause, told["values"].finding.tried) == ("", REFUTED)
+    assert (reported["values"].finding.cause, reported["values"].finding.tried) == ("", REFUTED)
 
 
 def test_a_change_that_breaks_another_check_proves_nothing() -> None:
@@ -83,32 +83,32 @@ def test_mistakes_behind_a_mistake_are_counted_and_proved_in_turn() -> None:
         at = next((line for line, part in enumerate(text.split(), 1) if part == "a"), 0)
         return [wrong("start", line=at) if at else right("start")]
 
-    found, told = tries("a\na\na\n", judged)
+    found, reported = tries("a\na\na\n", judged)
     assert [each.result for each in found.made] == ["further", "further", "passes"]
     assert found.behind == 2
-    assert told["start"].finding.tried == f"{FURTHER} Then 2 more mistakes appeared."
+    assert reported["start"].finding.tried == f"{FURTHER} Then 2 more mistakes appeared."
 
 
 def test_a_cause_of_several_checks_is_tried_once() -> None:
     def judged(text: str) -> list[Outcome]:
         return [right(id_) if RIGHT in text else wrong(id_) for id_ in ("topic", "stop")]
 
-    found, told = tries("a\n", judged)
+    found, reported = tries("a\n", judged)
     assert [(each.check, each.result) for each in found.made] == [("topic", "passes"), ("stop", "passes")]
-    assert {outcome.finding.tried for outcome in told.values()} == {PASSES}
+    assert {outcome.finding.tried for outcome in reported.values()} == {PASSES}
 
 
 @pytest.mark.parametrize("change", [{"new": ""}, {"old": "not there"}])
-def test_a_cause_without_a_change_that_fits_is_told_as_it_was(change: Mapping[str, str]) -> None:
-    found, told = tries("a\n", lambda _: [wrong("values", **change)])  # type: ignore[arg-type]
-    assert (found, told["values"].finding.cause, told["values"].finding.tried) == (Tries(), "It is so.", "")
+def test_a_cause_without_a_change_that_fits_is_reported_as_it_was(change: Mapping[str, str]) -> None:
+    found, reported = tries("a\n", lambda _: [wrong("values", **change)])  # type: ignore[arg-type]
+    assert (found, reported["values"].finding.cause, reported["values"].finding.tried) == (Tries(), "It is so.", "")
 
 
 def test_a_try_that_could_not_be_judged_says_nothing() -> None:
     broken = Outcome("values", "values", "values", 0.0, 5.0, Finding(Status.ERROR, "The machine."))
-    found, told = tries("a\n", lambda text: [broken if RIGHT in text else wrong("values")])
+    found, reported = tries("a\n", lambda text: [broken if RIGHT in text else wrong("values")])
     assert found == Tries(stopped=NOT_SIMULATED)
-    assert (told["values"].finding.cause, told["values"].finding.tried) == ("It is so.", "")
+    assert (reported["values"].finding.cause, reported["values"].finding.tried) == ("It is so.", "")
 
 
 def test_no_more_than_some_changes_are_tried() -> None:

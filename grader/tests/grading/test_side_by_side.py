@@ -95,15 +95,15 @@ def graded(trials: Trials, at_once: int, build: Any, more: bytes = b"") -> Grade
 @pytest.mark.parametrize(("at_once", "begun"), [(2, 4), (1, 1)])
 def test_all_are_begun_where_they_may_run_side_by_side(at_once: int, begun: int) -> None:
     trials = Trials()
-    seen = []
+    observed = []
 
     def build(*_: object, **__: object) -> Any:  # noqa: ANN401
         until(lambda: trials.open == begun)
-        seen.append(trials.open)
+        observed.append(trials.open)
         raise MachineError("No compiler.")  # noqa: EM101
 
     made = graded(trials, at_once, build)
-    assert (seen, trials.open) == ([begun], 0)
+    assert (observed, trials.open) == ([begun], 0)
     assert {outcome.status for outcome in made.report.outcomes} == {Status.PASSED, Status.ERROR}
 
 

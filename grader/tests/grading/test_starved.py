@@ -73,8 +73,8 @@ def graded(trials: Trials) -> Graded:
     return grade(exercise(), submission(), options, build=lambda *_, **__: Built(BUILD, b""), trial=trials)
 
 
-def crowded(seen: Recording, *stalls: tuple[float, float]) -> Recording:
-    return replace(seen, crowded=True, stalls=stalls)
+def crowded(observed: Recording, *stalls: tuple[float, float]) -> Recording:
+    return replace(observed, crowded=True, stalls=stalls)
 
 
 def statuses(of: Graded) -> set[Status]:

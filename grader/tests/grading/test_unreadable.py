@@ -52,23 +52,23 @@ def broken_trial(error: BaseException) -> Trials:
     return trials
 
 
-def told(of: Graded) -> dict[str, tuple[Status, str | None]]:
+def reported(of: Graded) -> dict[str, tuple[Status, str | None]]:
     return {outcome.id: (outcome.status, outcome.finding.diagnosis) for outcome in of.report.outcomes}
 
 
 @pytest.mark.parametrize("error", [RecursionError("too deep"), ValueError("odd"), KeyError("x")])
 def test_what_the_build_has_made_and_nobody_can_read_has_failed(error: Exception) -> None:
     found = graded(build=breaks(error))
-    assert told(found)["build"] == (Status.FAILED, "unreadable")
+    assert reported(found)["build"] == (Status.FAILED, "unreadable")
     assert found.report.with_status(Status.ERROR) == ()
     assert (found.report.exit_code, found.report.max) == (1, 100.0)
 
 
 @pytest.mark.parametrize("error", [RecursionError("too deep"), ValueError("odd")])
-def test_what_the_trial_has_seen_and_nobody_can_read_has_failed(error: Exception) -> None:
+def test_what_the_trial_has_observed_and_nobody_can_read_has_failed(error: Exception) -> None:
     found = graded(trial=broken_trial(error))
-    assert told(found)["build"] == (Status.PASSED, None)
-    assert told(found)["start"] == (Status.FAILED, "unreadable")
+    assert reported(found)["build"] == (Status.PASSED, None)
+    assert reported(found)["start"] == (Status.FAILED, "unreadable")
     assert found.report.with_status(Status.ERROR) == ()
 
 
@@ -95,7 +95,7 @@ def test_a_source_that_breaks_its_reader_fails_and_the_node_is_run_in_wall_time(
     assert len(trials.alone) == 1
     assert "could not be read (RecursionError: too deep)" in found.evidence.recording.why
     assert found.report.with_status(Status.ERROR) == ()
-    assert told(found)["circle"] == (Status.PASSED, None)
+    assert reported(found)["circle"] == (Status.PASSED, None)
 
 
 def spins(*_: object) -> NoReturn:
@@ -116,7 +116,7 @@ def test_what_takes_its_reader_along_fails_every_check_and_nothing_more_is_read(
     monkeypatch.setattr(judging, "judge_early" if when == "early" else "judge_so_far", _in_a_child(how))
     trials = Trials([good()])
     found = graded(trial=trials)
-    assert {status for status, _ in told(found).values()} == {Status.FAILED, Status.SKIPPED}
+    assert {status for status, _ in reported(found).values()} == {Status.FAILED, Status.SKIPPED}
     first = found.report.outcomes[0].finding
     assert (first.diagnosis, found.report.points, found.report.max) == ("unreadable", 0.0, 100.0)
     assert why in first.observed

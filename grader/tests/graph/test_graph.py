@@ -38,12 +38,12 @@ def test_debug_topics_and_the_inside_of_actions_are_left_out() -> None:
     assert topics(Show()) == ["/turtle1/cmd_vel", "/turtle1/color_sensor", "/turtle1/pose"]
 
 
-def test_debug_topics_are_shown_when_asked_for() -> None:
+def test_debug_topics_are_shown_when_requested() -> None:
     assert {"/rosout", "/parameter_events"} <= set(topics(Show(debug=True)))
     assert not any("_action" in topic for topic in topics(Show(debug=True)))
 
 
-def test_hidden_topics_are_shown_when_asked_for() -> None:
+def test_hidden_topics_are_shown_when_requested() -> None:
     assert "/turtle1/rotate_absolute/_action/feedback" in topics(Show(hidden=True))
     assert "/rosout" not in topics(Show(hidden=True))
 
@@ -54,20 +54,20 @@ def test_dead_ends_can_be_left_out() -> None:
 
 def test_a_hidden_node_takes_its_topics_along() -> None:
     ends = [publisher("/_ros2cli_123", "/chatter"), publisher("/_ros2cli_123", "/turtle1/cmd_vel")]
-    seen = picture(["/_ros2cli_123", "/turtlesim"], [*ends, subscription("/turtlesim", "/turtle1/cmd_vel")])
-    assert seen.nodes == (Node("/turtlesim"),)
-    assert seen.topics == (Topic("/turtle1/cmd_vel", (), ("/turtlesim",)),)
+    observed = picture(["/_ros2cli_123", "/turtlesim"], [*ends, subscription("/turtlesim", "/turtle1/cmd_vel")])
+    assert observed.nodes == (Node("/turtlesim"),)
+    assert observed.topics == (Topic("/turtle1/cmd_vel", (), ("/turtlesim",)),)
 
 
 def test_a_node_known_by_its_endpoint_only_is_shown() -> None:
     assert picture([], [publisher("/late", "/chatter")]).nodes == (Node("/late"),)
 
 
-def test_two_nodes_of_one_name_are_told() -> None:
-    seen = picture(["/turtlesim", "/turtlesim"], [subscription("/turtlesim", "/turtle1/cmd_vel")] * 2)
-    assert seen.nodes == (Node("/turtlesim", 2),)
-    assert r'label="/turtlesim\n(2 nodes of this name)"' in to_dot(seen)
-    assert "(/turtlesim) x2" in to_text(seen)
+def test_two_nodes_of_one_name_are_reported() -> None:
+    observed = picture(["/turtlesim", "/turtlesim"], [subscription("/turtlesim", "/turtle1/cmd_vel")] * 2)
+    assert observed.nodes == (Node("/turtlesim", 2),)
+    assert r'label="/turtlesim\n(2 nodes of this name)"' in to_dot(observed)
+    assert "(/turtlesim) x2" in to_text(observed)
 
 
 def test_equal_graphs_give_equal_pictures_whatever_their_order() -> None:

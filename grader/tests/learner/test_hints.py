@@ -49,9 +49,9 @@ def all_texts(step: str) -> list[str]:
 def test_before_the_first_verdict_hints_come_in_order_and_the_last_one_repeats() -> None:
     begun = steps.start("01", None)
     given = begun.exercise.hints
-    for index, told in enumerate(hints.hint(None, None) for _ in range(len(given) + 2)):
-        assert told.startswith(f"Hint {min(index + 1, len(given))} of {len(given)}: ")
-        assert told.endswith(" ".join(given[min(index, len(given) - 1)].text.split()))
+    for index, reported in enumerate(hints.hint(None, None) for _ in range(len(given) + 2)):
+        assert reported.startswith(f"Hint {min(index + 1, len(given))} of {len(given)}: ")
+        assert reported.endswith(" ".join(given[min(index, len(given) - 1)].text.split()))
 
 
 @pytest.mark.parametrize("check", ["topic", "values", "rate", "wall", "timer"])
@@ -59,9 +59,9 @@ def test_after_a_verdict_a_hint_for_a_failed_check_comes_first(check: str) -> No
     verdict("03-circle-publisher", failed=(check,))
     helps = texts("03-circle-publisher", check)
     for text in helps:
-        told = hints.hint(None, None)
-        assert told.endswith(text)
-        assert ', for "' in told
+        reported = hints.hint(None, None)
+        assert reported.endswith(text)
+        assert ', for "' in reported
     others = [text for text in all_texts("03") if text not in helps]
     assert hints.hint(None, None).endswith(others[0])
 
@@ -82,8 +82,8 @@ def test_after_all_hints_one_for_a_failed_check_is_repeated() -> None:
 
 def test_passed_checks_get_no_hint() -> None:
     verdict("04-package-files", done=("depends-rclpy", "depends-geometry-msgs"), failed=("entry-point",))
-    told = {hints.hint(None, None).split(": ", 1)[1] for _ in range(9)}
-    assert told == set(all_texts("04")[1:])
+    reported = {hints.hint(None, None).split(": ", 1)[1] for _ in range(9)}
+    assert reported == set(all_texts("04")[1:])
     verdict("04-package-files", passed=True)
     assert hints.hint(None, None) == "04-package-files has passed. You need no more hints."
 
@@ -91,8 +91,8 @@ def test_passed_checks_get_no_hint() -> None:
 @pytest.mark.parametrize("words", [("07", "d"), ("7", "D"), ("07", "d)"), ("d",)])
 def test_a_part_has_hints_of_its_own(words: tuple[str, ...]) -> None:
     verdict(LAST, failed=("rate",))
-    told = CliRunner().invoke(app, ["hint", *words]).stdout
-    assert told.startswith("Hint 1 of 1: d) ")
+    reported = CliRunner().invoke(app, ["hint", *words]).stdout
+    assert reported.startswith("Hint 1 of 1: d) ")
 
 
 def test_a_part_that_has_passed_needs_no_hint() -> None:

@@ -84,10 +84,10 @@ def test_changed_modules_are_graded_without_colcon(package: Path, watched: Watch
 def test_changes_that_symlink_install_would_miss_start_a_new_build(package: Path) -> None:
     ros = with_turtlesim(find_ros())
     rebuild = Rebuild()
-    told: list[str] = []
+    reported: list[str] = []
 
     def build() -> dict[str, str]:
-        built = rebuild(open_submission(package), ros, in_cell=bubblewrap.usable(), tell=told.append)
+        built = rebuild(open_submission(package), ros, in_cell=bubblewrap.usable(), tell=reported.append)
         return built.build.entry_points
 
     build()
@@ -97,11 +97,11 @@ def test_changes_that_symlink_install_would_miss_start_a_new_build(package: Path
     (package / "my_robot_controller" / "more.py").write_text("")
     build()
     assert rebuild.runs == 3
-    assert told == ["Building with colcon"] * 3
+    assert reported == ["Building with colcon"] * 3
     (package / "my_robot_controller" / "more.py").write_text("x = 1\n")
     build()
     assert rebuild.runs == 3
-    assert told[3:] == ["Using the last build with the changed modules"]
+    assert reported[3:] == ["Using the last build with the changed modules"]
 
 
 @pytest.mark.parametrize("how", ["write", "rename", "delete", "create"])
@@ -144,7 +144,7 @@ def test_keys_come_in_order_and_the_end_of_input_ends_the_loop() -> None:
 
 
 def test_waiting_saves_become_one_and_a_key_after_them_is_kept(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    saved, told = threading.Event(), threading.Event()
+    saved, reported = threading.Event(), threading.Event()
 
     def watch(*_: object, **__: object) -> Iterator[set[str]]:
         yield from ({"first"}, {"second"})
@@ -153,13 +153,13 @@ def test_waiting_saves_become_one_and_a_key_after_them_is_kept(package: Path, mo
     def keys() -> Iterator[str]:
         assert saved.wait(PATIENCE_S)
         yield "h"
-        told.set()
+        reported.set()
         yield ""
 
     monkeypatch.setattr("grader.learner.watch.watch", watch)
     events = Events(partial(next, keys()))
     events.watch(package)
-    assert told.wait(PATIENCE_S)
+    assert reported.wait(PATIENCE_S)
     assert [happened.kind for happened in events] == ["saved", "key"]
 
 

@@ -43,24 +43,28 @@ def diagnosis_files() -> list[Path]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run it; the exit code is 1 where more than a tenth survives."""
-    asked = _arguments(argv)
+    requested = _arguments(argv)
     begun = time.monotonic()
-    files = [path.resolve() for path in asked.files] or diagnosis_files()
-    mutants = [mutant for file in files for mutant in mutants_of(file)][:: asked.every]
+    files = [path.resolve() for path in requested.files] or diagnosis_files()
+    mutants = [mutant for file in files for mutant in mutants_of(file)][:: requested.every]
     equal = equivalent.read()
     counted = [mutant for mutant in mutants if not equivalent.is_known(mutant, equal)]
-    by_case = counted if asked.units else _unnoticed_by_cases(counted, files, asked)
-    survivors = by_case if asked.cases else _unnoticed(by_case, unit.touched(files), ALIKE_TESTS, unit.fail, asked.jobs)
+    by_case = counted if requested.units else _unnoticed_by_cases(counted, files, requested)
+    survivors = (
+        by_case if requested.cases else _unnoticed(by_case, unit.touched(files), ALIKE_TESTS, unit.fail, requested.jobs)
+    )
     _print(files, counted, by_case, survivors, len(mutants) - len(counted))
     _tell(f"{time.monotonic() - begun:.0f} s")
     return 1 if len(survivors) > WORST * len(counted) else 0
 
 
-def _unnoticed_by_cases(mutants: Sequence[Mutant], files: Sequence[Path], asked: argparse.Namespace) -> list[Mutant]:
-    materials = _materials(make=not asked.recorded)
+def _unnoticed_by_cases(
+    mutants: Sequence[Mutant], files: Sequence[Path], requested: argparse.Namespace
+) -> list[Mutant]:
+    materials = _materials(make=not requested.recorded)
     _tell(f"{len(materials)} cases, {len(files)} files")
     lines = judging.touched(materials.values(), files)
-    survived = _unnoticed(mutants, lines, ALIKE_CASES, _by_cases(materials), asked.jobs)
+    survived = _unnoticed(mutants, lines, ALIKE_CASES, _by_cases(materials), requested.jobs)
     _tell(f"{len(survived)} of {len(mutants)} are noticed by no case")
     return survived
 
@@ -103,7 +107,7 @@ def _unnoticed(
     """The mutants that nobody notices of those who run their lines, `alike` of those who do so alike."""
 
     def job(mutant: Mutant) -> judging.Job:
-        names = judging.asked(mutant, lines, alike)
+        names = judging.requested(mutant, lines, alike)
         return judging.Job(mutant, lambda: notice(names))
 
     survived: list[Mutant] = []

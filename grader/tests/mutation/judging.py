@@ -47,7 +47,7 @@ class Material:
 
     name: str
     case: Case
-    seen: Evidence
+    observed: Evidence
     ros: str
 
 
@@ -93,7 +93,7 @@ def fails(material: Material) -> bool:
 def _graded(material: Material) -> Graded:
     from grader.checks.judge import judge
 
-    evidence = _anew(material.seen)
+    evidence = _anew(material.observed)
     recording = evidence.run.recording
     report = Report(
         exercise=evidence.exercise.id,
@@ -110,13 +110,13 @@ def _graded(material: Material) -> Graded:
     return Graded(report.exit_code, "", "", to_data(report))
 
 
-def _anew(seen: Evidence) -> Evidence:
+def _anew(observed: Evidence) -> Evidence:
     """The same, made of the classes as they are imported now, with nothing kept from an earlier judging."""
     from grader.evidence.evidence import Evidence as Anew
     from grader.evidence.evidence import Fault
 
-    fault = None if seen.fault is None else Fault(seen.fault.stage, seen.fault.message)
-    plain = {field.name: getattr(seen, field.name) for field in dataclasses.fields(seen)}
+    fault = None if observed.fault is None else Fault(observed.fault.stage, observed.fault.message)
+    plain = {field.name: getattr(observed, field.name) for field in dataclasses.fields(observed)}
     return Anew(**{**plain, "fault": fault})
 
 
@@ -152,7 +152,7 @@ def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
     return {name for number in numbers for name in lines.get((mutant.file, number), ())}
 
 
-def asked(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
+def requested(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
     """Of those who run the mutant's lines, at most so many that are alike: that run the same lines of its file.
 
     Hundreds of cases pass a check in the same way. So a mutant may seem to survive that one of the others would notice,

@@ -88,7 +88,7 @@ def mutants_of(file: Path) -> list[Mutant]:
         place = _lines(statement, positions)
         for kind, old, new in () if _says_nothing(node, parents) else _changes(node):
             lead = "if " if isinstance(node, cst.If) else ""
-            change = f"{lead}{_told(wrapper.module, old)} -> {lead}{_told(wrapper.module, new)}"
+            change = f"{lead}{_reported(wrapper.module, old)} -> {lead}{_reported(wrapper.module, new)}"
             source = spliced(old, new)
             found.setdefault(source, Mutant(file, *place, kind, change, source, _at_import(statement, parents)))
     found.pop(text, None)
@@ -209,7 +209,7 @@ def _lines(statement: cst.CSTNode, positions: Mapping[cst.CSTNode, CodeRange]) -
     return where.start.line, where.end.line
 
 
-def _told(module: cst.Module, node: cst.CSTNode) -> str:
+def _reported(module: cst.Module, node: cst.CSTNode) -> str:
     """A node's code on one line, so short that two fit on it."""
     text = " ".join(module.code_for_node(node).split())
     return text if len(text) <= 60 else f"{text[:57]}..."

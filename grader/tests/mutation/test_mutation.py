@@ -92,8 +92,8 @@ def recorded(folder: Path) -> list[Recorded]:
 
 
 def test_a_case_is_recorded_once(recorded: list[Recorded], folder: Path) -> None:
-    told: list[str] = []
-    assert (recordings([read_case(CASE)], told.append, folder), told) == (recorded, [])
+    reported: list[str] = []
+    assert (recordings([read_case(CASE)], reported.append, folder), reported) == (recorded, [])
     assert [each.name for each in recorded] == ["mistakes/201-no-slash"]
 
 
@@ -115,7 +115,7 @@ def _noticed(recorded: list[Recorded], mutants: Sequence[Mutant]) -> dict[str, b
         names = judging.who_runs(mutant, lines)
         return judging.Job(mutant, lambda: any(judging.fails(each) for each in materials if each.name in names))
 
-    return {mutant.change: seen for mutant, seen in judging.in_children(map(job, mutants), at_once=2)}
+    return {mutant.change: observed for mutant, observed in judging.in_children(map(job, mutants), at_once=2)}
 
 
 def test_a_case_notices_that_its_diagnosis_was_taken_out(recorded: list[Recorded]) -> None:
@@ -123,13 +123,13 @@ def test_a_case_notices_that_its_diagnosis_was_taken_out(recorded: list[Recorded
     assert all(found.values()), found
 
 
-def test_of_those_that_see_a_file_alike_three_are_asked(tmp_path: Path) -> None:
+def test_of_those_that_see_a_file_alike_three_are_requested(tmp_path: Path) -> None:
     file = tmp_path / "a.py"
     mutant = Mutant(file, 3, 3, DETAIL, "", "")
     deep, flat = {"a", "b", "c", "d", "e"}, {"f"}
     lines = {(file, 1): {*deep, *flat, "g"}, (file, 3): {*deep, *flat}, (file, 4): deep, (tmp_path / "b.py", 1): {"a"}}
-    assert judging.asked(mutant, lines, 3) == ["a", "b", "c", "f"]
-    assert judging.asked(replace(mutant, at_import=True), lines, 3) == ["a", "b", "c", "d", "e", "f", "g"]
+    assert judging.requested(mutant, lines, 3) == ["a", "b", "c", "f"]
+    assert judging.requested(replace(mutant, at_import=True), lines, 3) == ["a", "b", "c", "d", "e", "f", "g"]
 
 
 def test_what_no_case_runs_survives(recorded: list[Recorded]) -> None:

@@ -92,8 +92,8 @@ def make(right: Sequence[tuple[str, Package]], number: int, seed: int, operators
         exercise, package = draw.choice(right)
         mistakes: list[tuple[Operator, Change]] = []
         for operator in draw.sample(operators, min(amount, len(operators))):
-            seen = Package(mistakes[-1][1].files if mistakes else package.files, package.source)
-            change = operator.make(seen, draw) if seen.source in seen.files else None
+            observed = Package(mistakes[-1][1].files if mistakes else package.files, package.source)
+            change = operator.make(observed, draw) if observed.source in observed.files else None
             if change is not None:
                 mistakes.append((operator, change))
         if len(mistakes) == amount:

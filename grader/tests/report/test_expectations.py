@@ -28,7 +28,7 @@ def in_challenge(trial: str, commands: list[Timed], start: Pose = NORTH) -> Evid
     return evidence(recording(commands, start), exercise=find_exercise("07-challenges"), trial_id=trial)
 
 
-def asked_shapes(given: Evidence) -> tuple[tuple[Line | Ring, ...], str]:
+def requested_shapes(given: Evidence) -> tuple[tuple[Line | Ring, ...], str]:
     path = requested_path(given)
     return ((), "") if path is None else (shapes_of(path), path.path)
 
@@ -39,39 +39,39 @@ def points(shape: Line | Ring) -> list[tuple[float, float]]:
 
 
 def test_the_lobes_of_a_figure_eight_are_left_and_right_of_the_start() -> None:
-    shapes, told = asked_shapes(in_challenge("eight", AHEAD))
+    shapes, reported = requested_shapes(in_challenge("eight", AHEAD))
     centres = [number for ring in shapes if isinstance(ring, Ring) for number in ring.centre]
     assert centres == pytest.approx([3.0, 5.0, 5.0, 5.0])
-    assert told == "two lobes of 1.00 m"
+    assert reported == "two lobes of 1.00 m"
 
 
 def test_a_square_is_drawn_on_the_side_to_which_the_turtle_turned() -> None:
     left, right = ((20, 1.0, 0.0), (10, 0.0, 1.6)), ((20, 1.0, 0.0), (10, 0.0, -1.6))
-    corners = points(asked_shapes(in_challenge("square", legs(*left)))[0][0])
+    corners = points(requested_shapes(in_challenge("square", legs(*left)))[0][0])
     assert corners == [(4.0, 5.0), (4.0, 7.0), (2.0, 7.0), (2.0, 5.0), (4.0, 5.0)]
-    corners = points(asked_shapes(in_challenge("square", legs(*right)))[0][0])
+    corners = points(requested_shapes(in_challenge("square", legs(*right)))[0][0])
     assert corners == [(4.0, 5.0), (4.0, 7.0), (6.0, 7.0), (6.0, 5.0), (4.0, 5.0)]
 
 
 def test_a_turtle_that_turns_first_gets_a_rotated_square() -> None:
     quarter = math.pi / 2 / (10 * 0.096)
-    corners = points(asked_shapes(in_challenge("square", legs((10, 0.0, quarter), (20, 1.0, 0.0))))[0][0])
+    corners = points(requested_shapes(in_challenge("square", legs((10, 0.0, quarter), (20, 1.0, 0.0))))[0][0])
     assert corners[:2] == [(4.0, 5.0), (2.0, 5.0)]
 
 
 def test_a_goal_is_a_ring_as_large_as_its_tolerance() -> None:
-    shapes, told = asked_shapes(in_challenge("goal", AHEAD))
+    shapes, reported = requested_shapes(in_challenge("goal", AHEAD))
     assert shapes[0] == Ring("expected", (8.5, 2.5), 0.1)
-    assert told == "x=8.5 y=2.5"
+    assert reported == "x=8.5 y=2.5"
 
 
 @pytest.mark.parametrize("trial", ["eight", "square", "goal"])
 @pytest.mark.parametrize("commands", [[], every(0.5, math.nan, 1.0)], ids=["none", "nan"])
 def test_a_trial_without_a_usable_trajectory_still_shows_what_is_required(trial: str, commands: list[Timed]) -> None:
-    assert asked_shapes(in_challenge(trial, commands))[0]
+    assert requested_shapes(in_challenge(trial, commands))[0]
 
 
 def test_the_path_of_a_hidden_check_is_not_drawn() -> None:
     given = in_challenge("goal", AHEAD)
     checks: tuple[CheckSpec, ...] = tuple(replace(check, hidden=True) for check in given.exercise.checks)
-    assert asked_shapes(replace(given, exercise=replace(given.exercise, checks=checks))) == ((), "")
+    assert requested_shapes(replace(given, exercise=replace(given.exercise, checks=checks))) == ((), "")

@@ -217,8 +217,8 @@ def test_the_page_has_nothing_that_differs_from_run_to_run() -> None:
 def test_the_page_says_what_a_full_recording_left_out() -> None:
     assert "The recording was full" not in page_of(evidence(good()))
     full = replace(good(), dropped=1, interventions_dropped=300, graph_dropped=20)
-    told = "These are left out: 1 message, 300 calls of the simulator&#39;s services and 20 parts of the graph."
-    assert told in page_of(evidence(full))
+    reported = "These are left out: 1 message, 300 calls of the simulator&#39;s services and 20 parts of the graph."
+    assert reported in page_of(evidence(full))
 
 
 def test_each_trial_of_an_exercise_is_shown() -> None:

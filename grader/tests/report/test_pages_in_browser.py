@@ -86,12 +86,12 @@ def test_axe_finds_a_button_without_a_name(page: Page, pages: Path) -> None:
 
 def test_the_page_has_light_and_dark_colours(page: Page, pages: Path) -> None:
     opened(page, pages, "passed")
-    seen = []
+    observed = []
     schemes: tuple[Literal["light", "dark"], ...] = ("light", "dark")
     for scheme in schemes:
         page.emulate_media(color_scheme=scheme)
-        seen.append(page.evaluate("getComputedStyle(document.body).backgroundColor"))
-    assert seen == ["rgb(255, 255, 255)", "rgb(20, 24, 29)"]
+        observed.append(page.evaluate("getComputedStyle(document.body).backgroundColor"))
+    assert observed == ["rgb(255, 255, 255)", "rgb(20, 24, 29)"]
 
 
 def test_a_printed_page_has_open_details_and_no_player(page: Page, pages: Path) -> None:

@@ -67,7 +67,7 @@ def test_a_file_name_that_is_not_utf8_makes_valid_json() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "reported"),
     [
         ("", "not a report of the grader"),
         ("[]", "not a report of the grader"),
@@ -76,8 +76,8 @@ def test_a_file_name_that_is_not_utf8_makes_valid_json() -> None:
         ('{"schema": 1}', "damaged"),
     ],
 )
-def test_a_text_that_is_not_a_report_is_a_usage_error(text: str, told: str) -> None:
-    with pytest.raises(UsageError, match=told):
+def test_a_text_that_is_not_a_report_is_a_usage_error(text: str, reported: str) -> None:
+    with pytest.raises(UsageError, match=reported):
         from_json(text)
 
 

@@ -54,9 +54,9 @@ def test_the_path_is_drawn_where_the_turtle_drove() -> None:
 
 def test_a_wrong_radius_shows_both_circles_apart() -> None:
     pixels = canvas(evidence(SHAPES["radius 2.2"]()))
-    driven, asked = 5.544 + 2.2 + 2.2, 5.544 + 2.0 + 2.0
+    driven, requested = 5.544 + 2.2 + 2.2, 5.544 + 2.0 + 2.0
     assert has(around(pixels, 5.53, driven), PEN)
-    assert not has(around(pixels, 5.53, asked), PEN)
+    assert not has(around(pixels, 5.53, requested), PEN)
     ring = [around(pixels, 5.53 + 2.0 * np.cos(a), 7.54 + 2.0 * np.sin(a)) for a in np.linspace(1.0, 2.2, 12)]
     assert any(has(place, EXPECTED) for place in ring)
 

@@ -29,7 +29,7 @@ class Latin1(io.StringIO):
     encoding = "latin-1"
 
 
-def told(
+def reported(
     made: Report,
     *,
     width: int = 80,
@@ -44,30 +44,30 @@ def told(
 
 
 def test_a_pipe_gets_no_escape_sequences_and_no_wrapping() -> None:
-    text = told(report("failed"), width=30)
+    text = reported(report("failed"), width=30)
     assert ESCAPE not in text
     assert "    seen: All 19 commands were wrong: linear.x 2.2 m/s.\n" in text
 
 
 def test_the_verdict_comes_last() -> None:
-    lines = told(report("failed")).splitlines()
+    lines = reported(report("failed")).splitlines()
     assert lines[0] == "Draw a circle: alice/my_robot_controller"
     assert lines[-1] == "Not passed yet: 55 of 100 points, 2 checks failed."
 
 
 def test_simulated_time_is_printed_on_request_and_wall_time_always() -> None:
     simulated = report("failed")
-    assert "Judged in" not in told(simulated)
-    assert told(simulated, verbose=True).endswith("\nJudged in simulated time: The node waits only for ROS time.\n")
-    assert "Judged in wall time" in told(dataclasses.replace(simulated, clock="wall"))
+    assert "Judged in" not in reported(simulated)
+    assert reported(simulated, verbose=True).endswith("\nJudged in simulated time: The node waits only for ROS time.\n")
+    assert "Judged in wall time" in reported(dataclasses.replace(simulated, clock="wall"))
     other = dataclasses.replace(simulated, clock_why="it waits for ROS time; eight in wall time: it sleeps")
-    assert "eight in wall time" in told(other)
+    assert "eight in wall time" in reported(other)
 
 
 def test_a_run_without_a_sandbox_is_reported_in_one_line() -> None:
-    lines = told(report("passed", confined=False), width=200).splitlines()
+    lines = reported(report("passed", confined=False), width=200).splitlines()
     assert [line for line in lines if "sandbox" in line] == [UNCONFINED]
-    assert "sandbox" not in told(report("passed"))
+    assert "sandbox" not in reported(report("passed"))
 
 
 def worth(points: float, *, others: tuple[float, ...] = (100.0,)) -> Report:
@@ -87,7 +87,7 @@ def worth(points: float, *, others: tuple[float, ...] = (100.0,)) -> Report:
     ],
 )
 def test_a_failed_check_without_points_is_a_warning(made: Report, verdict: str, exit_code: int) -> None:
-    assert (told(made).splitlines()[-1], made.exit_code) == (verdict, exit_code)
+    assert (reported(made).splitlines()[-1], made.exit_code) == (verdict, exit_code)
 
 
 @pytest.mark.parametrize(
@@ -99,17 +99,17 @@ def test_a_failed_check_without_points_is_a_warning(made: Report, verdict: str, 
     ],
 )
 def test_each_verdict(status: str, verdict: str) -> None:
-    assert verdict in told(report(status)).splitlines()
+    assert verdict in reported(report(status)).splitlines()
 
 
 def test_a_check_that_passed_takes_one_line() -> None:
-    text = told(report("passed"))
+    text = reported(report("passed"))
     assert "✓ The turtle drives a circle  25/25\n" in text
     assert "seen" not in text
 
 
-def test_a_failed_check_has_seen_expected_why_and_where() -> None:
-    text = told(report("failed"))
+def test_a_failed_check_has_observed_expected_why_and_where() -> None:
+    text = reported(report("failed"))
     start = text.index("✗ The turtle drives a circle  0/25\n")
     assert text[start:].splitlines()[1:5] == [
         "    seen: The radius of the circle is 2.2 m.",
@@ -131,18 +131,18 @@ def test_brief_lists_only_what_did_not_pass() -> None:
 
 
 def test_an_error_has_no_points_so_far_and_says_what_to_do() -> None:
-    text = told(report("error"))
+    text = reported(report("error"))
     assert "! The turtle drives a circle  0/25 so far\n" in text
     assert "    seen: The disk is full: make room, then grade again.\n" in text
 
 
 def test_the_same_cause_of_several_checks_is_printed_once() -> None:
-    assert told(report("error")).count("The disk is full") == 1
-    assert told(report("skipped")).count("Not judged, because") == 1
+    assert reported(report("error")).count("The disk is full") == 1
+    assert reported(report("skipped")).count("Not judged, because") == 1
 
 
 def test_signs_are_ascii_if_the_stream_knows_no_others() -> None:
-    text = told(report("failed"), stream=Latin1())
+    text = reported(report("failed"), stream=Latin1())
     assert text.isascii()
     assert "FAIL The turtle drives a circle" in text
 
@@ -150,7 +150,7 @@ def test_signs_are_ascii_if_the_stream_knows_no_others() -> None:
 def test_a_hidden_check_is_one_line_without_details() -> None:
     made = report("failed")
     hidden = tuple(replace(outcome, hidden=True) for outcome in made.outcomes)
-    text = told(replace(made, outcomes=hidden))
+    text = reported(replace(made, outcomes=hidden))
     assert "✗ The turtle drives a circle  0/25\n" in text
     assert "radius" not in text
 
@@ -158,13 +158,13 @@ def test_a_hidden_check_is_one_line_without_details() -> None:
 def test_advice_looks_different_from_a_failure() -> None:
     made = report("passed")
     advice = replace(made.outcomes[-1], finding=failed("The node does not use a timer.", "A timer.", Cause("no-timer")))
-    text = told(replace(made, outcomes=(*made.outcomes[:-1], advice)))
+    text = reported(replace(made, outcomes=(*made.outcomes[:-1], advice)))
     assert "i The node uses a timer\n    seen: The node does not use a timer.\n" in text
     assert "Passed: 100 of 100 points." in text
 
 
 def test_the_seed_and_the_recording_are_printed() -> None:
-    text = told(report("passed", seed=7, recording="kept/here"))
+    text = reported(report("passed", seed=7, recording="kept/here"))
     assert "The turtle's start was drawn with seed 7.\nRecording: kept/here\n" in text
 
 
@@ -176,7 +176,7 @@ def test_text_of_a_student_cannot_control_the_terminal(text: str, width: int, te
     made = report("passed")
     finding = failed(text, text, Cause("crash", text, Where(text, 3)))
     outcomes = (replace(made.outcomes[0], title=text, finding=finding), replace(made.outcomes[1], finding=passed(text)))
-    shown = told(replace(made, outcomes=outcomes, submission=text), width=width, terminal=terminal)
+    shown = reported(replace(made, outcomes=outcomes, submission=text), width=width, terminal=terminal)
     for own in ("\x1b[0m", "\x1b[1m", "\x1b[2m", "\x1b[32m", "\x1b[36m", "\x1b[1;31m", "\x1b[1;32m", "\x1b[2;32m"):
         shown = shown.replace(own, "")
     assert [char for char in shown if not char.isprintable() and char != "\n"] == []
@@ -184,7 +184,7 @@ def test_text_of_a_student_cannot_control_the_terminal(text: str, width: int, te
 
 def test_markup_is_printed_as_plain_text() -> None:
     made = report("passed", submission="[bold]alice[/bold] [link=x]y[/link]")
-    assert told(made).startswith("Draw a circle: [bold]alice[/bold] [link=x]y[/link]\n")
+    assert reported(made).startswith("Draw a circle: [bold]alice[/bold] [link=x]y[/link]\n")
 
 
 @pytest.mark.parametrize("width", [20, 40, 80, 200])
@@ -198,6 +198,6 @@ def test_no_line_is_wider_than_the_terminal(status: str, width: int) -> None:
 
 def test_every_status_has_its_own_sign() -> None:
     made = report("skipped")
-    signs = {line[0] for line in told(made).splitlines()[1:18] if not line.startswith(" ")}
+    signs = {line[0] for line in reported(made).splitlines()[1:18] if not line.startswith(" ")}
     assert signs == {"✓", "✗", "-"}
     assert made.with_status(Status.SKIPPED)

@@ -80,7 +80,7 @@ def test_arrays_and_strings_by_their_kind() -> None:
 
 
 @pytest.mark.parametrize(
-    ("declared", "told"),
+    ("declared", "reported"),
     [
         ("double[36]", "<array type: double[36]>"),
         ("sequence<double>", "<sequence type: double, length: 2>"),
@@ -88,8 +88,8 @@ def test_arrays_and_strings_by_their_kind() -> None:
         ("sequence<string<5>, 3>", "<sequence type: string[3], length: 2>"),
     ],
 )
-def test_the_kind_of_an_array(declared: str, told: str) -> None:
-    assert rendering.plain([1, 2], Form(arrays=False), declared) == told
+def test_the_kind_of_an_array(declared: str, reported: str) -> None:
+    assert rendering.plain([1, 2], Form(arrays=False), declared) == reported
 
 
 def test_stamps_are_set_later() -> None:
@@ -145,12 +145,12 @@ def test_the_rate_of_arrivals(gaps_s: list[float], hertz: float, deviation: floa
 
 def test_there_are_news_of_the_rate_every_second_in_which_something_came() -> None:
     arrivals = Arrivals(window=100)
-    seen = []
+    observed = []
     for tick in range(1, 31):
         arrivals.add(tick * SECOND // 4)
         if arrivals.have_news():
-            seen.append((tick, arrivals.news().window))
-    assert seen == [(6, 5), (10, 9), (14, 13), (18, 17), (22, 21), (26, 25), (30, 29)]
+            observed.append((tick, arrivals.news().window))
+    assert observed == [(6, 5), (10, 9), (14, 13), (18, 17), (22, 21), (26, 25), (30, 29)]
     assert not arrivals.have_news()
 
 
@@ -164,16 +164,16 @@ def test_simulated_time_that_begins_again_begins_the_measuring_again(capsys: pyt
 
 
 @pytest.mark.parametrize(
-    ("size", "told"),
+    ("size", "reported"),
     [
         (10, "20 B/s from 3 messages\n\tMessage size mean: 10 B min: 5 B max: 15 B"),
         (1000, "2.00 KB/s from 3 messages\n\tMessage size mean: 1.00 KB min: 0.99 KB max: 1.00 KB"),
         (10_000_000, "20.00 MB/s from 3 messages\n\tMessage size mean: 10.00 MB min: 10.00 MB max: 10.00 MB"),
     ],
 )
-def test_bandwidth_in_a_unit_that_suits(size: int, told: str) -> None:
+def test_bandwidth_in_a_unit_that_suits(size: int, reported: str) -> None:
     arrivals = [(0, size - 5), (SECOND // 2, size), (SECOND, size + 5)]
-    assert str(bw.bandwidth(arrivals, 3 * SECOND // 2)) == told
+    assert str(bw.bandwidth(arrivals, 3 * SECOND // 2)) == reported
 
 
 def test_delays(capsys: pytest.CaptureFixture[str]) -> None:
@@ -183,7 +183,9 @@ def test_delays(capsys: pytest.CaptureFixture[str]) -> None:
         delays.add(SECOND + late_ms, SECOND)
     assert delays.report() == "average delay: 0.000\n\tmin: 0.000s max: 0.000s std dev: 0.00000s window: 2"
     assert delays.report() == "no new messages"
-    assert delay.told([SECOND, 3 * SECOND]).startswith("average delay: 2.000\n\tmin: 1.000s max: 3.000s std dev: 1.0")
+    assert delay.summary([SECOND, 3 * SECOND]).startswith(
+        "average delay: 2.000\n\tmin: 1.000s max: 3.000s std dev: 1.0"
+    )
     delays.add(0, SECOND)
     assert capsys.readouterr().out == "time has reset, resetting counters\n"
 

@@ -51,7 +51,7 @@ def test_a_sourced_ros_2_stays_where_a_terminal_has_it_in_which_nothing_else_was
 
 
 @pytest.mark.parametrize(
-    ("env", "told"),
+    ("env", "reported"),
     [
         (
             {"ROS_DOMAIN_ID": "5", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"},
@@ -63,8 +63,8 @@ def test_a_sourced_ros_2_stays_where_a_terminal_has_it_in_which_nothing_else_was
         ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, "domain 0, ROS_AUTOMATIC_DISCOVERY_RANGE=OFF"),
     ],
 )
-def test_who_hears_a_node_is_told(env: dict[str, str], told: str) -> None:
-    assert told in installation.who_hears(env)
+def test_who_hears_a_node_is_reported(env: dict[str, str], reported: str) -> None:
+    assert reported in installation.who_hears(env)
 
 
 def test_how_messages_travel_stays_the_users() -> None:
@@ -202,8 +202,8 @@ def test_one_line_from_any_folder_brings_ros_2_and_our_commands(tmp_path: Path, 
 
 def test_the_words_of_grader_are_completed() -> None:
     code = shell.code(users({}))
-    asked = "COMP_WORDS=(grader sta); COMP_CWORD=1; _grader_completion grader grader; echo ${COMPREPLY[@]}"
-    assert set(sourced(code, asked, PATH=f"{BIN}:/usr/bin:/bin").split()) == {"start", "status"}
+    requested = "COMP_WORDS=(grader sta); COMP_CWORD=1; _grader_completion grader grader; echo ${COMPREPLY[@]}"
+    assert set(sourced(code, requested, PATH=f"{BIN}:/usr/bin:/bin").split()) == {"start", "status"}
 
 
 def test_a_set_up_for_a_sourced_ros_2_names_it_where_it_is_not_sourced(

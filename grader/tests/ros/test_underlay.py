@@ -63,10 +63,10 @@ def test_two_at_once_build_it_once_and_both_get_it(ros: installation.Ros, tmp_pa
         subprocess.Popen([sys.executable, "-c", code], env=env, stdout=subprocess.PIPE, text=True) for _ in range(2)
     ]
     lines = [process.communicate()[0].splitlines() for process in both]
-    prefixes = {Path(told[-1]) for told in lines}
+    prefixes = {Path(reported[-1]) for reported in lines}
     assert len(prefixes) == 1
     prefix = prefixes.pop()
-    assert sum("once; this takes" in line for told in lines for line in told) == 1
+    assert sum("once; this takes" in line for reported in lines for line in reported) == 1
     assert (prefix / INDEX / "turtlesim").is_file()
     assert sorted(path.name for path in prefix.parent.iterdir()) == [prefix.name, "turtlesim.lock"]
 

@@ -80,11 +80,11 @@ def test_all_that_arrived_before_the_end_is_in_the_bag(quiet: World, number: sig
     recorder = record(quiet, count=500)
     assert recorder.stop(number) == 0
     assert numbers(quiet.home / "bag") == list(range(500))
-    told = quiet.run("ros2 bag info bag").stdout
-    assert "Files:             bag_0.mcap\n" in told
-    assert "ROS Distro:        jazzy\n" in told
-    assert "Messages:          500\n" in told
-    assert "Topic: /count | Type: std_msgs/msg/Int32 | Count: 500 | Serialization Format: cdr\n" in told
+    reported = quiet.run("ros2 bag info bag").stdout
+    assert "Files:             bag_0.mcap\n" in reported
+    assert "ROS Distro:        jazzy\n" in reported
+    assert "Messages:          500\n" in reported
+    assert "Topic: /count | Type: std_msgs/msg/Int32 | Count: 500 | Serialization Format: cdr\n" in reported
     assert quiet.run("ros2 bag info -t bag").stdout == "/count\n"
 
 
@@ -114,7 +114,7 @@ def test_a_killed_recording_is_made_whole(quiet: World, storage: str, ending: st
     assert sorted(path.name for path in (quiet.home / "bag").iterdir()) == [f"bag_0{ending}", "metadata.yaml"]
 
 
-def test_a_disk_that_is_full_is_told_and_the_bag_can_be_read(quiet: World) -> None:
+def test_a_disk_that_is_full_is_reported_and_the_bag_can_be_read(quiet: World) -> None:
     # A limit on the size of a file fails as a full disk does, and needs no disk.
     recorder = quiet.start("bash -c 'ulimit -f 8; exec ros2 bag record -o bag /count'", "Recording...")
     quiet.start("python3 talker.py 3000", "sent")
@@ -154,7 +154,7 @@ def test_space_pauses_and_the_right_arrow_steps(quiet: World) -> None:
     player.expect(pexpect.EOF)
 
 
-def test_a_loop_over_nothing_ends_and_a_wrong_regular_expression_is_told(quiet: World) -> None:
+def test_a_loop_over_nothing_ends_and_a_wrong_regular_expression_is_reported(quiet: World) -> None:
     record(quiet, count=2).stop()
     # Beyond the end there is nothing to repeat.
     assert quiet.run("ros2 bag play bag --loop --start-offset 1000").code == 0

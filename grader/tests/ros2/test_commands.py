@@ -81,7 +81,7 @@ def test_run_tells_by_which_signal_the_program_ended(tools: World) -> None:
         assert running.lines == ["waits", f"[ros2run]: {name}"]
 
 
-def test_who_is_asked_to_end_alone_takes_the_program_along(tools: World) -> None:
+def test_a_signal_to_ros2_run_alone_ends_the_program_too(tools: World) -> None:
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGKILL):
         running = tools.start("ros2 run tools wait", "waits")
         program = running.program

@@ -233,8 +233,8 @@ def test_hz_until_ctrl_c(name: str, driving: World) -> None:
 
     windows = re.compile(r"window: 0+")
     shown = [windows.sub("window: N", line) for line in shape("\n".join(running.lines))]
-    asked = [windows.sub("window: N", line) for line in shape(expected.stdout)]
-    assert shown[:4] == asked[:4]
+    requested = [windows.sub("window: N", line) for line in shape(expected.stdout)]
+    assert shown[:4] == requested[:4]
 
 
 def test_spawn_twice(touched: World) -> None:

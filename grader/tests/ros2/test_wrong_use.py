@@ -193,7 +193,7 @@ def test_who_waits_in_vain_says_for_what_and_ends_on_ctrl_c(command: str, hint: 
     assert "Traceback" not in "\n".join(waiting.lines)
 
 
-def test_two_turtlesims_are_told(tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_two_turtlesims_are_reported(tmp_path_factory: pytest.TempPathFactory) -> None:
     for where in world(tmp_path_factory.mktemp("two")):
         where.turtlesim()
         where.turtlesim()

@@ -75,14 +75,14 @@ def test_a_cell_sees_only_named_parts_of_a_hidden_folder(tmp_path: Path) -> None
     for name in ("trial/launcher.py", "trial/rest.py", "solutions/a.py", "fastdds.xml"):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_text(name)
-    seen = (*SEEN.read_only, tmp_path / "site-packages", package / "trial/launcher.py", package / "fastdds.xml")
+    observed = (*SEEN.read_only, tmp_path / "site-packages", package / "trial/launcher.py", package / "fastdds.xml")
     code = f"""
 import pathlib
 below = pathlib.Path({str(package)!r})
 print(sorted(str(path.relative_to(below)) for path in below.rglob("*")), (below / "fastdds.xml").read_text())
 (below / "more").mkdir()
 """
-    done = run(code, view=bubblewrap.View(seen, hidden=(package,)))
+    done = run(code, view=bubblewrap.View(observed, hidden=(package,)))
     assert done.stdout.decode() == "['fastdds.xml', 'trial', 'trial/launcher.py'] fastdds.xml\n"
     assert b"Read-only file system" in done.stderr
 

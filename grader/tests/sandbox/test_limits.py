@@ -20,10 +20,10 @@ def test_limits_never_exceed_those_of_the_user() -> None:
     """Only root can raise a hard limit. For other users, prlimit would refuse to start the command."""
     code = "from grader.sandbox.limits import *; print(*limited([], Limits()))"
     command = ["prlimit", f"--fsize={100 * MIB}", "--nofile=512", "--", sys.executable, "-c", code]
-    told = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    assert f"--fsize={100 * MIB} " in told
-    assert "--nofile=512 " in told
-    assert f"--as={Limits().memory} " in told
+    reported = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert f"--fsize={100 * MIB} " in reported
+    assert "--nofile=512 " in reported
+    assert f"--as={Limits().memory} " in reported
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,7 @@ class Course:
         self.python = SYSTEMS
         self.needs: list[Need] = []
         self.of_tests: list[Need] = []
-        self.asked: list[list[str]] = []
+        self.requested: list[list[str]] = []
         self.offline = False
         self.granted: set[str] = set()
         """The packages that can be had."""
@@ -45,7 +45,7 @@ class Course:
 
     def provide(self, needs: list[Need], *_: object) -> str:
         """Stands in for the package manager."""
-        self.asked.append([need.package for need in needs])
+        self.requested.append([need.package for need in needs])
         self.needs = [need for need in self.needs if need.package not in self.granted]
         self.of_tests = [need for need in self.of_tests if need.package not in self.granted]
         return "" if {need.package for need in needs} <= self.granted else "nobody may"
@@ -57,5 +57,5 @@ class Course:
         return [next(word for word in command if word in known) for command in self.commands]
 
     def set_up(self, parts: list[str] = LEARNER, ros: SourcedRos | None = None) -> int:
-        self.commands, self.asked = [], []
+        self.commands, self.requested = [], []
         return bootstrap.set_up(parts, ros, None)

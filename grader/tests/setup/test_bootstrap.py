@@ -129,7 +129,9 @@ def test_of_two_pythons_the_one_that_can_import_what_a_sourced_ros_needs_is_take
     assert SYSTEMS.path in course.commands[0]
 
 
-def test_where_no_python_can_it_is_told_and_nothing_is_done(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
+def test_where_no_python_can_it_is_reported_and_nothing_is_done(
+    course: Course, capsys: pytest.CaptureFixture[str]
+) -> None:
     course.python = SYSTEMS._replace(path="/home/me/.pyenv/bin/python3.11", lacks=("em",))
     assert course.set_up(ros=JAZZY) == MACHINE_BROKEN
     assert course.commands == []
@@ -145,7 +147,7 @@ def test_an_environment_that_lacks_what_the_sourced_ros_needs_is_made_anew(
     monkeypatch.setattr(machine, "for_ros", lambda python, _ros: python._replace(lacks=("em",)))
     monkeypatch.setattr(machine, "find_pythons", lambda _path: iter([SYSTEMS]))
     course.set_up(ros=JAZZY)
-    assert course.asked == [["python3-empy"]]
+    assert course.requested == [["python3-empy"]]
 
 
 def test_a_set_up_for_a_sourced_ros_is_not_replaced_without_a_word(
@@ -165,7 +167,7 @@ def test_a_prefix_by_another_name_is_the_same_ros(course: Course, tmp_path: Path
     assert course.commands == []
 
 
-def test_a_python_that_cannot_make_an_environment_is_told(
+def test_a_python_that_cannot_make_an_environment_is_reported(
     course: Course, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def fails(command: list[str], **_options: object) -> bytes:
@@ -209,7 +211,7 @@ def test_help_names_every_target() -> None:
         (["learner", "--python", "python9"], "argument --python: python9 is not a Python that runs here"),
     ],
 )
-def test_a_wrong_argument_is_told_with_the_usage(arguments: list[str], said: str) -> None:
+def test_a_wrong_argument_is_reported_with_the_usage(arguments: list[str], said: str) -> None:
     done = bootstrapped(*arguments)
     assert done.returncode == 2
     assert done.stderr.startswith("usage: python3 -m grader.setup.bootstrap ")
@@ -217,15 +219,15 @@ def test_a_wrong_argument_is_told_with_the_usage(arguments: list[str], said: str
 
 
 @pytest.mark.parametrize("arguments", [["tests"], ["tests", "--python", "python3"], ["--python=python3", "tests"]])
-def test_the_target_and_the_python_asked_for_are_set_up(
+def test_the_target_and_the_python_requested_are_set_up(
     course: Course, monkeypatch: pytest.MonkeyPatch, arguments: list[str]
 ) -> None:
-    asked: list[object] = []
+    requested: list[object] = []
 
     def set_up(*given: object) -> int:
-        asked.extend(given)
+        requested.extend(given)
         return 7
 
     monkeypatch.setattr(bootstrap, "set_up", set_up)
     assert bootstrap.main(arguments) == 7
-    assert asked == [TESTS, machine.sourced_ros(os.environ, ROOT), course.python if len(arguments) > 1 else None]
+    assert requested == [TESTS, machine.sourced_ros(os.environ, ROOT), course.python if len(arguments) > 1 else None]

@@ -9,7 +9,7 @@ from grader.setup.setup_errors import MACHINE_BROKEN
 from grader.tests.setup.course import LEARNER, SYSTEMS, TESTS, Course
 
 
-def test_what_is_missing_is_told_and_nothing_is_done(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_missing_is_reported_and_nothing_is_done(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
     course.needs = [Need("cmake", "cmake")]
     course.python = SYSTEMS._replace(headers=False)
     assert course.set_up() == MACHINE_BROKEN
@@ -28,36 +28,38 @@ def test_what_is_missing_is_installed_and_the_set_up_goes_on(course: Course) -> 
     course.needs = [CMAKE, BUBBLEWRAP]
     course.granted = {"cmake", "bubblewrap"}
     assert course.set_up() == 0
-    assert course.asked == [["cmake", "bubblewrap"]]
+    assert course.requested == [["cmake", "bubblewrap"]]
     assert course.programs == ["venv", "grader.setup.install"]
 
 
-def test_a_learner_goes_on_without_a_sandbox_and_is_told(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_learner_goes_on_without_a_sandbox_after_a_message(
+    course: Course, capsys: pytest.CaptureFixture[str]
+) -> None:
     course.needs = [BUBBLEWRAP]
     assert course.set_up() == 0
     assert course.programs == ["venv", "grader.setup.install"]
-    (told,) = [line for line in capsys.readouterr().out.splitlines() if "bubblewrap" in line]
-    assert told.startswith("Without bubblewrap: no marks. It was not installed: nobody may. It comes with: ")
+    (reported,) = [line for line in capsys.readouterr().out.splitlines() if "bubblewrap" in line]
+    assert reported.startswith("Without bubblewrap: no marks. It was not installed: nobody may. It comes with: ")
 
 
-def test_what_can_be_done_without_is_tried_for_once_and_told_each_time(
+def test_what_can_be_done_without_is_tried_for_once_and_reported_each_time(
     course: Course, capsys: pytest.CaptureFixture[str]
 ) -> None:
     course.needs = [BUBBLEWRAP]
     course.set_up()
     capsys.readouterr()
     assert course.set_up() == 0
-    assert course.asked == []
+    assert course.requested == []
     assert capsys.readouterr().out.count("Without bubblewrap: no marks.") == 1
     course.set_up(TESTS)
-    assert course.asked == [["bubblewrap"]]
+    assert course.requested == [["bubblewrap"]]
 
 
 def test_what_cannot_be_done_without_is_tried_for_each_time(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
     course.set_up()
     course.needs = [CMAKE, BUBBLEWRAP]
     assert course.set_up() == MACHINE_BROKEN
-    assert course.asked == [["cmake", "bubblewrap"]]
+    assert course.requested == [["cmake", "bubblewrap"]]
     assert course.commands == []
     message = capsys.readouterr().err
     assert "  - cmake\n" in message
@@ -76,13 +78,13 @@ def test_the_tests_go_on_without_a_browser(
 ) -> None:
     course.of_tests, course.granted = [BROWSER, SHELLCHECK], granted
     assert course.set_up(TESTS) == 0
-    assert course.asked == [["chromium", "shellcheck"]]
-    told = [line[: line.index(".")] for line in capsys.readouterr().out.splitlines() if line.startswith("Without")]
-    assert told == ([] if granted else ["Without a browser: no pages", "Without shellcheck: no scripts"])
+    assert course.requested == [["chromium", "shellcheck"]]
+    reported = [line[: line.index(".")] for line in capsys.readouterr().out.splitlines() if line.startswith("Without")]
+    assert reported == ([] if granted else ["Without a browser: no pages", "Without shellcheck: no scripts"])
 
 
 def test_a_learner_needs_nothing_that_only_tests_need(course: Course, capsys: pytest.CaptureFixture[str]) -> None:
     course.of_tests = [BROWSER]
     assert course.set_up(LEARNER) == 0
-    assert course.asked == []
+    assert course.requested == []
     assert "browser" not in capsys.readouterr().out

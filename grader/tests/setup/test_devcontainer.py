@@ -42,8 +42,8 @@ def test_its_user_may_make_cells_and_is_not_root(container: dict[str, Any]) -> N
     assert tuple(container["securityOpt"]) == RIGHTS
     assert container["remoteUser"] != "root"
     assert "privileged" not in container
-    told = (ROOT / "docs/security.md").read_text("utf-8")
-    assert [right for right in RIGHTS if f"--security-opt {right}" not in " ".join(told.split())] == []
+    reported = (ROOT / "docs/security.md").read_text("utf-8")
+    assert [right for right in RIGHTS if f"--security-opt {right}" not in " ".join(reported.split())] == []
 
 
 def test_it_runs_on_the_only_machine_that_has_wheels_of_ros_2(container: dict[str, Any]) -> None:

@@ -73,7 +73,7 @@ def test_every_broken_line_says_what_to_do(bare: pytest.MonkeyPatch, tmp_path: P
         "disk",
         "ROS 2",
     }
-    assert [line for line in lines if line.state == "broken" and not (line.todo or "`" in line.seen)] == []
+    assert [line for line in lines if line.state == "broken" and not (line.todo or "`" in line.observed)] == []
 
 
 def test_missing_programs_are_one_line_with_one_command(bare: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -109,7 +109,7 @@ def test_an_environment_made_for_another_ros_than_the_sourced_one_is_advice(bare
     bare.setattr(machine, "sourced_ros", lambda _env, _ours: JAZZY)
     (line,) = doctor.look_at_set_up({}, OURS)
     assert line.state == "advice"
-    assert line.seen == "made for the course's own ROS 2, and /opt/ros/jazzy is sourced and used"
+    assert line.observed == "made for the course's own ROS 2, and /opt/ros/jazzy is sourced and used"
 
 
 def test_an_environment_whose_ros_is_not_sourced_is_broken(bare: pytest.MonkeyPatch) -> None:
@@ -130,7 +130,7 @@ def test_a_ros_by_another_name_is_the_same_one(bare: pytest.MonkeyPatch, tmp_pat
 def test_a_colcon_that_cannot_start_is_broken(bare: pytest.MonkeyPatch) -> None:
     assert doctor.look_at_colcon().state == "ok"
     bare.setattr(doctor, "find_spec", lambda _name: None)
-    assert "does not start without empy" in doctor.look_at_colcon().seen
+    assert "does not start without empy" in doctor.look_at_colcon().observed
 
 
 def test_a_sourced_ros_for_another_python_is_broken(bare: pytest.MonkeyPatch, wheels: Ros) -> None:
@@ -139,10 +139,10 @@ def test_a_sourced_ros_for_another_python_is_broken(bare: pytest.MonkeyPatch, wh
     assert doctor.look_at_ros(sourced, {"ROS_DISTRO": "jazzy"}).state == "broken"
 
 
-def test_another_sourced_distribution_is_told(wheels: Ros) -> None:
+def test_another_sourced_distribution_is_reported(wheels: Ros) -> None:
     line = doctor.look_at_ros(wheels, {"ROS_DISTRO": "humble"})
     assert line.state == "advice"
-    assert "humble is sourced, but not used" in line.seen
+    assert "humble is sourced, but not used" in line.observed
 
 
 @pytest.mark.parametrize(("free", "state"), [(10 * 2**30, "ok"), (2**30, "advice"), (2**20, "broken")])
@@ -163,30 +163,30 @@ def test_memory(meminfo: str, state: str) -> None:
     assert doctor.look_at_memory(meminfo).state == state
 
 
-def test_a_node_that_is_not_heard_is_told(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
+def test_a_node_that_is_not_heard_is_reported(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
     monkeypatch.setattr(node_test, "_TALKER", "raise SystemExit('no interfaces')")
     monkeypatch.setattr(node_test, "_LISTENER", node_test._LISTENER.replace("20.0", "1.0"))
     line = doctor.look_at_node(wheels)
     assert line.state == "broken"
-    assert "no message arrived from it" in line.seen
+    assert "no message arrived from it" in line.observed
 
 
 def test_a_machine_without_a_sandbox_is_good_enough_for_ones_own_code(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bubblewrap, "program", lambda: None)
     lines = doctor.run_doctor(USERS)
     assert [line for line in lines if line.state == "broken"] == []
-    (told,) = [line for line in lines if line.subject == "sandbox"]
-    assert told.state == "advice"
-    assert "limits on time, memory, processes and file size" in told.seen
-    assert "install -y bubblewrap" in told.todo
+    (reported,) = [line for line in lines if line.subject == "sandbox"]
+    assert reported.state == "advice"
+    assert "limits on time, memory, processes and file size" in reported.observed
+    assert "install -y bubblewrap" in reported.todo
     assert states(lines)["a node"] == "ok"
 
 
-def test_a_node_that_is_not_heard_without_a_cell_is_told(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
+def test_a_node_that_is_not_heard_without_a_cell_is_reported(monkeypatch: pytest.MonkeyPatch, wheels: Ros) -> None:
     monkeypatch.setattr(node_test, "_TALKER", "raise SystemExit('no interfaces')")
     monkeypatch.setattr(node_test, "_LISTENER", node_test._LISTENER.replace("20.0", "1.0"))
     line = doctor.look_at_node(wheels, confined=False)
-    assert (line.state, "no message arrived from it" in line.seen) == ("broken", True)
+    assert (line.state, "no message arrived from it" in line.observed) == ("broken", True)
 
 
 def test_lines_are_plain_and_whole_when_piped() -> None:

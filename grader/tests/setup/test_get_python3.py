@@ -68,7 +68,7 @@ def test_root_and_sudo_without_a_password_install_it(tmp_path: Path, program: st
 
 
 @pytest.mark.parametrize("sudo", ["", SUDO_ASKS])
-def test_without_rights_the_command_is_told(tmp_path: Path, sudo: str) -> None:
+def test_without_rights_the_command_is_reported(tmp_path: Path, sudo: str) -> None:
     machine = Machine(tmp_path, 1000)
     machine.add_manager("apt-get")
     if sudo:
@@ -79,14 +79,14 @@ def test_without_rights_the_command_is_told(tmp_path: Path, sudo: str) -> None:
     assert [call for call in machine.calls() if call.startswith("apt-get")] == []
 
 
-def test_nothing_is_touched_where_that_was_asked_for(tmp_path: Path) -> None:
+def test_nothing_is_touched_where_that_was_requested(tmp_path: Path) -> None:
     machine = Machine(tmp_path, 0)
     machine.add_manager("apt-get")
     assert machine.run(INSTALL_SYSTEM="0").returncode == 3
     assert machine.calls() == []
 
 
-def test_a_failure_is_told_in_the_managers_own_words(tmp_path: Path) -> None:
+def test_a_failure_is_reported_in_the_managers_own_words(tmp_path: Path) -> None:
     machine = Machine(tmp_path, 0)
     machine.stand_ins.add("apt-get", "echo 'E: Could not get lock' >&2; exit 100")
     done = machine.run()

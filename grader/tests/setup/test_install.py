@@ -79,7 +79,7 @@ def test_without_a_network_it_is_the_machine(installers: Installers, capfd: pyte
     assert "ERROR" not in capfd.readouterr().out
 
 
-def test_what_a_machine_has_no_room_for_pip_is_not_asked_for(installers: Installers) -> None:
+def test_what_a_machine_has_no_room_for_pip_is_not_requested(installers: Installers) -> None:
     installers.failed["uv"] = "error: Failed\n  cause: failed to copy file: No space left on device (os error 28)\n"
     with pytest.raises(MachineError, match=r"^The disk is full for .*: free some space there"):
         install.install(PARTS["learner"], sourced=False)

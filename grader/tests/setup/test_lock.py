@@ -163,7 +163,7 @@ def test_no_two_packages_write_the_same_file() -> None:
     assert {file: packages for file, packages in writers.items() if len(packages) > 1} == {}
 
 
-def test_select_takes_whole_entries_of_the_parts_asked_for() -> None:
+def test_select_takes_whole_entries_of_the_parts_requested() -> None:
     assert lock.select(SMALL, ["setup"]) == SMALL.split("first\n")[1].split("\n\n")[0] + "\n"
     assert [entry.name for entry in lock.parse("# part: x\n" + lock.select(SMALL, ["setup", "grader"]))["x"]] == [
         "uv",
@@ -211,6 +211,6 @@ def test_what_two_parts_need_is_selected_once() -> None:
 
 
 @pytest.mark.parametrize("text", ["uv==1.0\n", "# part: setup\n    --hash=sha256:aa\n", "# part: setup\nuv>=1\n"])
-def test_a_line_out_of_place_is_told(text: str) -> None:
+def test_a_line_out_of_place_is_reported(text: str) -> None:
     with pytest.raises(UsageError, match=re.escape(text.splitlines()[-1].strip())):
         lock.parse(text)

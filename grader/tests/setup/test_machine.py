@@ -180,14 +180,14 @@ def test_a_python_that_lacks_what_a_sourced_ros_needs_comes_last_and_only_the_sy
     assert [need.package for need in machine.missing_of_python(bare)] == ["python3-numpy", "python3-empy"]
 
 
-def test_a_python_that_was_refused_is_told_with_what_it_lacks() -> None:
+def test_a_python_that_was_refused_is_reported_with_what_it_lacks() -> None:
     pyenvs = SYSTEMS._replace(path="/home/me/.pyenv/bin/python3.11", lacks=("numpy", "em"))
     (what,) = {need.what for need in machine.missing_of_python(None, (3, 11), refused=[pyenvs])}
     assert "(/home/me/.pyenv/bin/python3.11 cannot import numpy and em)" in what
     assert "PYTHON=/path/to/python3" in what
 
 
-def test_a_python_is_asked_for_what_the_ros_needs_as_it_will_be_in_the_environment(tmp_path: Path) -> None:
+def test_a_python_is_tried_with_the_environment_that_the_ros_needs(tmp_path: Path) -> None:
     here = SYSTEMS._replace(path=sys.executable, version=sys.version_info[:3])
     ros = SourcedRos("/opt/ros/jazzy", sys.version_info[:2], turtlesim=True)
     assert machine.for_ros(here, ros).lacks == ()
@@ -207,9 +207,9 @@ def test_a_numpy_that_is_too_old_for_the_pictures_is_lacked(tmp_path: Path) -> N
     old.write_text(f'#!/bin/sh\nPYTHONPATH={tmp_path} exec {sys.executable} "$@"\n')
     old.chmod(0o755)
     here = SYSTEMS._replace(path=str(old), version=sys.version_info[:3])
-    asked = machine.for_ros(here, SourcedRos("/opt/ros/jazzy", sys.version_info[:2], turtlesim=True))
-    assert asked.lacks == ("numpy",)
-    assert machine.missing_of_python(asked)[-1].what.startswith("the module numpy (1.25 or newer)")
+    requested = machine.for_ros(here, SourcedRos("/opt/ros/jazzy", sys.version_info[:2], turtlesim=True))
+    assert requested.lacks == ("numpy",)
+    assert machine.missing_of_python(requested)[-1].what.startswith("the module numpy (1.25 or newer)")
 
 
 def test_closed_folder_is_the_topmost_one(closed: Path) -> None:
@@ -247,7 +247,7 @@ def test_our_own_wheels_are_not_a_sourced_ros(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("system", "architecture", "libc", "seen"),
+    ("system", "architecture", "libc", "observed"),
     [
         ("Darwin", "arm64", ("", ""), "This is macOS on arm64."),
         ("Windows", "AMD64", ("", ""), "This is Windows on AMD64."),
@@ -256,9 +256,11 @@ def test_our_own_wheels_are_not_a_sourced_ros(tmp_path: Path) -> None:
         ("Linux", "x86_64", ("glibc", "2.17"), "a Linux with glibc 2.17."),
     ],
 )
-def test_other_platforms_are_told_two_ways(system: str, architecture: str, libc: tuple[str, str], seen: str) -> None:
+def test_other_platforms_are_reported_with_two_alternatives(
+    system: str, architecture: str, libc: tuple[str, str], observed: str
+) -> None:
     problem = machine.platform_problem(system, architecture, libc, None)
-    assert seen in problem
+    assert observed in problem
     assert "docker run" in problem
     assert "source /opt/ros/jazzy/setup.bash" in problem
 

@@ -53,7 +53,7 @@ def test_names_the_packages_of_the_python_that_lacks_them() -> None:
     assert machine.missing_of_python(SYSTEMS) == []
 
 
-def test_a_newer_python_beside_one_that_is_too_old_is_asked_for_by_its_name() -> None:
+def test_a_newer_python_beside_one_that_is_too_old_is_requested_by_its_name() -> None:
     needs = machine.missing_of_python(None, newer="python3.12")
     assert [need.package for need in needs] == ["python3.12", "python3.12-venv", "python3.12-dev"]
     wanted = machine.missing_of_python(None, (3, 10), newer="python3.12")
@@ -74,7 +74,7 @@ def test_one_message_with_one_command() -> None:
     assert "\n    apt-get update && apt-get install -y g++ util-linux" in machine.lack_message(needs, APT, root=True)
 
 
-def test_why_it_was_not_installed_is_told() -> None:
+def test_why_it_was_not_installed_is_reported() -> None:
     message = machine.lack_message([Need("a compiler", "g++")], APT, root=False, why="sudo is not here")
     assert "  - a compiler\nThey were not installed: sudo is not here.\nInstall them" in message
 
@@ -85,7 +85,7 @@ def test_without_apt_the_things_are_named_all_the_same() -> None:
     assert "apt-get" not in message
 
 
-def test_no_python_at_all_names_python_and_a_way_round() -> None:
+def test_no_python_at_all_names_python_and_an_alternative() -> None:
     message = machine.lack_message(machine.missing_of_python(None), APT, root=False)
     assert "CPython 3.10 to 3.14" in message
     assert "apt-get install -y python3 python3-venv python3-dev" in message

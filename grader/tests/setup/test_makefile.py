@@ -26,7 +26,7 @@ def test_make_help_lists_every_target() -> None:
     assert [line.split()[1] for line in make("help").stdout.splitlines()] == sorted(targets, key=targets.index)
 
 
-def test_make_hands_on_the_python_asked_for_and_no_other() -> None:
+def test_make_hands_on_the_python_requested_and_no_other() -> None:
     assert "--python python3.12" in make("-n", "demo", "PYTHON=python3.12").stdout
     assert "--python" not in make("-n", "demo").stdout
 

@@ -109,7 +109,7 @@ def test_what_can_be_done_without_is_installed_by_itself(machine: Machine, monke
         ("exit 1", "apt-get failed: it gave no reason"),
     ],
 )
-def test_a_failure_is_told_in_the_managers_own_words(
+def test_a_failure_is_reported_in_the_managers_own_words(
     machine: Machine, monkeypatch: pytest.MonkeyPatch, then: str, why: str
 ) -> None:
     monkeypatch.setattr(os, "getuid", lambda: 0)
@@ -117,7 +117,7 @@ def test_a_failure_is_told_in_the_managers_own_words(
     assert machine.provide(CMAKE) == why
 
 
-def test_nothing_is_touched_where_that_was_asked_for(machine: Machine) -> None:
+def test_nothing_is_touched_where_that_was_requested(machine: Machine) -> None:
     machine.stand_ins.add("apt-get")
     machine.stand_ins.add("sudo", SUDO_FREE)
     assert "INSTALL_SYSTEM=0" in machine.provide(CMAKE, INSTALL_SYSTEM="0")
@@ -131,7 +131,7 @@ def test_without_a_manager_or_sudo_nothing_is_tried(machine: Machine) -> None:
     assert (machine.stand_ins.calls(), machine.said) == ([], [])
 
 
-def test_where_there_is_no_terminal_nobody_is_asked_for_a_password(
+def test_where_there_is_no_terminal_nobody_is_requested_a_password(
     machine: Machine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     machine.stand_ins.add("apt-get")
@@ -141,7 +141,7 @@ def test_where_there_is_no_terminal_nobody_is_asked_for_a_password(
     assert machine.stand_ins.calls() == ["sudo -n true"]
 
 
-def test_at_a_terminal_the_command_is_shown_and_the_password_asked_for_once(tmp_path: Path) -> None:
+def test_at_a_terminal_the_command_is_shown_and_the_password_requested_once(tmp_path: Path) -> None:
     stand_ins = StandIns(tmp_path)
     stand_ins.add("apt-get")
     asks = 'printf "[sudo] password: " > /dev/tty; read p < /dev/tty; '
@@ -149,10 +149,10 @@ def test_at_a_terminal_the_command_is_shown_and_the_password_asked_for_once(tmp_
     code = f"""
 import os
 os.getuid = lambda: 1000
-from grader.common import packages
+from grader.common import package_managers
 from grader.setup import provide
 packages.SYSTEM_PATH = ()
-needs = [packages.Need("cmake", "cmake"), packages.Need("bubblewrap", "bubblewrap", "no marks")]
+needs = [package_managers.Need("cmake", "cmake"), package_managers.Need("bubblewrap", "bubblewrap", "no marks")]
 print("why:", repr(provide.provide(needs, {{**os.environ, "PATH": "{tmp_path}:/usr/bin:/bin"}}, print)))
 """
     ours, theirs = pty.openpty()

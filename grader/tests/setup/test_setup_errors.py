@@ -14,7 +14,7 @@ HERE = Path("/nowhere/course/.venv")
 
 
 @pytest.mark.parametrize(
-    ("said", "told"),
+    ("said", "reported"),
     [
         ("Error: [Errno 28] No space left on device", "The disk is full for /nowhere/course/.venv: free some space"),
         ("  cause: failed to copy: No space left on device (os error 28)", "The disk is full for "),
@@ -24,10 +24,10 @@ HERE = Path("/nowhere/course/.venv")
         ("BlockingIOError: [Errno 11] Resource temporarily unavailable", "cannot start more processes for you"),
     ],
 )
-def test_what_an_installer_printed_is_one_sentence(said: str, told: str) -> None:
+def test_what_an_installer_printed_is_one_sentence(said: str, reported: str) -> None:
     sentence = setup_errors.of_output(f"Collecting uv\n{said}\n", HERE)
     assert sentence is not None
-    assert told in sentence
+    assert reported in sentence
     assert sentence.endswith(".")
     assert "\n" not in sentence
 
@@ -49,9 +49,9 @@ def test_words_of_a_missing_network_are_found() -> None:
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EACCES, errno.EMFILE, errno.ENOMEM, errno.EAGAIN])
 def test_what_the_system_refuses_the_set_up_is_a_sentence(number: int) -> None:
-    code = "import sys; from grader.setup import refused\ndef main(): raise OSError({}, 'x', '/course')\n"
+    code = "import sys; from grader.setup import setup_errors\ndef main(): raise OSError({}, 'x', '/course')\n"
     done = subprocess.run(
-        [sys.executable, "-c", code.format(number) + "sys.exit(refused.guarded(main))"],
+        [sys.executable, "-c", code.format(number) + "sys.exit(setup_errors.guarded(main))"],
         cwd=Path(setup_errors.__file__).parents[2],
         capture_output=True,
         text=True,
@@ -62,7 +62,7 @@ def test_what_the_system_refuses_the_set_up_is_a_sentence(number: int) -> None:
 
 
 def test_a_full_disk_behind_standard_output_is_a_sentence() -> None:
-    code = "import sys; from grader.setup import refused; sys.exit(refused.guarded(lambda: print('x') or 0))"
+    code = "import sys; from grader.setup import setup_errors; sys.exit(setup_errors.guarded(lambda: print('x') or 0))"
     root = Path(setup_errors.__file__).parents[2]
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(

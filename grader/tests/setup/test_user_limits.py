@@ -17,12 +17,12 @@ def test_it_says_what_there_is() -> None:
 
 
 @pytest.mark.parametrize(("option", "todo"), [("--nofile=200:", "ulimit -n 1024"), ("--nproc=900:", "ulimit -u 4096")])
-def test_too_few_are_told_with_what_to_do(option: str, todo: str) -> None:
+def test_too_few_are_reported_with_what_to_do(option: str, todo: str) -> None:
     done = subprocess.run(["prlimit", option, sys.executable, "-c", SAYS], capture_output=True, text=True, check=True)
     assert done.stdout.strip().partition("|")[2] == todo
 
 
-def test_pipes_that_may_not_grow_are_told_and_need_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pipes_that_may_not_grow_are_reported_and_need_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(user_limits, "enlarge", lambda _: 65536)
-    seen, todo = user_limits.shares()
-    assert ("pipes stay small" in seen, todo) == (True, "")
+    observed, todo = user_limits.shares()
+    assert ("pipes stay small" in observed, todo) == (True, "")

@@ -43,7 +43,7 @@ def installed(tmp_path: Path) -> Path:
 
 
 @pytest.mark.exhaustive
-def test_the_learners_way_and_the_instructors_without_a_checkout(installed: Path, tmp_path: Path) -> None:
+def test_what_learners_do_and_the_instructors_without_a_checkout(installed: Path, tmp_path: Path) -> None:
     home = tmp_path / "home"
     home.mkdir()
     learner = Learner(home, str(installed))

@@ -52,10 +52,10 @@ def test_an_editor_of_windows_may_have_written_it() -> None:
         (b"#" * (MAX_BYTES + 1), "it is larger than 100 kB"),
     ],
 )
-def test_what_cannot_be_read_is_told_and_never_raised(data: bytes, problem: str) -> None:
+def test_what_cannot_be_read_is_reported_and_never_raised(data: bytes, problem: str) -> None:
     found = read_answers(data)
     assert (found.problem, found.given) == (problem, {})
 
 
-def test_brackets_without_an_end_are_no_way_in() -> None:
+def test_brackets_without_an_end_are_no_list() -> None:
     assert read_answers(b"[answers]\nx = " + b"[" * 50_000).problem is not None

@@ -89,7 +89,7 @@ def test_imports_are_followed_in_a_bounded_time(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("files", "told"),
+    ("files", "reported"),
     [
         ({"p/node.py": b"x = 1\n" * 80_000}, "p/node.py is too large to be read: more than 400 kB"),
         ({"p/node.py": b"x = " + b"-" * 100_000 + b"1"}, "p/node.py is nested too deeply to be read"),
@@ -99,5 +99,5 @@ def test_imports_are_followed_in_a_bounded_time(name: str) -> None:
         ),
     ],
 )
-def test_what_is_too_large_is_told(files: dict[str, bytes], told: str) -> None:
-    assert read("code", files) == told
+def test_what_is_too_large_is_reported(files: dict[str, bytes], reported: str) -> None:
+    assert read("code", files) == reported

@@ -72,25 +72,25 @@ def a_node_that_drives_before_it_is_found() -> int:
     return len(commands)
 
 
-def who_may_ask() -> bool:
+def who_may_request() -> bool:
     """Whether anybody may ask without a client; fails where who has one may not, or may when it is gone."""
     stage = _stage()
     student = rclpy.create_node("student")
-    anybody = stage.may_ask()
+    anybody = stage.may_request()
 
-    def ask(client: Any, destroy: Callable[[Any], object]) -> None:  # noqa: ANN401 - of many types
-        until(stage.may_ask)
+    def request(client: Any, destroy: Callable[[Any], object]) -> None:  # noqa: ANN401 - of many types
+        until(stage.may_request)
         destroy(client)
-        until(lambda: not stage.may_ask())
+        until(lambda: not stage.may_request())
 
-    ask(student.create_client(SetPen, "/turtle1/set_pen"), student.destroy_client)
-    ask(ActionClient(student, RotateAbsolute, "/turtle1/rotate_absolute"), ActionClient.destroy)
+    request(student.create_client(SetPen, "/turtle1/set_pen"), student.destroy_client)
+    request(ActionClient(student, RotateAbsolute, "/turtle1/rotate_absolute"), ActionClient.destroy)
     spawn = student.create_client(Spawn, "/spawn")
     until(spawn.service_is_ready)
     spawn.call_async(Spawn.Request(x=1.0, y=1.0, name="turtle2"))
     until(lambda: bool(stage.spin(0.1)) and bool(stage.interventions))
-    ask(spawn, student.destroy_client)
-    ask(student.create_client(SetPen, "/turtle2/set_pen"), student.destroy_client)
+    request(spawn, student.destroy_client)
+    request(student.create_client(SetPen, "/turtle2/set_pen"), student.destroy_client)
     return anybody
 
 

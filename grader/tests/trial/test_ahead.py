@@ -77,7 +77,7 @@ def test_trials_run_side_by_side(ahead: Ahead) -> None:
             assert trial.run("package", "node", b"") is SEEN
 
 
-def test_what_was_not_run_ahead_is_run_when_it_is_asked(ahead: Ahead) -> None:
+def test_what_was_not_run_ahead_is_run_when_it_is_requested(ahead: Ahead) -> None:
     with ahead:
         start(ahead, "", run=False)
         trial = ahead.trial("")
@@ -111,7 +111,7 @@ def test_leaving_ends_the_one_that_is_being_started_and_starts_no_other(ahead: A
     assert not second.opened.is_set()
 
 
-def test_what_went_wrong_at_the_start_is_told_to_who_runs_it(ahead: Ahead) -> None:
+def test_what_went_wrong_at_the_start_is_reported_to_who_runs_it(ahead: Ahead) -> None:
     class Broken(Made):
         def await_ready(self) -> None:
             raise MachineError("no room")  # noqa: EM101
@@ -124,7 +124,7 @@ def test_what_went_wrong_at_the_start_is_told_to_who_runs_it(ahead: Ahead) -> No
             trial.run("package", "node", b"")
 
 
-def test_a_node_that_brings_its_simulator_down_is_told_to_who_asks_for_it(ahead: Ahead) -> None:
+def test_a_node_that_brings_its_simulator_down_is_reported_to_the_caller(ahead: Ahead) -> None:
     def breaks() -> Recording:
         raise OverwhelmedError("it ended")  # noqa: EM101
 

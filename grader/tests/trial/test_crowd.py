@@ -64,7 +64,7 @@ def test_what_simulator_and_node_work_is_not_that_of_others(monkeypatch: pytest.
     assert Others().worked_s(but_s=4.0) == pytest.approx(7.0 - 2.0 - 4.0)
 
 
-def test_a_node_that_shares_its_processor_waits_and_is_seen_waiting() -> None:
+def test_a_node_that_shares_its_processor_waits_and_is_observed_waiting() -> None:
     with program(WORK_S) as node, program(3600.0) as rival:
         watch = Stalls(node.pid)
         begin(rival)

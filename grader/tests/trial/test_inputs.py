@@ -24,7 +24,7 @@ def test_speeds_lie_between_their_limits() -> None:
         assert -1.0 <= turning <= 1.0
 
 
-def test_a_way_that_would_end_at_a_wall_is_drawn_again() -> None:
+def test_a_trajectory_that_would_end_at_a_wall_is_drawn_again() -> None:
     near_wall = Pose(SIDE_M - 2.0, 5.0, 0.0)
     for seed in range(20):
         assert draw_inputs(AHEAD, near_wall, seed).drives[0][1] <= 1.6

@@ -68,7 +68,7 @@ def test_a_node_hears_ctrl_c_though_its_grader_does_not(in_ros: InRos, tmp_path:
 
 
 @pytest.mark.parametrize("args", ["None", "sys.argv", "[]", "('node', '--ros-args', '-r', 'a:=b', '--')"])
-def test_simulated_time_is_asked_for_without_an_argument_that_the_program_sees(
+def test_simulated_time_is_requested_without_an_argument_that_the_program_sees(
     in_ros: InRos, tmp_path: Path, args: str
 ) -> None:
     done = launch(in_ros, tmp_path, ARGUMENTS.format(args=args), SIMULATED)

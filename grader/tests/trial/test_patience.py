@@ -16,12 +16,12 @@ LOOK_S = 0.5
 
 def waited(*, asleep: float, wrote: bool = False, share: float = 0.0) -> float:
     """When patience ends (s) with a node that is seen asleep so often, and gets this share of a processor."""
-    patience, now_s, seen = HandshakePatience(0.0), 0.0, 0.0
+    patience, now_s, observed = HandshakePatience(0.0), 0.0, 0.0
     while True:
         now_s += LOOK_S
-        seen += asleep
-        sleeps = seen >= 1.0
-        seen -= sleeps
+        observed += asleep
+        sleeps = observed >= 1.0
+        observed -= sleeps
         if patience.ended(now_s, asleep=sleeps, wrote=wrote, worked_s=share * now_s):
             return now_s
 
@@ -47,11 +47,11 @@ def test_only_sleep_and_work_are_counted(
 class Worker:
     """A process as `TickPatience` sees it: what CPU time (s) it tells when asked, one value after the other."""
 
-    def __init__(self, *told_s: float) -> None:
-        self._told_s = list(told_s)
+    def __init__(self, *reported_s: float) -> None:
+        self._reported_s = list(reported_s)
 
     def run_time_s(self) -> float:
-        return self._told_s.pop(0)
+        return self._reported_s.pop(0)
 
 
 def test_a_node_that_works_on_at_one_instant_ends_patience() -> None:

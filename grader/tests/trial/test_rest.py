@@ -63,7 +63,7 @@ def test_a_second_thread_counts() -> None:
         ("import select; p = select.poll(); p.poll(60000)", "poll", True),
     ],
 )
-def test_what_a_thread_waits_for_is_told(wait: str, call: str, timed: bool) -> None:
+def test_what_a_thread_waits_for_is_reported(wait: str, call: str, timed: bool) -> None:
     with python(f"print('ready', flush=True)\n{wait}") as process:
         threads = Threads(process.pid)
         until_asleep(threads)
@@ -86,10 +86,10 @@ def test_threads_of_fast_dds_are_left_out_but_never_the_main_thread() -> None:
 
 
 @pytest.mark.parametrize(
-    ("thread", "told"), [("dds.udp.7410", True), ("dds.shm.7411", True), ("dds.ev.0", False), ("python3", False)]
+    ("thread", "reported"), [("dds.udp.7410", True), ("dds.shm.7411", True), ("dds.ev.0", False), ("python3", False)]
 )
-def test_messages_come_through_the_threads_of_fast_dds_but_not_through_its_timers(thread: str, told: bool) -> None:
-    assert receives(thread) == told
+def test_messages_come_through_the_threads_of_fast_dds_but_not_through_its_timers(thread: str, reported: bool) -> None:
+    assert receives(thread) == reported
 
 
 def test_a_name_of_a_thread_need_not_be_text() -> None:
@@ -100,7 +100,7 @@ def test_a_name_of_a_thread_need_not_be_text() -> None:
         assert [wait.tid for wait in threads.waits()] == [process.pid]
 
 
-def test_the_end_of_a_process_is_told() -> None:
+def test_the_end_of_a_process_is_reported() -> None:
     with python(WAITS_ON_A_LINE) as process:
         threads = Threads(process.pid)
         before = threads.runs()

@@ -97,9 +97,9 @@ def twist(x: float = 0.0, z: float = 0.0) -> Twist:
 
 
 def names_of(rig: Rig, what: str) -> list[tuple[str, list[str]]]:
-    ask = {
+    request = {
         "topic": rig.turtlesim.get_publisher_names_and_types_by_node,
         "service": rig.turtlesim.get_service_names_and_types_by_node,
     }[what]
-    names: list[tuple[str, list[str]]] = ask("turtlesim", "/")
+    names: list[tuple[str, list[str]]] = request("turtlesim", "/")
     return names

@@ -28,14 +28,14 @@ def graph() -> dict[str, Any]:
     with Rig() as rig:
         rig.until(lambda: "turtlesim" in rig.client.get_node_names())
         found: dict[str, Any] = {}
-        for section, ask in {
+        for section, request in {
             "Subscribers": rig.client.get_subscriber_names_and_types_by_node,
             "Publishers": rig.client.get_publisher_names_and_types_by_node,
             "Service Servers": rig.client.get_service_names_and_types_by_node,
             "Action Servers": lambda *of: get_action_server_names_and_types_by_node(rig.client, *of),
         }.items():
             entries = [
-                f"{name}: {', '.join(types)}" for name, types in ask("turtlesim", "/") if "/_action/" not in name
+                f"{name}: {', '.join(types)}" for name, types in request("turtlesim", "/") if "/_action/" not in name
             ]
             found[section] = sorted(entries)
         profiles = [

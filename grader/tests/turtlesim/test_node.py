@@ -92,13 +92,17 @@ def test_parameters_are_described_as_by_the_real_one(parameters: dict[str, Any])
     text = "\n".join(golden("param_describe_turtlesim.txt"))
     for block in text.split("Parameter name: ")[1:]:
         name, *lines = block.splitlines()
-        told = dict(line.strip().split(": ", 1) for line in lines if ": " in line)
-        limits = [[int(told["Min value"]), int(told["Max value"]), int(told["Step"])]] if "Min value" in told else []
+        reported = dict(line.strip().split(": ", 1) for line in lines if ": " in line)
+        limits = (
+            [[int(reported["Min value"]), int(reported["Max value"]), int(reported["Step"])]]
+            if "Min value" in reported
+            else []
+        )
         assert parameters["described"][name] == [
-            types[told["Type"]],
-            told.get("Description", ""),
+            types[reported["Type"]],
+            reported.get("Description", ""),
             limits,
-            told.get("Read only") == "true",
+            reported.get("Read only") == "true",
         ]
 
 
@@ -167,7 +171,7 @@ def test_wrong_requests_do_not_stop_the_node(in_ros: InRos) -> None:
     assert found["after"] == ["turtle1"]
 
 
-def test_a_trial_is_told_what_the_node_hears_and_says(in_ros: InRos) -> None:
+def test_a_trial_knows_what_the_node_subscribes_to_and_publishes(in_ros: InRos) -> None:
     found = in_ros.run("turtlesim.scenarios:hooks").result
     assert found["topic"] == "/turtle1/cmd_vel"
     assert found["as sent"]

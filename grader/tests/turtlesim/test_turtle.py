@@ -18,7 +18,7 @@ PRECISION = 1e-6
 """One step of a 32-bit float at the far end of the canvas."""
 
 
-class Blank:
+class NoCanvas:
     """Paper that keeps nothing."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
@@ -30,7 +30,7 @@ class Blank:
 
 def frames(turtle: Turtle, count: int, first: int = 0) -> None:
     for frame in range(first, first + count):
-        turtle.update(FRAME_S, frame * FRAME_S, Blank())
+        turtle.update(FRAME_S, frame * FRAME_S, NoCanvas())
 
 
 def poses_of(inputs: Path) -> Path:
@@ -49,7 +49,7 @@ def test_every_pose_is_that_of_the_real_turtlesim(inputs: Path) -> None:
     assert replay(inputs, poses_of(inputs)).size <= PRECISION
 
 
-def test_a_recording_that_differs_is_told(tmp_path: Path) -> None:
+def test_a_recording_that_differs_is_reported(tmp_path: Path) -> None:
     inputs = RECORDINGS[0]
     lines = poses_of(inputs).read_text().splitlines()
     frame, x, *rest = lines[500].split(",")
@@ -104,9 +104,9 @@ requests = st.one_of(
 
 
 @given(st.lists(requests, max_size=12), st.integers(1, 80))
-def test_a_turtle_stays_on_the_canvas(asked: list[tuple[str, float]], between: int) -> None:
+def test_a_turtle_stays_on_the_canvas(requested: list[tuple[str, float]], between: int) -> None:
     turtle = Turtle()
-    for number, (what, *values) in enumerate(asked):
+    for number, (what, *values) in enumerate(requested):
         getattr(turtle, what)(*values)
         frames(turtle, between, first=number * between)
         state = turtle.state()
@@ -149,18 +149,18 @@ def test_a_command_that_is_no_number_shows_in_the_pose() -> None:
 def test_a_command_lives_for_one_second(age_s: float, moves: bool) -> None:
     turtle = Turtle()
     turtle.command(1.0, 0.0, 0.0)
-    turtle.update(FRAME_S, 0.0, Blank())
-    turtle.update(FRAME_S, age_s, Blank())
+    turtle.update(FRAME_S, 0.0, NoCanvas())
+    turtle.update(FRAME_S, age_s, NoCanvas())
     assert (turtle.state().linear > 0.0) == moves
 
 
 def test_a_teleport_does_not_lengthen_a_command() -> None:
     turtle = Turtle()
     turtle.command(1.0, 0.0, 0.0)
-    turtle.update(FRAME_S, 0.0, Blank())
+    turtle.update(FRAME_S, 0.0, NoCanvas())
     turtle.teleport_absolute(5.0, 5.0, 0.0)
-    turtle.update(FRAME_S, 0.9, Blank())
-    turtle.update(FRAME_S, 1.1, Blank())
+    turtle.update(FRAME_S, 0.9, NoCanvas())
+    turtle.update(FRAME_S, 1.1, NoCanvas())
     assert turtle.state().linear == 0.0
 
 

@@ -101,8 +101,8 @@ def test_where_there_is_a_browser_the_graph_is_shown_live_until_ctrl_c(before_a_
     graph = before_a_screen.start("rqt_graph", "http://127.0.0.1:")
     until(lambda: (tmp_path / "opened").exists() and bool((tmp_path / "opened").read_text()))
     address = (tmp_path / "opened").read_text().strip()
-    (told,) = graph.lines
-    printed = told.removeprefix("The graph, live until Ctrl-C: ")
+    (reported,) = graph.lines
+    printed = reported.removeprefix("The graph, live until Ctrl-C: ")
     # The same place; but a command line can be read by others, so there is a code in it that opens once.
     assert printed.partition("/#")[0] == address.partition("/#")[0]
     assert printed != address
@@ -152,13 +152,13 @@ def test_where_nothing_is_running_it_says_what_to_start(alone: World) -> None:
         ("", ".svg, .png or .dot"),
     ],
 )
-def test_a_wrong_output_is_told_before_anything_is_done(alone: World, output: str, said: str) -> None:
+def test_a_wrong_output_is_reported_before_anything_is_done(alone: World, output: str, said: str) -> None:
     done = alone.run(f"rqt_graph --output '{output}'")
     assert (done.code, done.stdout) == (2, "")
     assert said in done.stderr
 
 
-def test_a_file_that_cannot_be_written_is_told(tutorial: World) -> None:
+def test_a_file_that_cannot_be_written_is_reported(tutorial: World) -> None:
     (tutorial.home / "folder.svg").mkdir(exist_ok=True)
     done = tutorial.run("rqt_graph --output folder.svg")
     assert done.code == 2
@@ -197,7 +197,7 @@ def test_a_sourced_rqt_graph_does_not_get_options_that_it_does_not_know(
     assert "No node is running" in done.stderr
 
 
-def test_what_may_be_missing_is_told(tutorial: World) -> None:
+def test_what_may_be_missing_is_reported(tutorial: World) -> None:
     # A process that has the port of a participant and says nothing, as one that was stopped.
     port = 7400 + 250 * int(tutorial.env["ROS_DOMAIN_ID"]) + 10 + 2 * 100
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as silent:

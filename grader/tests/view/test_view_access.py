@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 
 def test_with_the_right_host_origin_and_token_one_comes_in(system: World) -> None:
-    host, _, way = live(system)
-    with connect(way, origin=Origin(f"http://{host}")) as link:
+    host, _, path = live(system)
+    with connect(path, origin=Origin(f"http://{host}")) as link:
         assert '"kind":"all"' in str(link.recv())
 
 
@@ -39,19 +39,19 @@ def test_with_the_right_host_origin_and_token_one_comes_in(system: World) -> Non
 )
 def test_who_has_not_all_three_is_refused(system: World, wrong: dict[str, Any]) -> None:
     wrong = dict(wrong)
-    host, token, way = live(system)
+    host, token, path = live(system)
     port = host.partition(":")[2]
     # As after DNS rebinding: a foreign name that leads to this machine.
     name = f"{wrong.pop('name')}:{port}" if "name" in wrong else host
-    asked = {"origin": f"http://{name}", "sock": socket.create_connection(("127.0.0.1", int(port))), **wrong}
-    way = way.replace(host, name).replace(token, str(asked.pop("token", token)))
-    with pytest.raises(InvalidStatus) as refused, connect(way, **asked):
+    requested = {"origin": f"http://{name}", "sock": socket.create_connection(("127.0.0.1", int(port))), **wrong}
+    path = path.replace(host, name).replace(token, str(requested.pop("token", token)))
+    with pytest.raises(InvalidStatus) as refused, connect(path, **requested):
         pass
     assert refused.value.response.status_code == 403
 
 
 def test_a_foreign_page_can_neither_read_nor_drive(browser: Browser, system: World) -> None:
-    host, _, way = live(system)
+    host, _, path = live(system)
     tab = browser.new_page()
     tab.route("http://evil.example/", lambda route: route.fulfill(body="<p>evil</p>", content_type="text/html"))
     tab.goto("http://evil.example/")
@@ -60,7 +60,7 @@ def test_a_foreign_page_can_neither_read_nor_drive(browser: Browser, system: Wor
         link.onopen = () => resolve("open");
         link.onerror = () => resolve("refused");
     })"""
-    assert tab.evaluate(opens, way) == "refused"
+    assert tab.evaluate(opens, path) == "refused"
     reads = "address => fetch(address).then(answer => answer.text(), () => 'refused')"
     assert tab.evaluate(reads, f"http://{host}/") == "refused"
     framed = """address => new Promise(resolve => {

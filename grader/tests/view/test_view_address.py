@@ -78,7 +78,7 @@ def test_where_nothing_can_be_kept_there_is_a_view_all_the_same(
     listen("turtlesim").listening.close()
 
 
-def test_a_port_that_cannot_be_had_is_told() -> None:
+def test_a_port_that_cannot_be_had_is_reported() -> None:
     with closing(socket.create_server(("127.0.0.1", 0))) as taken:
         port = taken.getsockname()[1]
         with pytest.raises(UsageError, match=f"--port {port} is not available"):

@@ -38,18 +38,18 @@ def whole(of: Running) -> dict[str, Any]:
     url = next(word for line in of.lines for word in line.split() if word.startswith("http://"))
     host, _, token = url.removeprefix("http://").partition("/#")
     with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as page:
-        told: dict[str, Any] = json.loads(page.recv())
-        return told
+        reported: dict[str, Any] = json.loads(page.recv())
+        return reported
 
 
 def test_grader_sim_shows_its_turtle_and_takes_parameters(alone: World) -> None:
     # What is built once is.
     cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     simulator = alone.start("grader sim --view --ros-args -p background_r:=7", "Spawning turtle", XDG_CACHE_HOME=cache)
-    while not (told := whole(simulator))["turtles"]:
+    while not (reported := whole(simulator))["turtles"]:
         pass
-    assert list(told["turtles"]) == ["turtle1"]
-    assert told["background"] == [7, 86, 255]
+    assert list(reported["turtles"]) == ["turtle1"]
+    assert reported["background"] == [7, 86, 255]
     assert simulator.stop() == 0
     for line in ("turtlesim in ROS domain ", "See it move: http://127.0.0.1:"):
         assert any(each.startswith(line) for each in simulator.lines), line

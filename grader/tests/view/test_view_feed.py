@@ -41,7 +41,7 @@ class Simulator:
             self.frames += 1
             self.feed.show(self.world.turtles, paused=paused)
 
-    def told(self) -> list[dict[str, object]]:
+    def reported(self) -> list[dict[str, object]]:
         """All that can be read now."""
         messages = []
         with suppress(BlockingIOError):
@@ -65,10 +65,10 @@ def twist(linear_x: float, angular_z: float) -> SimpleNamespace:
     )
 
 
-def test_every_second_frame_is_told_while_the_turtle_moves(simulator: Simulator) -> None:
+def test_every_second_frame_is_reported_while_the_turtle_moves(simulator: Simulator) -> None:
     simulator.world.command("turtle1", 2.0, 0.0, 1.0)
     simulator.run(20)
-    assert len(simulator.told()) == 10
+    assert len(simulator.reported()) == 10
 
 
 def test_the_view_knows_what_the_simulator_knows(simulator: Simulator) -> None:
@@ -76,7 +76,7 @@ def test_the_view_knows_what_the_simulator_knows(simulator: Simulator) -> None:
     simulator.feed.on_command("/turtle1/cmd_vel", b"", twist(2.0, 1.0))
     simulator.run(40)
     state = State()
-    for message in simulator.told():
+    for message in simulator.reported():
         state.take(message)
     turtle = simulator.world.turtles["turtle1"]
     assert state.turtles["turtle1"][:5] == pytest.approx(turtle.state()[:5])
@@ -87,10 +87,10 @@ def test_the_view_knows_what_the_simulator_knows(simulator: Simulator) -> None:
 
 def test_a_turtle_at_rest_costs_no_messages(simulator: Simulator) -> None:
     simulator.run(2)
-    simulator.told()
-    simulator.feed._told_s = math.inf  # so that the time does not matter
+    simulator.reported()
+    simulator.feed._reported_s = math.inf  # so that the time does not matter
     simulator.run(40)
-    assert simulator.told() == []
+    assert simulator.reported() == []
 
 
 def test_a_view_that_does_not_read_stops_nobody_and_gets_a_picture(simulator: Simulator) -> None:
@@ -101,9 +101,9 @@ def test_a_view_that_does_not_read_stops_nobody_and_gets_a_picture(simulator: Si
         simulator.run(50)
         frames += 50
         assert frames < 100_000
-    messages = simulator.told()
+    messages = simulator.reported()
     simulator.run(2)
-    messages += simulator.told()
+    messages += simulator.reported()
     state = State()
     for message in messages:
         state.take(message)
@@ -119,17 +119,17 @@ def test_a_cleared_canvas_is_cleared_in_the_view(simulator: Simulator) -> None:
     simulator.world.canvas.clear()
     simulator.run(4)
     state = State()
-    news = [state.take(message) for message in simulator.told()]
+    news = [state.take(message) for message in simulator.reported()]
     assert any("trail" in each for each in news[1:])
     begin = place(5.0 + 10 * 0.016, 5.0)
     assert [stroke.points[0] for stroke in state.trail.strokes] == [begin]
 
 
-def test_a_position_that_is_no_number_is_told_as_none(simulator: Simulator) -> None:
+def test_a_position_that_is_no_number_is_reported_as_none(simulator: Simulator) -> None:
     simulator.world.command("turtle1", math.nan, 0.0, 0.0)
     simulator.run(2)
     state = State()
-    (message,) = simulator.told()
+    (message,) = simulator.reported()
     news = state.take(message)
     turtles = news["turtles"]
     assert isinstance(turtles, dict)
@@ -153,7 +153,7 @@ def test_a_picture_of_noise_fits_into_a_message_too(simulator: Simulator) -> Non
     simulator.feed.canvas.trail().paste(noise)
     simulator.feed.canvas.lines = [(0.0, 0.0, 1.0, 1.0, 1, 2, 3, 4)] * (MOST_LINES + 1)
     simulator.run(2)
-    (message,) = simulator.told()
+    (message,) = simulator.reported()
     assert message["picture"]
 
 
@@ -161,7 +161,7 @@ def test_the_most_lines_fit_into_a_message(simulator: Simulator) -> None:
     line = (1 / 3, 10 / 3, 20 / 3, 32 / 3, 255, 255, 255, 255)
     simulator.feed.canvas.lines = [line] * MOST_LINES
     simulator.run(2)
-    (message,) = simulator.told()
+    (message,) = simulator.reported()
     lines = message["lines"]
     assert isinstance(lines, list)
     assert len(lines) == MOST_LINES

@@ -13,13 +13,13 @@ class Page:
     """What a page was sent; `gate` closed is a page that does not listen."""
 
     def __init__(self) -> None:
-        self.told: list[dict[str, object]] = []
+        self.reported: list[dict[str, object]] = []
         self.gate = asyncio.Event()
         self.gate.set()
 
     async def send(self, text: str) -> None:
         await self.gate.wait()
-        self.told.append(json.loads(text))
+        self.reported.append(json.loads(text))
 
 
 async def settle() -> None:
@@ -57,7 +57,7 @@ def test_a_page_gets_the_whole_then_all_news_in_order() -> None:
         return page
 
     page = asyncio.run(run())
-    assert page.told == [
+    assert page.reported == [
         {"kind": "all", "number": 1},
         *({"kind": "frame", "number": number} for number in range(2, 102)),
     ]
@@ -79,10 +79,10 @@ def test_a_page_that_did_not_listen_gets_the_whole_once_and_no_queue() -> None:
         following.cancel()
         return page
 
-    told = asyncio.run(run()).told
+    reported = asyncio.run(run()).reported
     # The one that was on its way, the whole, and what came after it.
-    assert [each["kind"] for each in told] == ["all", "frame", "all", "frame"]
-    assert [each["number"] for each in told] == [0, 1, 1000, 1001]
+    assert [each["kind"] for each in reported] == ["all", "frame", "all", "frame"]
+    assert [each["number"] for each in reported] == [0, 1, 1000, 1001]
 
 
 def test_a_page_that_is_a_little_late_misses_nothing() -> None:
@@ -99,7 +99,7 @@ def test_a_page_that_is_a_little_late_misses_nothing() -> None:
         following.cancel()
         return page
 
-    assert [each["number"] for each in asyncio.run(run()).told] == list(range(KEPT + 1))
+    assert [each["number"] for each in asyncio.run(run()).reported] == list(range(KEPT + 1))
 
 
 def test_the_whole_is_written_once_for_all_pages() -> None:
@@ -113,7 +113,7 @@ def test_the_whole_is_written_once_for_all_pages() -> None:
         return system, pages
 
     system, pages = asyncio.run(run())
-    assert [page.told for page in pages] == [[{"kind": "all", "number": 1}]] * 10
+    assert [page.reported for page in pages] == [[{"kind": "all", "number": 1}]] * 10
     assert system.wholes == 1
 
 

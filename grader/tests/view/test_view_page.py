@@ -25,7 +25,7 @@ DRAW_CIRCLE = f"python3 {SOLUTION}/my_robot_controller/draw_circle.py"
 # --- what is seen -----------------------------------------------------------------------------------------------------
 
 
-def test_the_turtle_is_seen_to_move_and_the_graph_shows_who_moves_it(page: Page, system: World) -> None:
+def test_the_turtle_is_observed_to_move_and_the_graph_shows_who_moves_it(page: Page, system: World) -> None:
     before = turtle(page)
     assert drawn(page) < FEW
     node = system.start(DRAW_CIRCLE, "Draw")
@@ -46,7 +46,7 @@ def test_the_turtle_is_seen_to_move_and_the_graph_shows_who_moves_it(page: Page,
 
 
 @pytest.mark.exhaustive
-def test_several_turtles_their_pens_and_the_background_are_seen(page: Page, system: World) -> None:
+def test_several_turtles_their_pens_and_the_background_are_observed(page: Page, system: World) -> None:
     system.run("ros2 service call /spawn turtlesim/srv/Spawn '{x: 2.0, y: 2.0, theta: 1.5, name: leo}'")
     page.locator('.turtle[data-name="leo"]').wait_for()
     pen = system.run("ros2 service call /leo/set_pen turtlesim/srv/SetPen '{r: 179, g: 184, b: 255, width: 9}'")
@@ -130,11 +130,11 @@ def test_pause_stops_the_time_clear_wipes_and_reset_begins_anew(page: Page, syst
     until(lambda: drawn(page) > 200)
     page.get_by_role("button", name="Pause").click()
     page.get_by_role("status").get_by_text("Paused").wait_for()
-    stands, seen = turtle(page), len(poses.lines)
+    stands, observed = turtle(page), len(poses.lines)
     # As many commands as would have moved it.
     page.locator('[data-topic="/turtle1/pose"] .rate', has_text=re.compile("^\u2013$")).wait_for()
     assert turtle(page) == stands
-    assert len(poses.lines) - seen < 20
+    assert len(poses.lines) - observed < 20
     page.get_by_role("button", name="Clear").click()
     until(lambda: drawn(page) < FEW)
     page.get_by_role("button", name="Resume").click()
@@ -215,7 +215,7 @@ def test_axe_finds_nothing(page: Page, system: World, scheme: str) -> None:
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
-def test_nothing_goes_wrong_in_the_tab_and_nothing_is_asked_of_others(browser: Browser, system: World) -> None:
+def test_nothing_goes_wrong_in_the_tab_and_nothing_is_requested_of_others(browser: Browser, system: World) -> None:
     said: list[str] = []
     tab = browser.new_page()
     tab.on("pageerror", lambda error: said.append(str(error)))

@@ -12,12 +12,12 @@ def arrivals(*times_s: float, count: int = 1) -> Arrivals:
     return made
 
 
-def test_a_rate_is_told_from_the_second_arrival_on() -> None:
+def test_a_rate_is_reported_from_the_second_arrival_on() -> None:
     assert arrivals(1.0).hertz(1.1) is None
     assert arrivals(1.0, 1.5).hertz(1.6) == pytest.approx(2.0)
 
 
-def test_several_arrivals_may_be_told_at_once() -> None:
+def test_several_arrivals_may_be_reported_at_once() -> None:
     assert arrivals(0.0, 0.1, 0.2, 0.3, count=5).hertz(0.3) == pytest.approx(50.0)
 
 

@@ -105,7 +105,7 @@ def test_it_says_that_it_needs_a_terminal(system: World, stdin: str) -> None:
     assert "Traceback" not in done.stderr
 
 
-def test_a_terminal_without_colours_is_told(system: World) -> None:
+def test_a_terminal_without_colours_is_reported(system: World) -> None:
     terminal = shell(system, TERM="dumb", COLORTERM="")
     terminal.sendline(f"{VIEW}; echo code=$?")
     terminal.expect(r"this terminal \(TERM=dumb\) has none")
@@ -121,7 +121,7 @@ def test_a_terminal_without_colours_is_told(system: World) -> None:
         ("--view --port 70000", "0 to 65535"),
     ],
 )
-def test_wrong_use_is_told(system: World, arguments: str, said: str) -> None:
+def test_wrong_use_is_reported(system: World, arguments: str, said: str) -> None:
     done = system.run(f"{OUR_TURTLESIM} {arguments}")
     assert done.code == 2
     assert said in done.stderr

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.turtlesim.turtle import SIDE_M
-from grader.view.trail import FAR, MOST_POINTS, Stroke, Trail, place, told
+from grader.view.trail import FAR, MOST_POINTS, Stroke, Trail, as_lists, place
 
 INK = (179, 184, 255, 3)
 
@@ -46,7 +46,7 @@ def test_frames_make_one_stroke_with_few_points() -> None:
     assert max(distance(place(*point), stroke.points) for point in points) < 2.0
 
 
-def test_a_straight_way_is_two_points() -> None:
+def test_a_straight_path_is_two_points() -> None:
     trail = Trail()
     trail.draw(chain([(1 + 0.032 * n, 2.0) for n in range(200)]))
     assert [len(stroke.points) for stroke in trail.strokes] == [math.ceil(199 / 41) + 1]
@@ -74,7 +74,7 @@ def test_another_pen_is_another_stroke() -> None:
     assert [stroke.pen for stroke in trail.strokes] == [(255, 0, 0, 3), (0, 255, 0, 3)]
 
 
-def test_a_page_is_told_what_is_new_from_where_the_line_ended() -> None:
+def test_a_page_gets_what_is_new_from_the_end_of_the_line() -> None:
     trail = Trail()
     trail.draw([(1, 1, 2, 1, *INK)])
     (piece,) = trail.draw([(2, 1, 2, 2, *INK)])
@@ -102,7 +102,7 @@ def test_clearing_leaves_nothing() -> None:
     trail.take_picture(b"")
     trail.draw(chain(circle(20)))
     trail.clear()
-    assert trail.told() == {"picture": None, "strokes": []}
+    assert trail.as_message() == {"picture": None, "strokes": []}
 
 
 @given(st.lists(st.tuples(st.floats(-1e300, 1e300), st.floats(-1e300, 1e300)), min_size=2, max_size=30))
@@ -114,8 +114,8 @@ def test_no_place_is_too_far_and_none_is_lost(points: list[tuple[float, float]])
     assert all(distance(place(*point), [*stroke.points, stroke.points[-1]]) <= 2.0 for point in points)
 
 
-def test_what_a_page_is_told_are_whole_numbers() -> None:
-    assert told([Stroke((1, 2, 3, 4), [place(0, SIDE_M), place(SIDE_M, 0)])]) == [[1, 2, 3, 4, 0, 0, 4990, 4990]]
+def test_a_page_gets_whole_numbers() -> None:
+    assert as_lists([Stroke((1, 2, 3, 4), [place(0, SIDE_M), place(SIDE_M, 0)])]) == [[1, 2, 3, 4, 0, 0, 4990, 4990]]
 
 
 def test_pictures_are_painted_in_the_pen_s_colour() -> None:

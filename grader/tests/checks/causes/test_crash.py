@@ -29,7 +29,7 @@ def traceback(error: str, line: int = 14, file: str = f"/ws/{NODE_FILE}") -> str
 
 
 @pytest.mark.parametrize(
-    ("given", "error", "early", "seen"),
+    ("given", "error", "early", "observed"),
     [
         (ended("SIGINT", 0), None, "", ""),
         (ended("SIGINT", stderr=TRACEBACK), None, "", ""),
@@ -60,12 +60,12 @@ def traceback(error: str, line: int = 14, file: str = f"/ws/{NODE_FILE}") -> str
         ),
     ],
 )
-def test_an_end_is_told_in_words(given: Evidence, error: str | None, early: str, seen: str) -> None:
+def test_an_end_is_reported_in_words(given: Evidence, error: str | None, early: str, observed: str) -> None:
     crash = crash_of(given)
-    assert (crash and crash.error, ended_early(given), end_observed(given)) == (error, early, seen)
+    assert (crash and crash.error, ended_early(given), end_observed(given)) == (error, early, observed)
 
 
-def test_an_exception_is_told_with_its_words_if_it_has_any() -> None:
+def test_an_exception_is_reported_with_its_words_if_it_has_any() -> None:
     assert Crash("KeyError", "'x'").observed == "KeyError: 'x'"
     assert Crash("KeyError", "").observed == "KeyError"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.tests.checks.crashes import DRIVER, mended
+from grader.tests.checks.crashes import DRIVER, fixed
 
 CLASS = "class Driver(Node):\n    def __init__(self):\n        super().__init__('driver')\n"
 
@@ -44,6 +44,6 @@ CLASS = "class Driver(Node):\n    def __init__(self):\n        super().__init__(
     ],
 )
 def test_a_cause_that_is_known_well_has_a_fix(source: str, error: str, line: str | None) -> None:
-    after = mended(source, error)
+    after = fixed(source, error)
     assert (after is None) == (line is None)
     assert line is None or line in (after or "")

@@ -74,7 +74,7 @@ def setup_py(instead: str, more: str = "") -> Files:
         ({"setup.py": "print(3)\n"}, "entry-point-missing", "setup.py", f"{NODE_FILE} is there, but"),
     ],
 )
-def test_what_setup_py_has_instead_is_told(files: Files, diagnosis: str, where: str, words: str) -> None:
+def test_what_setup_py_has_instead_is_reported(files: Files, diagnosis: str, where: str, words: str) -> None:
     got = found(files)
     assert (got.diagnosis, str(got.where)) == (diagnosis, where)
     assert got.cause.startswith(words)
@@ -150,7 +150,7 @@ def test_a_script_is_no_entry_point(files: Files, diagnosis: str, where: str, wo
         ({}, "my_robot", "setup.cfg", "The folder name must be the package name in package.xml."),
     ],
 )
-def test_an_executable_in_another_folder_is_told(files: Files, package: str | None, where: str, cause: str) -> None:
+def test_an_executable_in_another_folder_is_reported(files: Files, package: str | None, where: str, cause: str) -> None:
     got = found(files, replace(BUILD, executables=(), package=package))
     assert (got.diagnosis, str(got.where), got.cause) == ("setup-cfg", where, cause)
     assert f"lib/{package or 'my_robot_controller'}." in got.observed
@@ -235,7 +235,7 @@ def test_a_file_that_is_too_large_to_be_read_fails() -> None:
 
 
 @pytest.mark.parametrize(
-    ("files", "told"),
+    ("files", "reported"),
     [
         ({}, []),
         ({NODE_FILE: "def main(\n"}, ["entry-point"]),
@@ -245,7 +245,7 @@ def test_a_file_that_is_too_large_to_be_read_fails() -> None:
         ({NODE_FILE: "def main(\n", "setup.py": None}, ["build"]),
     ],
 )
-def test_a_module_that_python_cannot_read_is_known_before_anything_is_built(files: Files, told: list[str]) -> None:
+def test_a_module_that_python_cannot_read_is_known_before_anything_is_built(files: Files, reported: list[str]) -> None:
     given = evidence(package=submission(files), build=None)
     early = {"entry-point": ENTRY_POINT.judge_early(given, {}), "build": BUILDS.judge_early(given, {})}
-    assert [name for name, finding in early.items() if finding is not None] == told
+    assert [name for name, finding in early.items() if finding is not None] == reported

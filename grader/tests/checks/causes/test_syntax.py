@@ -39,6 +39,6 @@ def test_pythons_words_lead_to_the_mistake(words: str, diagnosis: str) -> None:
 
 
 @pytest.mark.parametrize("mark", [b"<<<<<<< HEAD", b"=======", b">>>>>>> main"])
-def test_marks_of_a_conflict_are_told_whatever_python_says(mark: bytes) -> None:
+def test_marks_of_a_conflict_are_reported_whatever_python_says(mark: bytes) -> None:
     found = unreadable_finding("a.py", Unreadable("expected ':'", 1), b"x = 1\n" + mark + b"\n")
     assert found.diagnosis == "merge-conflict"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.tests.checks.crashes import DRIVER, to_look_at, told
+from grader.tests.checks.crashes import DRIVER, reported, to_look_at
 
 
 @pytest.mark.parametrize(
@@ -44,22 +44,24 @@ from grader.tests.checks.crashes import DRIVER, to_look_at, told
 )
 def test_an_unknown_attribute_is_explained_by_what_it_was_looked_for_in(error: str, diagnosis: str, words: str) -> None:
     source = DRIVER.format(line="self.drive()")
-    found = told(source, f"AttributeError: {error}")
+    found = reported(source, f"AttributeError: {error}")
     assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
     assert words in found.cause
     assert ("meant?" in found.cause) == ("meant?" in words)
     assert "Metaclass" not in found.cause
 
 
-def test_a_message_made_without_parentheses_is_told_where_it_was_made() -> None:
+def test_a_message_made_without_parentheses_is_reported_where_it_was_made() -> None:
     source = "count = 3\nmsg = geometry_msgs.msg.Twist  # look\nmsg.linear.x = 2.0  # crashed\n"
-    found = told(source, "AttributeError: 'property' object has no attribute 'x'")
+    found = reported(source, "AttributeError: 'property' object has no attribute 'x'")
     assert (found.diagnosis, found.line) == ("class-for-object", 2)
     assert "geometry_msgs.msg.Twist is a class." in found.cause
 
 
-def test_a_class_that_was_made_nowhere_is_told_where_it_crashed() -> None:
-    found = told("count = 3\nmsg.linear.x = 2.0  # crashed\n", "AttributeError: 'property' object has no attribute 'x'")
+def test_a_class_that_was_made_nowhere_is_reported_where_it_crashed() -> None:
+    found = reported(
+        "count = 3\nmsg.linear.x = 2.0  # crashed\n", "AttributeError: 'property' object has no attribute 'x'"
+    )
     assert (found.diagnosis, found.line) == ("class-for-object", 2)
     assert "It is a class." in found.cause
 
@@ -80,13 +82,13 @@ def none_error(name: str) -> str:
 def test_what_no_message_has_filled_is_none(first: str, diagnosis: str) -> None:
     source = f"class Driver:\n    def __init__(self):\n        {first}\n    def send(self):\n"
     source += "        self.other.y = make().x + self.pose.x  # crashed\n"
-    found = told(source, none_error("x"))
+    found = reported(source, none_error("x"))
     assert found.diagnosis == diagnosis
     assert ("self.pose is None until" in found.cause) == (diagnosis == "none-before-message")
 
 
 def test_spin_wants_a_node() -> None:
-    assert told("rclpy.spin(make())  # crashed\n", none_error("executor")).diagnosis == "no-object"
+    assert reported("rclpy.spin(make())  # crashed\n", none_error("executor")).diagnosis == "no-object"
 
 
 LOCAL = """\
@@ -115,8 +117,8 @@ class Driver(Base):
 """
 
 
-def test_a_value_that_is_none_is_told_as_none() -> None:
-    found = told("def drive():\n    publisher.publish(1)  # crashed\n", none_error("publish"))
+def test_a_value_that_is_none_is_reported_as_none() -> None:
+    found = reported("def drive():\n    publisher.publish(1)  # crashed\n", none_error("publish"))
     assert "publisher is None here" in found.cause
 
 
@@ -195,6 +197,6 @@ NO_INIT = "class Driver(Node):\n    def send(self):\n        print(self._x)  # c
     ],
 )
 def test_what_a_node_lacks_is_explained_by_its_class(source: str, name: str, diagnosis: str, words: str) -> None:
-    found = told(source, OWN.format(name))
+    found = reported(source, OWN.format(name))
     assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
     assert words in found.cause

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.tests.checks.crashes import to_look_at, told
+from grader.tests.checks.crashes import reported, to_look_at
 
 NODE = """\
 class Driver(Node):
@@ -58,21 +58,21 @@ class Driver(Node):
 )
 def test_a_line_that_makes_something_shows_what_is_wrong_with_its_arguments(line: str, diagnosis: str) -> None:
     source = NODE.format(line=line)
-    found = told(source, "TypeError: the words do not matter")
+    found = reported(source, "TypeError: the words do not matter")
     assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
 
 
-def test_the_order_is_told_for_the_function_that_was_called() -> None:
-    found = told(NODE.format(line="self.create_timer(self.send, 0.5)"), "TypeError: no")
+def test_the_order_is_reported_for_the_function_that_was_called() -> None:
+    found = reported(NODE.format(line="self.create_timer(self.send, 0.5)"), "TypeError: no")
     assert found.cause == "create_timer takes its arguments in this order: the period and the callback."
-    found = told(NODE.format(line="self.create_timer(0.5, self.send())"), "TypeError: no")
+    found = reported(NODE.format(line="self.create_timer(0.5, self.send())"), "TypeError: no")
     assert found.cause.startswith("create_timer needs the method itself.")
 
 
 def test_a_call_over_several_lines_is_shown_where_it_begins() -> None:
     for arguments in ("0.5, self.send()", "self.send, 0.5"):
         source = NODE.format(line=f"self.create_timer(  # look\n            {arguments})")
-        assert told(source, "TypeError: no").line == to_look_at(source)
+        assert reported(source, "TypeError: no").line == to_look_at(source)
 
 
 @pytest.mark.parametrize(
@@ -196,7 +196,7 @@ def test_a_call_over_several_lines_is_shown_where_it_begins() -> None:
 def test_pythons_words_are_explained(error: str, diagnosis: str, look: str, words: str) -> None:
     source = NODE.format(line="self.drive()") + "\ndef outside():\n    pass\n"
     lines = [number for number, line in enumerate(source.splitlines(), 1) if look and look in line]
-    found = told(source, f"TypeError: {error}")
+    found = reported(source, f"TypeError: {error}")
     assert (found.diagnosis, found.line) == (diagnosis, lines[0] if lines else to_look_at(source))
     assert found.cause.startswith(words)
     if diagnosis == "unexpected-keyword":
@@ -204,15 +204,16 @@ def test_pythons_words_are_explained(error: str, diagnosis: str, look: str, word
 
 
 def test_what_was_spun_is_named() -> None:
-    found = told("rclpy.spin(Driver)  # crashed\n", "TypeError: 'property' object is not iterable")
+    found = reported("rclpy.spin(Driver)  # crashed\n", "TypeError: 'property' object is not iterable")
     assert (found.diagnosis, "was called with Driver, which" in found.cause) == ("class-for-object", True)
     assert (
-        "was called with It," in told("rclpy.spin()  # crashed\n", "TypeError: 'property' object is not iterable").cause
+        "was called with It,"
+        in reported("rclpy.spin()  # crashed\n", "TypeError: 'property' object is not iterable").cause
     )
 
 
 def test_a_value_that_hides_a_method_is_found() -> None:
-    found = told(HIDES, "TypeError: 'int' object is not callable")
+    found = reported(HIDES, "TypeError: 'int' object is not callable")
     assert (found.diagnosis, found.line) == ("name-used-twice", to_look_at(HIDES))
     assert found.cause == "self.send is set in line 4, which hides the method of the same name."
 
@@ -231,14 +232,14 @@ def test_a_value_that_hides_a_method_is_found() -> None:
 )
 def test_nothing_is_called_where_a_callback_was_called(made: str, kind: str, diagnosis: str) -> None:
     source = f"class Driver(Node):\n    def __init__(self):\n        {made}\n\nrclpy.spin(node)  # crashed\n"
-    found = told(source, f"TypeError: '{kind}' object is not callable")
+    found = reported(source, f"TypeError: '{kind}' object is not callable")
     assert (found.diagnosis, found.line) == (diagnosis, 3 if diagnosis == "callback-called" else 5)
 
 
-def test_a_second_init_is_told_with_all_its_lines() -> None:
+def test_a_second_init_is_reported_with_all_its_lines() -> None:
     once, error = "rclpy.init()  # crashed\n", "RuntimeError: Context.init() must only be called once"
-    assert told(once, error).cause == "Call rclpy.init only once."
-    found = told(f"rclpy.init()\nrclpy.spin(node)\n{once}", error)
+    assert reported(once, error).cause == "Call rclpy.init only once."
+    found = reported(f"rclpy.init()\nrclpy.spin(node)\n{once}", error)
     assert found.diagnosis == "init-twice"
     assert found.cause.endswith(" It is called in lines 1 and 3.")
 
@@ -274,6 +275,6 @@ NOT_CALLABLE = "RuntimeError: callback should be either be callable with one arg
 def test_what_rclpy_refuses_is_explained(line: str, error: str, diagnosis: str, look: str) -> None:
     source = NODE.format(line=line)
     lines = [number for number, text in enumerate(source.splitlines(), 1) if look in text]
-    found = told(source, error)
+    found = reported(source, error)
     assert (found.diagnosis, found.line) == (diagnosis, lines[0])
     assert found.cause != "" or diagnosis == "crash"

@@ -49,7 +49,7 @@ def test_an_end_before_ctrl_c_is_explained_by_the_source(body: str, diagnosis: s
     assert ended(source)[1].startswith(words)
 
 
-def test_an_end_at_the_start_is_told_as_such() -> None:
+def test_an_end_at_the_start_is_reported_as_such() -> None:
     source = SOURCE.format(body="rclpy.spin(Driver())")
     found = [ended(source, t_s)[0] for t_s in (-0.1, 0.0, START_S, START_S + 0.1)]
     assert found == ["ends-at-once", "ends-at-once", "ends-at-once", "ended-early"]
@@ -61,7 +61,7 @@ def test_a_function_that_is_only_named_is_found(name: str) -> None:
     assert ended(source)[::2] == ("not-called", 3)
 
 
-def test_only_the_functions_that_are_asked_for_are_found() -> None:
+def test_only_the_functions_that_are_requested_are_found() -> None:
     given = evidence(recording([]), submission({NODE_FILE: "import rclpy\nrclpy.ok\nprint(main)\nmain()\n"}))
     assert named_only(given, "rclpy.init", "main") is None
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.tests.checks.crashes import told
+from grader.tests.checks.crashes import reported
 
 FLOAT = "AssertionError: The 'x' field must be of type 'float'"
 
@@ -31,7 +31,7 @@ FLOAT = "AssertionError: The 'x' field must be of type 'float'"
     ],
 )
 def test_the_value_tells_why_it_is_no_float(line: str, diagnosis: str, words: str) -> None:
-    found = told(f"SPEED = 2\n{line}  # crashed\n", FLOAT)
+    found = reported(f"SPEED = 2\n{line}  # crashed\n", FLOAT)
     assert (found.diagnosis, found.line) == (diagnosis, 2)
     assert found.cause.startswith("The field x ")
     assert (
@@ -42,7 +42,7 @@ def test_the_value_tells_why_it_is_no_float(line: str, diagnosis: str, words: st
 
 
 def test_a_value_of_which_nothing_is_known_is_of_another_type() -> None:
-    assert told("", FLOAT).diagnosis == "field-type"
+    assert reported("", FLOAT).diagnosis == "field-type"
 
 
 @pytest.mark.parametrize(
@@ -59,6 +59,6 @@ def test_a_value_of_which_nothing_is_known_is_of_another_type() -> None:
     ],
 )
 def test_an_assertion_is_explained_by_its_words(error: str, diagnosis: str, words: str) -> None:
-    found = told("msg.linear.x = 2  # crashed\n", f"AssertionError: {error}")
+    found = reported("msg.linear.x = 2  # crashed\n", f"AssertionError: {error}")
     assert (found.diagnosis, found.line) == (diagnosis, 1)
     assert found.cause.startswith(words)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.tests.checks.crashes import told
+from grader.tests.checks.crashes import reported
 
 HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py": ""}
 
@@ -43,6 +43,6 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
     ],
 )
 def test_a_failed_import_is_explained_by_what_there_is(error: str, diagnosis: str, words: str) -> None:
-    found = told("import this_and_that  # crashed\n", f"ImportError: {error}", HELPER)
+    found = reported("import this_and_that  # crashed\n", f"ImportError: {error}", HELPER)
     assert (found.diagnosis, found.line) == (diagnosis, 1)
     assert found.cause.startswith(words)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from grader.tests.checks.crashes import DRIVER, to_look_at, told
+from grader.tests.checks.crashes import DRIVER, reported, to_look_at
 
 
 def name_error(name: str) -> str:
@@ -30,7 +30,7 @@ def name_error(name: str) -> str:
 )
 def test_an_unknown_name_is_explained_by_what_there_is(line: str, name: str, diagnosis: str, words: str) -> None:
     source = DRIVER.format(line=line)
-    found = told(source, name_error(name))
+    found = reported(source, name_error(name))
     assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
     assert words in found.cause
 
@@ -44,23 +44,23 @@ def test_an_unknown_name_is_explained_by_what_there_is(line: str, name: str, dia
     ],
 )
 def test_what_is_imported_is_a_name(imported: str, name: str, guess: str) -> None:
-    found = told(f"{imported}\nprint({name})  # crashed", name_error(name))
+    found = reported(f"{imported}\nprint({name})  # crashed", name_error(name))
     assert (found.diagnosis, f"There is a name {guess}." in found.cause) == ("name-misspelt", True)
 
 
 def test_a_method_without_self_does_not_know_it() -> None:
     source = "class Driver:\n    def send():\n        self.count += 1  # crashed\n"
-    assert told(source, name_error("self")).diagnosis == "self-parameter"
+    assert reported(source, name_error("self")).diagnosis == "self-parameter"
 
 
 def test_outside_of_the_class_nothing_belongs_to_self() -> None:
     source = "class Driver:\n    def drive(self):\n        self.count = 1\n\nprint(drive)  # crashed\n"
-    assert told(source, name_error("drive")).diagnosis != "missing-self"
+    assert reported(source, name_error("drive")).diagnosis != "missing-self"
 
 
 def test_a_name_error_in_other_words_is_no_more_than_that() -> None:
     text = "NameError: cannot access free variable 'step' where it is not associated with a value"
-    assert told(DRIVER.format(line="print(step)"), text).diagnosis == "crash"
+    assert reported(DRIVER.format(line="print(step)"), text).diagnosis == "crash"
 
 
 @pytest.mark.parametrize(
@@ -74,13 +74,13 @@ def test_a_name_error_in_other_words_is_no_more_than_that() -> None:
 def test_a_name_that_is_assigned_below_is_the_functions_own_or_selfs(source: str, diagnosis: str) -> None:
     name = "other" if "other" in source else "count"
     error = f"UnboundLocalError: cannot access local variable '{name}' where it is not associated with a value"
-    found = told(source, error)
+    found = reported(source, error)
     assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
     assert ("count belongs to the object" in found.cause) == (diagnosis == "missing-self")
 
 
 def test_an_unbound_name_in_other_words_is_local_all_the_same() -> None:
-    assert told(DRIVER.format(line="count += 1"), "UnboundLocalError: no value").diagnosis == "local-name"
+    assert reported(DRIVER.format(line="count += 1"), "UnboundLocalError: no value").diagnosis == "local-name"
 
 
 @pytest.mark.parametrize(
@@ -102,8 +102,8 @@ def test_an_unbound_name_in_other_words_is_local_all_the_same() -> None:
         (DRIVER.format(line="create_timer(1, 2)"), "create_timer", "missing-self", "write self.create_timer"),
     ],
 )
-def test_a_name_that_stands_elsewhere_is_told_where(source: str, name: str, diagnosis: str, words: str) -> None:
-    found = told(source, name_error(name))
+def test_a_name_that_stands_elsewhere_is_reported_where(source: str, name: str, diagnosis: str, words: str) -> None:
+    found = reported(source, name_error(name))
     assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
     assert words in found.cause
 
@@ -121,8 +121,8 @@ def test_a_name_that_stands_elsewhere_is_told_where(source: str, name: str, diag
         ("n = 0\ndef count():\n    print(n)  # crashed\n    n = 1\n", "n", "local-name", "local to that function"),
     ],
 )
-def test_a_local_name_is_told_by_the_line_that_sets_it(source: str, name: str, diagnosis: str, words: str) -> None:
+def test_a_local_name_is_reported_by_the_line_that_sets_it(source: str, name: str, diagnosis: str, words: str) -> None:
     error = f"UnboundLocalError: cannot access local variable '{name}' where it is not associated with a value"
-    found = told(source, error)
+    found = reported(source, error)
     assert (found.diagnosis, found.line) == (diagnosis, to_look_at(source))
     assert words in found.cause

@@ -92,8 +92,8 @@ def test_a_timer_that_a_callback_makes_is_found(made: str, sent: str, *, found: 
 def test_a_publisher_that_each_call_makes_anew_is_found(made: str, *, found: bool) -> None:
     source = NODE.format(made=made, at_send="", sent='self.publisher = self.create_publisher(Twist, "/a", 10)  # look')
     cause = why_publishers_grow(evidence(recording([]), submission({NODE_FILE: source})))
-    told = None if cause is None else (cause.diagnosis, cause.where.line if cause.where else None)
-    assert told == (("publisher-in-callback", line_with(LOOK, source)) if found else None)
+    reported = None if cause is None else (cause.diagnosis, cause.where.line if cause.where else None)
+    assert reported == (("publisher-in-callback", line_with(LOOK, source)) if found else None)
 
 
 def test_what_a_callback_calls_for_every_message_is_found_in_its_own_methods() -> None:

@@ -108,7 +108,7 @@ def test_a_method_that_sends_nothing_need_not_be_called() -> None:
         ("rclpy.shutdown()", ("no-spin", None)),
     ],
 )
-def test_a_missing_spin_is_told_in_the_end(last: str, expected: tuple[str, int | None] | None) -> None:
+def test_a_missing_spin_is_reported_in_the_end(last: str, expected: tuple[str, int | None] | None) -> None:
     found = silence(f"{last}\n")
     assert (found and (found[0], found[2])) == expected
 
@@ -148,7 +148,7 @@ def test_a_client_without_a_name_is_none() -> None:
     assert silence(source) is None
 
 
-def test_ends_that_do_not_go_together_are_told_by_rclpy() -> None:
+def test_ends_that_do_not_go_together_are_reported_by_rclpy() -> None:
     source = NODE.format(made=TIMER, sent="pass")
     said = "New subscription discovered on topic, requesting incompatible QoS. No messages will be sent to it."
     quiet = given(source)
@@ -189,9 +189,9 @@ while rclpy.ok():
 )
 def test_what_nothing_wakes_waits_for_ever_in_spin_once(made: str, spun: str, *, waits: bool) -> None:
     source = LOOP.format(made=made, spun=spun)
-    told = silence(source)
+    reported = silence(source)
     if waits:
-        assert told is not None
-        assert (told[0], told[2]) == ("spin-once-waits", line_with(LOOK, source))
+        assert reported is not None
+        assert (reported[0], reported[2]) == ("spin-once-waits", line_with(LOOK, source))
     else:
-        assert told is None
+        assert reported is None

@@ -63,7 +63,7 @@ def test_the_file_is_looked_at_before_its_answers(answers: str | None, diagnosis
 
 
 @pytest.mark.parametrize("answer", ['"left"', '"  LEFT "', '"to the   Left"'])
-def test_capitals_and_blanks_of_words_do_not_matter(answer: str) -> None:
+def test_capitals_and_spaces_of_words_do_not_matter(answer: str) -> None:
     assert judged(TEXT, answer, accepts=("left", "to the left")).status is Status.PASSED
 
 
@@ -75,7 +75,7 @@ def test_other_words_are_shown_with_the_authors_reason_and_the_line() -> None:
 
 
 @pytest.mark.parametrize("kind", [TEXT, LIST, GRAPH, RATE])
-def test_no_answer_and_one_of_another_form_are_told(kind: Kind[Any]) -> None:
+def test_no_answer_and_one_of_another_form_are_reported(kind: Kind[Any]) -> None:
     values: dict[str, Any] = {"answer": "name"}
     if kind is TEXT:
         values |= {"accepts": ("a",)}
@@ -93,7 +93,7 @@ def test_no_answer_and_one_of_another_form_are_told(kind: Kind[Any]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("answer", "told", "diagnosis"),
+    ("answer", "reported", "diagnosis"),
     [
         ('["y", "x"]', None, None),
         ('["x", "y", "y"]', None, None),
@@ -102,11 +102,11 @@ def test_no_answer_and_one_of_another_form_are_told(kind: Kind[Any]) -> None:
         ('["x", "z"]', "name is [x, z]: 1 too many and 1 missing.", "wrong-list"),
     ],
 )
-def test_a_list_is_compared_whatever_its_order(answer: str, told: str | None, diagnosis: str | None) -> None:
+def test_a_list_is_compared_whatever_its_order(answer: str, reported: str | None, diagnosis: str | None) -> None:
     finding = judged(LIST, answer, items=("x", "y"))
-    assert (finding.status is Status.PASSED, finding.diagnosis) == (told is None, diagnosis)
-    if told:
-        assert (finding.observed, str(finding.where)) == (told, "answers.toml:2")
+    assert (finding.status is Status.PASSED, finding.diagnosis) == (reported is None, diagnosis)
+    if reported:
+        assert (finding.observed, str(finding.where)) == (reported, "answers.toml:2")
 
 
 @pytest.mark.parametrize(

@@ -40,8 +40,8 @@ def test_an_eight_is_one_wherever_it_begins_and_however_it_is_turned() -> None:
 def test_a_first_lobe_that_lacks_its_beginning_by_the_walls_clock_was_begun_before_anybody_listened(
     first: float, second: float, clock: str, diagnosis: str
 ) -> None:
-    seen = recording(legs(lobe(1, degrees=first), lobe(-1, degrees=second)), clock=clock)
-    assert found(EIGHT, evidence(seen), radius_m=1.0).diagnosis == diagnosis
+    observed = recording(legs(lobe(1, degrees=first), lobe(-1, degrees=second)), clock=clock)
+    assert found(EIGHT, evidence(observed), radius_m=1.0).diagnosis == diagnosis
 
 
 def test_a_rest_between_the_lobes_is_allowed_and_going_on_after_them_too() -> None:
@@ -50,7 +50,7 @@ def test_a_rest_between_the_lobes_is_allowed_and_going_on_after_them_too() -> No
 
 
 @pytest.mark.parametrize(
-    ("parts", "diagnosis", "seen"),
+    ("parts", "diagnosis", "observed"),
     [
         (
             (lobe(1), lobe(-1, radius_m=1.3)),
@@ -95,11 +95,11 @@ def test_a_rest_between_the_lobes_is_allowed_and_going_on_after_them_too() -> No
         ((lobe(1, radius_m=3.0), lobe(-1)), "wall", "The turtle ran into a wall."),
     ],
 )
-def test_each_other_way_is_told_with_its_lobe_and_by_how_much(
-    parts: tuple[tuple[int, float, float], ...], diagnosis: str, seen: str
+def test_each_other_trajectory_is_reported_with_its_lobe_and_by_how_much(
+    parts: tuple[tuple[int, float, float], ...], diagnosis: str, observed: str
 ) -> None:
     finding = eight(*parts, first="left")
-    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, seen)
+    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, observed)
     assert str(finding.where) == f"{NODE_FILE}:{10 if diagnosis == 'lobe-angle' else 15}"
 
 
@@ -107,7 +107,7 @@ def test_either_side_may_come_first_where_the_exercise_allows_it() -> None:
     assert eight(lobe(-1), lobe(1), first="either").status is Status.PASSED
 
 
-def test_a_way_that_was_driven_by_other_means_is_none() -> None:
+def test_a_trajectory_that_was_driven_by_other_means_is_none() -> None:
     moved = recording(legs(lobe(1), lobe(-1)), interventions=("teleport_absolute",))
     assert found(EIGHT, evidence(moved), radius_m=1.0).diagnosis == "intervention"
     assert found(EIGHT, evidence(recording(every(0.5, math.nan, 1.0))), radius_m=1.0).status is Status.FAILED

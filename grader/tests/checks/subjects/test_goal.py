@@ -15,8 +15,8 @@ START = Pose(3.0, 5.0, 0.0)
 QUARTER = math.pi / 2 / (10 * TICK_S)
 
 
-def ahead(way_m: float, ticks: int = 20) -> Leg:
-    return ticks, way_m / (ticks * TICK_S), 0.0
+def ahead(length_m: float, ticks: int = 20) -> Leg:
+    return ticks, length_m / (ticks * TICK_S), 0.0
 
 
 def goal(*parts: Leg, start: Pose = START, stops: bool = True) -> Finding:
@@ -24,9 +24,9 @@ def goal(*parts: Leg, start: Pose = START, stops: bool = True) -> Finding:
     return found(GOAL, evidence(given), x_m=7.0, y_m=5.0)
 
 
-@pytest.mark.parametrize("way_m", [4.0, 3.95, 4.05])
-def test_whoever_stops_near_enough_has_arrived(way_m: float) -> None:
-    finding = goal(ahead(way_m))
+@pytest.mark.parametrize("length_m", [4.0, 3.95, 4.05])
+def test_whoever_stops_near_enough_has_arrived(length_m: float) -> None:
+    finding = goal(ahead(length_m))
     assert (finding.status, finding.observed) == (
         Status.PASSED,
         "The turtle drove to its goal, 4.0 m away, and stopped.",
@@ -34,7 +34,7 @@ def test_whoever_stops_near_enough_has_arrived(way_m: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("parts", "diagnosis", "seen"),
+    ("parts", "diagnosis", "observed"),
     [
         ((ahead(3.0),), "not-there", "The turtle ends at x=6.00 y=5.00, 1.00 m from the goal."),
         (
@@ -56,13 +56,15 @@ def test_whoever_stops_near_enough_has_arrived(way_m: float) -> None:
         ),
     ],
 )
-def test_whoever_is_not_there_is_told_where_they_are(parts: tuple[Leg, ...], diagnosis: str, seen: str) -> None:
+def test_a_turtle_that_is_not_at_the_goal_is_reported_with_its_place(
+    parts: tuple[Leg, ...], diagnosis: str, observed: str
+) -> None:
     finding = goal(*parts)
-    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, seen)
+    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, observed)
     assert str(finding.where) == f"{NODE_FILE}:16"
 
 
-def test_whoever_is_no_nearer_in_the_end_has_driven_away_and_without_a_wall_none_is_told_of() -> None:
+def test_a_turtle_that_is_no_nearer_in_the_end_has_driven_away_and_no_wall_is_named_without_one() -> None:
     assert goal(ahead(1.0), ahead(-0.97), stops=False).diagnosis == "away-from-goal"
     nearer = goal(ahead(1.0), ahead(-0.3), stops=False)
     assert (nearer.diagnosis, "wall" in nearer.cause) == ("not-there", False)
@@ -84,9 +86,9 @@ def test_a_turtle_that_was_put_there_has_not_driven() -> None:
 
 
 @pytest.mark.parametrize(
-    ("way_m", "near", "status"),
+    ("length_m", "near", "status"),
     [(4.0, False, "passed"), (4.09, True, "passed"), (3.89, True, "failed"), (3.0, False, "failed")],
 )
-def test_an_end_near_the_edge_is_for_wall_time_to_judge(way_m: float, near: bool, status: str) -> None:
-    finding = goal(ahead(way_m))
+def test_an_end_near_the_edge_is_for_wall_time_to_judge(length_m: float, near: bool, status: str) -> None:
+    finding = goal(ahead(length_m))
     assert (finding.near_edge, finding.status.value) == (near, status)

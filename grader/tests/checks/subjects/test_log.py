@@ -35,7 +35,7 @@ def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
 
 
 @pytest.mark.parametrize(
-    ("log", "format_", "seen", "cause"),
+    ("log", "format_", "observed", "cause"),
     [
         ("hello 0", HELLO, 'The last log line is "hello 0".', "Upper and lower case matter."),
         (
@@ -70,9 +70,9 @@ def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
         ),
     ],
 )
-def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: str, seen: str, cause: str) -> None:
+def test_a_line_in_another_format_is_shown_with_what_differs(log: str, format_: str, observed: str, cause: str) -> None:
     finding = in_format(lines(log), format_)
-    assert (finding.status, finding.observed, finding.cause) == (Status.FAILED, seen, cause)
+    assert (finding.status, finding.observed, finding.cause) == (Status.FAILED, observed, cause)
     assert finding.diagnosis in ("log-capitals", "log-more", "log-numbers", "log-format")
 
 
@@ -107,7 +107,7 @@ def test_only_what_the_node_logged_before_ctrl_c_counts(forged: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("numbers", "diagnosis", "seen"),
+    ("numbers", "diagnosis", "observed"),
     [
         ((0, 1, 2, 3), None, "The counter starts at 0 and increases by one per line."),
         ((1, 2, 3), "counter-start", "The first number is 1."),
@@ -118,10 +118,10 @@ def test_only_what_the_node_logged_before_ctrl_c_counts(forged: str) -> None:
         ((3, 2, 1), "counter-step", "The number after 3 is 2."),
     ],
 )
-def test_the_counter(numbers: tuple[int, ...], diagnosis: str | None, seen: str) -> None:
+def test_the_counter(numbers: tuple[int, ...], diagnosis: str | None, observed: str) -> None:
     trial = recording([], log=hello(*numbers))
     finding = found(LOG_COUNTER, evidence(trial), format=HELLO, counts="counter")
-    assert (finding.diagnosis, finding.observed) == (diagnosis, seen)
+    assert (finding.diagnosis, finding.observed) == (diagnosis, observed)
     assert str(finding.where) == ("None" if diagnosis is None else NODE_FILE)
     assert ("Log the number first, then increase it." in finding.cause) == (numbers[0] == 1)
 

@@ -151,7 +151,7 @@ def test_what_is_off_by_less_than_the_tolerance_is_right() -> None:
     assert distance((x, y, driven_m + 0.12)).status is Status.FAILED
 
 
-def test_a_way_that_is_nearly_another_one_is_only_wrong() -> None:
+def test_a_trajectory_that_is_nearly_another_one_is_only_wrong() -> None:
     x, y, driven_m = truth()
     chords = np.cumsum(np.hypot(np.diff(x, prepend=DRIVE.start.x), np.diff(y, prepend=DRIVE.start.y)))
     assert distance((x, y, chords * 1.2)).diagnosis == "wrong-distance"

@@ -13,17 +13,17 @@ NAMES = ("teleport", "create_client")
 
 
 @pytest.mark.parametrize(
-    ("last", "seen"),
+    ("last", "observed"),
     [
         ("node.create_client(x)", "The node calls create_client."),
         ("create_client(x)", "The node calls create_client."),
         ("turtles.teleport(1)\nnode.create_client(x)", "The node calls teleport."),
     ],
 )
-def test_a_forbidden_call_is_shown_where_it_stands(last: str, seen: str) -> None:
+def test_a_forbidden_call_is_shown_where_it_stands(last: str, observed: str) -> None:
     given = evidence(package=submission({NODE_FILE: f"{NODE}\n{last}\n"}))
     finding = found(NO_CALLS, given, names=NAMES, cause="Drive there.")
-    assert (finding.diagnosis, finding.observed, str(finding.where)) == ("forbidden-call", seen, f"{NODE_FILE}:23")
+    assert (finding.diagnosis, finding.observed, str(finding.where)) == ("forbidden-call", observed, f"{NODE_FILE}:23")
 
 
 SLEEP = ("sleep", "sleep_for", "create_rate")
@@ -62,9 +62,9 @@ def used(text: str, **files: str) -> tuple[Status, str]:
     ],
 )
 def test_a_function_by_another_name_is_the_same_function(text: str) -> None:
-    status, seen = used(text)
+    status, observed = used(text)
     assert status is Status.FAILED
-    assert any(name in seen for name in SLEEP)
+    assert any(name in observed for name in SLEEP)
 
 
 @pytest.mark.parametrize(
@@ -130,7 +130,7 @@ def test_a_node_without_a_timer_is_shown_what_takes_its_place() -> None:
     assert "receives no messages" in finding.cause
 
 
-def test_whoever_has_a_rate_is_not_told_that_the_node_hears_nothing() -> None:
+def test_a_node_with_a_rate_does_not_fail_for_a_lack_of_messages() -> None:
     rate = NODE.replace("self.create_timer(0.5, self.send)", "self.create_rate(2)")
     finding = found(USES_TIMER, evidence(package=submission({NODE_FILE: rate})))
     assert finding.diagnosis == "no-timer"

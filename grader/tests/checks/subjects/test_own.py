@@ -56,7 +56,7 @@ def test_no_spelling_of_the_own_id_makes_a_friends_circle_pass() -> None:
 
 
 @pytest.mark.parametrize(
-    ("numbers", "by", "diagnosis", "seen"),
+    ("numbers", "by", "diagnosis", "observed"),
     [
         (
             ALICE,
@@ -74,15 +74,15 @@ def test_no_spelling_of_the_own_id_makes_a_friends_circle_pass() -> None:
         ("student = 3", "alice", "numbers-unreadable", f"{FILE}: student is missing, or not a string."),
     ],
 )
-def test_other_numbers_are_told_from_the_own(
-    numbers: OwnNumbers | str | None, by: str, diagnosis: str, seen: str
+def test_other_numbers_are_reported_from_the_own(
+    numbers: OwnNumbers | str | None, by: str, diagnosis: str, observed: str
 ) -> None:
     finding = found(NUMBERS, given(numbers, by))
-    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, seen)
+    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, observed)
     assert str(finding.where) == ("None" if numbers is None else FILE)
 
 
-def test_the_way_is_judged_by_the_numbers_drawn_whatever_the_file_says() -> None:
+def test_the_trajectory_is_judged_by_the_numbers_drawn_whatever_the_file_says() -> None:
     other = given(changed(radius_m=RADIUS_M + 0.4, rate_hz=10.0))
     assert [found(kind, other).status for kind in (CIRCLE, RATE)] == [Status.PASSED] * 2
 
@@ -109,5 +109,5 @@ def test_the_first_command_may_come_three_seconds_late(first_s: float, diagnosis
     assert found(RATE, given(ALICE).with_run(Run(recording(commands)))).diagnosis == diagnosis
 
 
-def test_without_numbers_there_is_nothing_to_judge_the_way_by() -> None:
+def test_without_numbers_there_is_nothing_to_judge_the_trajectory_by() -> None:
     assert [found(kind, given(None)).diagnosis for kind in (CIRCLE, RATE)] == ["no-numbers"] * 2

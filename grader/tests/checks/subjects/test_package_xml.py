@@ -65,17 +65,17 @@ def test_a_misspelt_dependency_is_shown() -> None:
 
 
 @pytest.mark.parametrize(
-    ("more", "seen"),
+    ("more", "observed"),
     [
         ((), "Left out: data: a link that leaves the package."),
         (("x",), "Left out: data: a link that leaves the package (and 1 more)."),
         (("x", "y"), "Left out: data: a link that leaves the package (and 2 more)."),
     ],
 )
-def test_what_was_left_out_of_the_submission_is_told(more: tuple[str, ...], seen: str) -> None:
+def test_what_was_left_out_of_the_submission_is_reported(more: tuple[str, ...], observed: str) -> None:
     given = evidence(package=submission(rejected=("data: a link that leaves the package.", *more)))
     found = finding("files", given)
-    assert (found.diagnosis, found.observed) == ("rejected-file", seen)
+    assert (found.diagnosis, found.observed) == ("rejected-file", observed)
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("shape", "diagnosis", "seen"),
+    ("shape", "diagnosis", "observed"),
     [
         ("clockwise", "wrong-direction", "The turtle drove the circle clockwise."),
         ("radius 2.2", "wrong-radius", "The radius of the circle is 2.2 m."),
@@ -65,9 +65,9 @@ def test_a_circle_is_a_circle_whatever_the_rhythm(shape: str) -> None:
         ("teleported", "intervention", "Something other than a velocity command moved the turtle: teleport_absolute."),
     ],
 )
-def test_each_other_way_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:
+def test_each_other_trajectory_fails_for_its_own_reason(shape: str, diagnosis: str, observed: str) -> None:
     found = circle(shape)
-    assert (found.status, found.diagnosis, found.observed) == (Status.FAILED, diagnosis, seen)
+    assert (found.status, found.diagnosis, found.observed) == (Status.FAILED, diagnosis, observed)
     publishes = diagnosis in ("stopped-early", "stops-and-goes", "ended-early")
     line = "" if diagnosis == "intervention" else ":16" if publishes else ":15"
     assert str(found.where) == f"{NODE_FILE}{line}"
@@ -81,12 +81,12 @@ def test_each_other_way_fails_for_its_own_reason(shape: str, diagnosis: str, see
         (legs((30, 0.6, 0.0), (8, 0.0, 2.0), (30, 0.6, 0.0)), "polygon"),
     ],
 )
-def test_a_trajectory_with_straight_parts_is_told_by_their_number(commands: list[Timed], diagnosis: str) -> None:
+def test_a_trajectory_with_straight_parts_is_reported_by_their_number(commands: list[Timed], diagnosis: str) -> None:
     found = finding("circle", evidence(recording(commands)))
     assert (found.diagnosis, str(found.where)) == (diagnosis, f"{NODE_FILE}:15")
 
 
-def test_a_way_that_is_not_round_is_explained_by_the_commands_or_by_the_end() -> None:
+def test_a_trajectory_that_is_not_round_is_explained_by_the_commands_or_by_the_end() -> None:
     assert circle("spiral").cause == "The commands change. A circle needs the same command all the time."
     two = [(t_s, 1.0 + (t_s > 5.0), 1.0) for t_s, _, _ in every(0.5, 0.0, 0.0)]
     assert finding("circle", evidence(recording(two))).cause == circle("spiral").cause
@@ -95,7 +95,7 @@ def test_a_way_that_is_not_round_is_explained_by_the_commands_or_by_the_end() ->
     assert finding("circle", evidence(steady)).cause == f"The node crashed: ZeroDivisionError at {NODE_FILE}:14."
 
 
-def test_two_turns_may_be_asked_for() -> None:
+def test_two_turns_may_be_requested() -> None:
     short = found_by(CIRCLE, evidence(SHAPES["good"]()), radius_m=2.0, turns=2.0)
     assert (short.diagnosis, short.observed) == ("too-short", "The turtle drove 1.51 of a turn.")
     assert short.expected == "A circle of radius 2.0 m, counter-clockwise, at least 2 turns."
@@ -191,7 +191,9 @@ def test_a_radius_near_the_edge_is_for_wall_time_to_judge(linear: float, near: b
 @pytest.mark.parametrize(
     ("until_s", "near", "status"), [(5.5, True, "failed"), (6.5, True, "passed"), (8.0, False, "passed")]
 )
-def test_a_way_that_is_just_long_enough_is_for_wall_time_to_judge(until_s: float, near: bool, status: str) -> None:
+def test_a_trajectory_that_is_just_long_enough_is_for_wall_time_to_judge(
+    until_s: float, near: bool, status: str
+) -> None:
     found = finding("circle", evidence(recording(every(0.5, 2.0, 1.0, until_s=until_s))))
     assert (found.near_edge, found.status.value) == (near, status)
 

@@ -22,7 +22,7 @@ def rate(shape: str, *changes: tuple[str, str]) -> Finding:
 
 
 @pytest.mark.parametrize(
-    ("shape", "diagnosis", "seen"),
+    ("shape", "diagnosis", "observed"),
     [
         ("one hertz", "wrong-rate", "Commands arrived every 1.00 s (1.0 Hz)."),
         ("four hertz", "wrong-rate", "Commands arrived every 0.25 s (4.0 Hz)."),
@@ -41,14 +41,14 @@ def rate(shape: str, *changes: tuple[str, str]) -> Finding:
         ),
     ],
 )
-def test_each_wrong_rhythm_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str) -> None:
+def test_each_wrong_rhythm_fails_for_its_own_reason(shape: str, diagnosis: str, observed: str) -> None:
     found = rate(shape)
-    assert (found.status, found.diagnosis, found.observed) == (Status.FAILED, diagnosis, seen)
+    assert (found.status, found.diagnosis, found.observed) == (Status.FAILED, diagnosis, observed)
     lines = {"wrong-rate": 10, "crash": 14}
     assert str(found.where) == f"{NODE_FILE}:{lines.get(diagnosis, 16)}"
 
 
-def test_the_right_rate_is_told_as_the_nominal_one() -> None:
+def test_the_right_rate_is_reported_as_the_nominal_one() -> None:
     found = rate("good")
     assert (found.status, found.observed) == (Status.PASSED, "Commands arrive every 0.50 s (2.0 Hz).")
     assert not found.near_edge
@@ -96,7 +96,7 @@ def test_the_interval_that_is_worst_either_way_is_shown() -> None:
 
 
 @pytest.mark.parametrize(
-    ("shape", "diagnosis", "seen"),
+    ("shape", "diagnosis", "observed"),
     [
         ("ends at once", "ends-at-once", "0 commands arrived in 10 s. The node ended by itself at startup."),
         (
@@ -106,9 +106,9 @@ def test_the_interval_that_is_worst_either_way_is_shown() -> None:
         ),
     ],
 )
-def test_too_few_commands_are_explained_by_the_end(shape: str, diagnosis: str, seen: str) -> None:
+def test_too_few_commands_are_explained_by_the_end(shape: str, diagnosis: str, observed: str) -> None:
     found = rate(shape)
-    assert (found.diagnosis, found.observed) == (diagnosis, seen)
+    assert (found.diagnosis, found.observed) == (diagnosis, observed)
 
 
 def test_log_lines_have_names_of_their_own() -> None:

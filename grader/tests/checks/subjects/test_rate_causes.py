@@ -35,12 +35,12 @@ def test_a_period_by_a_name_is_found() -> None:
     assert (found.diagnosis, str(found.where)) == ("timer-period", f"{NODE_FILE}:11")
 
 
-def test_the_rate_given_as_the_period_is_told() -> None:
+def test_the_rate_given_as_the_period_is_reported() -> None:
     found = rate("two seconds", (TIMER, "self.create_timer(2.0, self.send)"))
     assert found.diagnosis == "rate-for-period"
 
 
-def test_a_sleep_in_the_timers_method_is_told() -> None:
+def test_a_sleep_in_the_timers_method_is_reported() -> None:
     found = rate("one hertz", ("        msg = Twist()", "        time.sleep(0.6)\n        msg = Twist()"))
     assert (found.diagnosis, str(found.where)) == ("sleep-in-callback", f"{NODE_FILE}:13")
 
@@ -50,7 +50,7 @@ def test_a_sleep_outside_of_every_callback_is_not_blamed() -> None:
     assert found.diagnosis == "wrong-rate"
 
 
-def test_a_sleep_without_a_timer_is_told() -> None:
+def test_a_sleep_without_a_timer_is_reported() -> None:
     found = rate("one hertz", (f"self.timer = {TIMER}", "time.sleep(1.0)"))
     assert (found.diagnosis, found.cause) == ("sleep-period", "The node sleeps for 1 s between two commands.")
 
@@ -143,7 +143,7 @@ def test_a_sleep_of_which_nothing_is_known_explains_nothing() -> None:
     assert (found.diagnosis, str(found.where)) == ("wrong-rate", f"{NODE_FILE}:10")
 
 
-def test_several_timers_with_other_periods_are_told() -> None:
+def test_several_timers_with_other_periods_are_reported() -> None:
     found = rate("four hertz", (TIMER, f"{TIMER}\n        self.other = {TIMER}"))
     assert (found.diagnosis, str(found.where)) == ("several-timers", f"{NODE_FILE}:11")
 
@@ -151,13 +151,13 @@ def test_several_timers_with_other_periods_are_told() -> None:
 @pytest.mark.parametrize(
     ("period_s", "diagnosis"), [(2.15, "rate-for-period"), (1.85, "rate-for-period"), (2.25, "timer-period")]
 )
-def test_the_rate_as_a_period_is_told_when_it_is_nearly_that(period_s: float, diagnosis: str) -> None:
+def test_the_rate_as_a_period_is_reported_when_it_is_nearly_that(period_s: float, diagnosis: str) -> None:
     made = recording(every(period_s, 2.0, 1.0))
     found = finding("rate", evidence(made, node((TIMER, f"self.create_timer({period_s}, self.send)"))))
     assert found.diagnosis == diagnosis
 
 
-def test_a_loop_without_a_pause_is_told_with_its_line() -> None:
+def test_a_loop_without_a_pause_is_reported_with_its_line() -> None:
     loop = (f"self.timer = {TIMER}", "while True: self.publisher.publish(Twist())")
     assert (rate("ten kilohertz", loop).diagnosis, str(rate("ten kilohertz", loop).where)) == (
         "loop-without-pause",

@@ -66,13 +66,13 @@ def test_each_fault_has_its_diagnosis_and_place(check: str, shape: str, diagnosi
     assert (None if found.where is None else str(found.where)) == (None if line is None else NODE_FILE + line)
 
 
-def test_a_crash_is_told_with_its_meaning() -> None:
+def test_a_crash_is_reported_with_its_meaning() -> None:
     found = finding("start", of("crash at the start"))
     assert found.observed == "draw_circle crashed at startup: ZeroDivisionError: division by zero."
     assert found.cause == "A number was divided by zero."
 
 
-def test_a_program_that_crashed_while_its_node_was_waited_for_is_told_to_have_made_none() -> None:
+def test_a_program_that_crashed_while_its_node_was_waited_for_is_reported_to_have_made_none() -> None:
     late = replace(SHAPES["crash at the start"](), end=crashed(5.0), graphs=(graph((), topic=None),))
     found = finding("start", evidence(late))
     assert found.diagnosis == "crash"
@@ -97,9 +97,9 @@ def test_by_either_clock_an_end_in_the_first_moment_is_one_at_the_start(
 ) -> None:
     """There the clock starts when the node is in the graph, which may be before it has been made as a whole."""
     end = ProcessEnd(by="itself", exit_code=0, t_s=t_s, stop_s=None)
-    seen = evidence(recording([], clock=clock, end=end))
-    assert finding("start", seen).diagnosis == diagnosis
-    assert end_observed(seen).endswith("at startup." if diagnosis else f"after {t_s:.1f} s.")
+    observed = evidence(recording([], clock=clock, end=end))
+    assert finding("start", observed).diagnosis == diagnosis
+    assert end_observed(observed).endswith("at startup." if diagnosis else f"after {t_s:.1f} s.")
 
 
 @pytest.mark.parametrize("clock", ["wall", "simulated"])
@@ -112,25 +112,25 @@ def test_a_node_that_crashes_in_its_first_callback_has_started(clock: ClockName,
     assert (finding("start", crashed_early).status is Status.PASSED) == starts
 
 
-def test_a_missing_spin_is_told_where_the_node_ends_at_once() -> None:
+def test_a_missing_spin_is_reported_where_the_node_ends_at_once() -> None:
     found = finding("start", of("ends at once", ("rclpy.spin(DrawCircleNode())", "DrawCircleNode()")))
     assert found.cause == "rclpy.spin keeps a node running, but it is never called."
 
 
 @pytest.mark.parametrize(
-    ("names", "seen"),
+    ("names", "observed"),
     [
         (("/draw_cirle",), "The node is named /draw_cirle."),
         (("/a", "/b"), "The nodes are named /a and /b."),
         (("/robot/draw_circle",), "The node is named /robot/draw_circle."),
     ],
 )
-def test_another_name_is_shown(names: tuple[str, ...], seen: str) -> None:
+def test_another_name_is_shown(names: tuple[str, ...], observed: str) -> None:
     found = finding("node-name", evidence(recording([], graphs=(graph(names),))))
-    assert found.observed == seen
+    assert found.observed == observed
 
 
-def test_a_namespace_is_told_as_such() -> None:
+def test_a_namespace_is_reported_as_such() -> None:
     found = finding("node-name", evidence(recording([], graphs=(graph(("/robot/draw_circle",)),))))
     assert (found.diagnosis, str(found.where)) == ("node-namespace", f"{NODE_FILE}:8")
 
@@ -140,9 +140,9 @@ def test_a_node_that_took_the_simulators_name_is_the_submissions() -> None:
     assert found.observed == "The node is named /turtlesim."
 
 
-def test_a_node_seen_once_counts() -> None:
-    seen = recording([], graphs=(graph((), topic=None), graph(), graph((), topic=None)))
-    assert finding("start", evidence(seen)).status is Status.PASSED
+def test_a_node_observed_once_counts() -> None:
+    observed = recording([], graphs=(graph((), topic=None), graph(), graph((), topic=None)))
+    assert finding("start", evidence(observed)).status is Status.PASSED
 
 
 def test_the_topic_in_use_is_named() -> None:
@@ -169,10 +169,12 @@ def test_silence_after_a_crash_is_the_crash() -> None:
     assert (found.diagnosis, str(found.where)) == ("crash", f"{NODE_FILE}:14")
 
 
-def test_a_subscription_in_place_of_a_publisher_is_told() -> None:
+def test_a_subscription_in_place_of_a_publisher_is_reported() -> None:
     listening = Endpoint("subscription", "/draw_circle", TOPIC, "geometry_msgs/msg/Twist")
-    seen = graph(topic=None)
-    found = finding("topic", evidence(recording([], graphs=(replace(seen, endpoints=(*seen.endpoints, listening)),))))
+    observed = graph(topic=None)
+    found = finding(
+        "topic", evidence(recording([], graphs=(replace(observed, endpoints=(*observed.endpoints, listening)),)))
+    )
     assert (found.diagnosis, str(found.where)) == ("subscription-instead", NODE_FILE)
 
 
@@ -184,7 +186,7 @@ def test_a_second_type_beside_twist_fails_the_type_alone() -> None:
     assert finding("type", given).diagnosis == "second-type"
 
 
-def test_a_second_type_that_the_graph_missed_is_seen_by_its_messages() -> None:
+def test_a_second_type_that_the_graph_missed_is_observed_by_its_messages() -> None:
     made = good()
     stray = Message(TOPIC, OTHER, b"", 3.0, 3.0)
     assert finding("type", evidence(replace(made, messages=(*made.messages, stray)))).diagnosis == "second-type"
@@ -216,14 +218,14 @@ def test_a_node_that_did_not_stop_is_for_wall_time_to_judge() -> None:
     assert finding("stop", of("ignores Ctrl-C")).near_edge
 
 
-def test_what_it_took_to_stop_a_node_is_told() -> None:
+def test_what_it_took_to_stop_a_node_is_reported() -> None:
     killed = SHAPES["ignores Ctrl-C"]()
     terminated = replace(killed, end=replace(killed.end, by="SIGTERM"))
     assert finding("stop", evidence(killed)).observed == "The node ignored Ctrl-C: it had to be killed."
     assert finding("stop", evidence(terminated)).observed == "The node ignored Ctrl-C: only SIGTERM ended it."
 
 
-def test_a_missing_spin_is_told_where_the_node_ends_early() -> None:
+def test_a_missing_spin_is_reported_where_the_node_ends_early() -> None:
     without = finding("stop", of("ends early", ("rclpy.spin(DrawCircleNode())", "DrawCircleNode()")))
     assert without.cause == "rclpy.spin keeps a node running, but it is never called."
     assert finding("stop", of("ends early")).cause == ""

@@ -49,7 +49,7 @@ def test_a_square_is_one(parts: list[Leg], start: Pose | None) -> None:
 
 
 @pytest.mark.parametrize(
-    ("parts", "diagnosis", "seen"),
+    ("parts", "diagnosis", "observed"),
     [
         (round_((2.0, 2.0, 2.3, 2.0)), "side-length", "The third side is 2.30 m long: 0.30 m too long."),
         (round_((2.0, 1.5, 2.0, 2.0)), "side-length", "The second side is 1.50 m long: 0.50 m too short."),
@@ -75,11 +75,11 @@ def test_a_square_is_one(parts: list[Leg], start: Pose | None) -> None:
         ),
     ],
 )
-def test_each_other_way_is_told_with_its_side_or_corner_and_by_how_much(
-    parts: list[Leg], diagnosis: str, seen: str
+def test_each_other_trajectory_is_reported_with_its_side_or_corner_and_by_how_much(
+    parts: list[Leg], diagnosis: str, observed: str
 ) -> None:
     finding = square(parts, Pose(4.0, 4.0, 0.0))
-    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, seen)
+    assert (finding.status, finding.diagnosis, finding.observed) == (Status.FAILED, diagnosis, observed)
     assert str(finding.where) == f"{NODE_FILE}:16"
 
 
@@ -96,7 +96,7 @@ def test_clockwise_is_right_where_the_exercise_allows_it() -> None:
     assert square(left, direction="clockwise").diagnosis == "wrong-direction"
 
 
-def test_a_way_that_was_driven_by_other_means_is_none() -> None:
+def test_a_trajectory_that_was_driven_by_other_means_is_none() -> None:
     moved = recording(legs(*round_()), interventions=("teleport_relative",))
     assert found(SQUARE, evidence(moved), side_m=2.0).diagnosis == "intervention"
 
@@ -126,8 +126,8 @@ def test_what_stalls_of_the_machine_may_have_done_is_not_judged(parts: list[Leg]
 
 def too_soon(sides: tuple[float, ...], clock: str = "wall", publish: str = "publish(Twist())") -> str | None:
     asks = submission({NODE_FILE: f"class Square:\n    def tick(self):\n        self.publisher.{publish}\n"})
-    seen = evidence(recording(legs(*round_(sides)), clock=clock), asks)
-    return found(SQUARE, seen, side_m=2.0).diagnosis
+    observed = evidence(recording(legs(*round_(sides)), clock=clock), asks)
+    return found(SQUARE, observed, side_m=2.0).diagnosis
 
 
 def test_a_first_side_that_lacks_its_beginning_by_the_walls_clock_was_begun_before_anybody_listened() -> None:
@@ -143,7 +143,7 @@ def test_the_corner_after_the_last_side_is_nobodys_business() -> None:
     assert square(parts).status is Status.PASSED
 
 
-def test_curves_are_a_share_of_the_whole_way() -> None:
+def test_curves_are_a_share_of_the_whole_path() -> None:
     curve = (2, 2.0, 0.4)
     few = [leg for _ in range(4) for leg in (side(1.9), curve, corner(90.0 - math.degrees(0.8 * TICK_S)))]
     assert square(few, Pose(4.0, 4.0, 0.0)).diagnosis == "curves"

@@ -19,7 +19,7 @@ CRASHED = crashed(3.0)
 ENDED = ProcessEnd(by="itself", exit_code=0, t_s=3.0, stop_s=None)
 
 
-def seen(*ends: tuple[Literal["publisher", "subscription"], str, str], **changes: Any) -> Recording:  # noqa: ANN401
+def observed(*ends: tuple[Literal["publisher", "subscription"], str, str], **changes: Any) -> Recording:  # noqa: ANN401
     """A trial in which the node had these ends of topics (kind, topic, type)."""
     endpoints = tuple(Endpoint(kind, "/draw_circle", topic, type_) for kind, topic, type_ in ends)
     ours = Endpoint("subscription", "/turtlesim", TOPIC, TWIST)
@@ -31,7 +31,7 @@ def publishes(trial: Recording, *changes: tuple[str, str], topic: str = TOPIC, t
     return found(PUBLISHES, evidence(trial, node(*changes)), topic=topic, type=type_)
 
 
-def told(finding: Finding) -> tuple[str | None, str | None]:
+def reported(finding: Finding) -> tuple[str | None, str | None]:
     return finding.diagnosis, None if finding.where is None else str(finding.where).removeprefix(NODE_FILE)
 
 
@@ -73,19 +73,19 @@ def test_on_the_turtles_topic_what_the_simulator_saw_counts() -> None:
     ],
 )
 def test_another_topic_is_explained_by_the_two_names(topic: str, diagnosis: str) -> None:
-    finding = publishes(seen(("publisher", topic, TWIST)))
-    assert told(finding) == (diagnosis, ":9")
+    finding = publishes(observed(("publisher", topic, TWIST)))
+    assert reported(finding) == (diagnosis, ":9")
     assert finding.observed == f"The node publishes on {topic}, but no turtle subscribes to that."
 
 
 def test_of_several_topics_those_of_the_type_and_the_nearest_are_named() -> None:
-    both = seen(("publisher", "/turtle1/cmd_vol", TEXT), ("publisher", "/quaff", TWIST))
+    both = observed(("publisher", "/turtle1/cmd_vol", TEXT), ("publisher", "/quaff", TWIST))
     assert publishes(both).observed == "The node publishes on /quaff, but no turtle subscribes to that."
-    near = seen(("publisher", "/a", TWIST), ("publisher", "/turtle1/cmd_val", TWIST))
+    near = observed(("publisher", "/a", TWIST), ("publisher", "/turtle1/cmd_val", TWIST))
     assert publishes(near).observed == "The node publishes on /turtle1/cmd_val, but no turtle subscribes to that."
-    far = seen(("publisher", "/quaff", TWIST), ("publisher", "/a", TWIST))
+    far = observed(("publisher", "/quaff", TWIST), ("publisher", "/a", TWIST))
     assert publishes(far).observed == "The node publishes on /a and /quaff, but no turtle subscribes to that."
-    other = seen(("publisher", "/a", TEXT), ("publisher", "/quaff", COLOR))
+    other = observed(("publisher", "/a", TEXT), ("publisher", "/quaff", COLOR))
     assert publishes(other).observed == "The node publishes on /a and /quaff, but no turtle subscribes to that."
 
 
@@ -99,15 +99,15 @@ def test_of_several_topics_those_of_the_type_and_the_nearest_are_named() -> None
     ],
 )
 def test_the_line_is_that_of_the_publisher_of_this_topic(first: str, line: str) -> None:
-    trial = seen(("publisher", TOPIC, TEXT))
+    trial = observed(("publisher", TOPIC, TEXT))
     finding = publishes(trial, ("        self.publisher =", f"        self.other = {first}\n        self.publisher ="))
-    assert told(finding) == ("wrong-type", line)
+    assert reported(finding) == ("wrong-type", line)
 
 
 def test_a_publisher_whose_topic_is_not_known_is_better_than_none() -> None:
-    trial = seen(("publisher", TOPIC, TEXT))
-    assert told(publishes(trial, ('"/turtle1/cmd_vel"', "NAME"))) == ("wrong-type", ":9")
-    assert told(publishes(trial, ("create_publisher", "make"))) == ("wrong-type", "")
+    trial = observed(("publisher", TOPIC, TEXT))
+    assert reported(publishes(trial, ('"/turtle1/cmd_vel"', "NAME"))) == ("wrong-type", ":9")
+    assert reported(publishes(trial, ("create_publisher", "make"))) == ("wrong-type", "")
 
 
 @pytest.mark.parametrize(
@@ -132,8 +132,8 @@ def test_a_node_without_a_publisher_is_explained(
     end: ProcessEnd | None, stderr: str, changes: tuple[tuple[str, str], ...], diagnosis: str, line: str, words: str
 ) -> None:
     more = {"end": end} if end is not None else {}
-    finding = publishes(seen(stderr=Output(stderr), **more), *changes)
-    assert told(finding) == (diagnosis, line)
+    finding = publishes(observed(stderr=Output(stderr), **more), *changes)
+    assert reported(finding) == (diagnosis, line)
     assert finding.observed.startswith(words)
     if diagnosis == "no-publisher":
         assert finding.cause == ("create_publisher is never called." if changes else "")
@@ -155,23 +155,23 @@ def test_a_silent_publisher_is_explained(
     end: ProcessEnd | None, stderr: str, changes: tuple[tuple[str, str], ...], diagnosis: str, line: str
 ) -> None:
     more = {"end": end} if end is not None else {}
-    finding = publishes(seen(("publisher", TOPIC, TWIST), stderr=Output(stderr), **more), *changes)
-    assert told(finding) == (diagnosis, line)
+    finding = publishes(observed(("publisher", TOPIC, TWIST), stderr=Output(stderr), **more), *changes)
+    assert reported(finding) == (diagnosis, line)
     if end is None:
         assert finding.observed == f"There is a publisher on {TOPIC}, but no message arrived after the start."
     elif diagnosis != "crash":
         assert finding.observed.endswith("no message arrived after the start. The node ended by itself after 3.0 s.")
 
 
-def test_a_second_type_is_told_whoever_shows_it() -> None:
-    by_graph = seen(("publisher", TOPIC, TWIST), ("publisher", TOPIC, TEXT), ("publisher", "/other", COLOR))
+def test_a_second_type_is_reported_whoever_shows_it() -> None:
+    by_graph = observed(("publisher", TOPIC, TWIST), ("publisher", TOPIC, TEXT), ("publisher", "/other", COLOR))
     messages = tuple(Message(topic, type_, b"", 3.0, 3.0) for topic, type_ in ((TOPIC, TEXT), ("/other", COLOR)))
-    by_message = replace(seen(("publisher", TOPIC, TWIST)), messages=messages)
+    by_message = replace(observed(("publisher", TOPIC, TWIST)), messages=messages)
     for trial in (by_graph, by_message):
         finding = found(ONLY_TYPE, evidence(trial), topic=TOPIC, type=TWIST)
-        assert told(finding) == ("second-type", ":9")
+        assert reported(finding) == ("second-type", ":9")
         assert finding.observed == f"{TOPIC} also receives messages of type {TEXT}."
-    one = seen(("publisher", TOPIC, TWIST), ("publisher", "/other", COLOR))
+    one = observed(("publisher", TOPIC, TWIST), ("publisher", "/other", COLOR))
     assert found(ONLY_TYPE, evidence(one), topic=TOPIC, type=TWIST).status is Status.PASSED
 
 
@@ -181,17 +181,17 @@ POSE = "/turtle1/pose"
 @pytest.mark.parametrize(
     ("trial", "diagnosis", "line", "words"),
     [
-        (seen(("subscription", POSE, TEXT)), None, None, "The node subscribes"),
-        (seen(("subscription", "/a", TEXT), ("subscription", POSE, TEXT)), None, None, "The node subscribes"),
+        (observed(("subscription", POSE, TEXT)), None, None, "The node subscribes"),
+        (observed(("subscription", "/a", TEXT), ("subscription", POSE, TEXT)), None, None, "The node subscribes"),
         (
-            seen(("subscription", POSE, COLOR)),
+            observed(("subscription", POSE, COLOR)),
             "wrong-type",
             ":10",
             f"The node subscribes to {POSE} with the type {COLOR},",
         ),
-        (seen(("subscription", "/a", TEXT)), "wrong-topic", ":10", "The node subscribes to /a."),
-        (seen(), "no-subscription", ":10", "The node has no subscription."),
-        (seen(end=CRASHED, stderr=Output(TRACEBACK)), "crash", ":14", "The node crashed after 3.0 s:"),
+        (observed(("subscription", "/a", TEXT)), "wrong-topic", ":10", "The node subscribes to /a."),
+        (observed(), "no-subscription", ":10", "The node has no subscription."),
+        (observed(end=CRASHED, stderr=Output(TRACEBACK)), "crash", ":14", "The node crashed after 3.0 s:"),
     ],
 )
 def test_a_subscription_is_looked_for(trial: Recording, diagnosis: str | None, line: str | None, words: str) -> None:
@@ -199,9 +199,9 @@ def test_a_subscription_is_looked_for(trial: Recording, diagnosis: str | None, l
         ("self.timer = self.create_timer(0.5, self.send)", "self.create_subscription(Pose, NAME, self.send, 10)")
     )
     finding = found(SUBSCRIBES, evidence(trial, package), topic=POSE, type=TEXT)
-    assert told(finding) == (diagnosis, line)
+    assert reported(finding) == (diagnosis, line)
     assert finding.observed.startswith(words)
     if diagnosis == "no-subscription":
         assert finding.cause == ""
         nowhere = found(SUBSCRIBES, evidence(trial), topic=POSE, type=TEXT)
-        assert (told(nowhere), nowhere.cause) == ((diagnosis, ""), "create_subscription is never called.")
+        assert (reported(nowhere), nowhere.cause) == ((diagnosis, ""), "create_subscription is never called.")

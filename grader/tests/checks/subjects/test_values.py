@@ -21,7 +21,7 @@ def test_the_right_values_pass_and_what_comes_after_ctrl_c_does_not_count() -> N
 
 
 @pytest.mark.parametrize(
-    ("shape", "diagnosis", "seen", "line"),
+    ("shape", "diagnosis", "observed", "line"),
     [
         ("radius 2.2", "wrong-value", "All 19 commands were wrong: linear.x 2.2 m/s.", 14),
         ("clockwise", "wrong-sign", "All 19 commands were wrong: angular.z -1.0 rad/s.", 15),
@@ -36,9 +36,9 @@ def test_the_right_values_pass_and_what_comes_after_ctrl_c_does_not_count() -> N
         ("spiral", "wrong-value", "All 19 commands were wrong: linear.x 1.05 m/s in the first of them.", 14),
     ],
 )
-def test_each_wrong_value_fails_for_its_own_reason(shape: str, diagnosis: str, seen: str, line: int) -> None:
+def test_each_wrong_value_fails_for_its_own_reason(shape: str, diagnosis: str, observed: str, line: int) -> None:
     found = values(shape)
-    assert (found.status, found.diagnosis, found.observed) == (Status.FAILED, diagnosis, seen)
+    assert (found.status, found.diagnosis, found.observed) == (Status.FAILED, diagnosis, observed)
     assert str(found.where) == f"{NODE_FILE}:{line}"
 
 
@@ -89,7 +89,7 @@ def test_a_turtle_that_should_stand_still_and_drives_is_wrong() -> None:
     assert (moving.diagnosis, moving.expected) == ("wrong-value", "All fields 0.")
 
 
-def test_a_field_in_the_wrong_place_is_told_with_what_it_does() -> None:
+def test_a_field_in_the_wrong_place_is_reported_with_what_it_does() -> None:
     assert values("linear.y").cause.endswith("the turtle drives along linear.x only.")
     assert values("angular.x").cause.endswith("the turtle turns about the axis that points up, z.")
 

@@ -50,18 +50,18 @@ def poses(of: World, turtle: str) -> Running:
 
 def test_keys_drive_and_turn_the_turtle(beside: World) -> None:
     turtlesim = beside.turtlesim()
-    seen = poses(beside, "turtle1")
+    observed = poses(beside, "turtle1")
     keys = terminal(beside, f"{TELEOP} --ros-args -p scale_linear:=0.5")
     keys.expect("Q quits")
     keys.send(UP)
-    seen.wait_for(",0.5,0.0")
+    observed.wait_for(",0.5,0.0")
     keys.send(LEFT)
-    seen.wait_for(",0.0,2.0")
+    observed.wait_for(",0.0,2.0")
     keys.send("r")
     turtlesim.wait_for("Rotation goal completed")
-    assert float(seen.lines[-1].split(",")[2]) == pytest.approx(math.pi / 2, abs=0.05)
+    assert float(observed.lines[-1].split(",")[2]) == pytest.approx(math.pi / 2, abs=0.05)
     keys.send("v")
-    seen.wait_for(",0.0,-1.0")
+    observed.wait_for(",0.0,-1.0")
     keys.send("f")
     turtlesim.wait_for("Rotation goal canceled")
     keys.send("q")
@@ -139,13 +139,13 @@ def test_draw_square_resets_and_drives_around_the_corner(beside: World) -> None:
     beside.turtlesim()
     moved = beside.run("ros2 service call /turtle1/teleport_absolute turtlesim/srv/TeleportAbsolute '{x: 1.0, y: 9.0}'")
     assert moved.code == 0
-    seen = poses(beside, "turtle1")
+    observed = poses(beside, "turtle1")
     square = beside.start("ros2 run turtlesim draw_square")
     # The rest of the square is tried on the simulator's motion, without waiting for it.
     square.wait_for("Driving to [7.54, 7.54]")
     assert square.stop() == 0
     assert not any("Traceback" in line for line in square.lines)
-    path = [tuple(map(float, line.split(",")[:3])) for line in seen.lines if line.count(",") == 4]
+    path = [tuple(map(float, line.split(",")[:3])) for line in observed.lines if line.count(",") == 4]
     path = [place for place in path if place[:2] != (1.0, 9.0)]
     # Reset to the middle, 2 m straight to the right, then upwards.
     assert path[0] == pytest.approx((5.544445, 5.544445, 0.0), abs=1e-4)
