@@ -131,7 +131,7 @@ def test_without_a_manager_or_sudo_nothing_is_tried(machine: Machine) -> None:
     assert (machine.stand_ins.calls(), machine.said) == ([], [])
 
 
-def test_where_there_is_no_terminal_nobody_is_requested_a_password(
+def test_where_there_is_no_terminal_nobody_is_prompted_for_a_password(
     machine: Machine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     machine.stand_ins.add("apt-get")
@@ -151,7 +151,7 @@ import os
 os.getuid = lambda: 1000
 from grader.common import package_managers
 from grader.setup import provide
-packages.SYSTEM_PATH = ()
+package_managers.SYSTEM_PATH = ()
 needs = [package_managers.Need("cmake", "cmake"), package_managers.Need("bubblewrap", "bubblewrap", "no marks")]
 print("why:", repr(provide.provide(needs, {{**os.environ, "PATH": "{tmp_path}:/usr/bin:/bin"}}, print)))
 """
