@@ -245,10 +245,12 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "away-from-goal": "the turtle drives away from the goal",
         "not-there": "the turtle does not reach the goal",
         "goes-on": "the turtle drives past the goal",
-        "still-moving": "the turtle does not stop at the goal",
+        "still-moving": "the turtle does not stop at the end",
+        "drives-on": "the turtle goes on after the figure is complete",
     },
     "Log lines": {
         "no-log": "the node does not call its logger",
+        "before-first-pose": "numbers are logged before the first message has arrived",
         "never-logs": "the line that logs never runs",
         "print-instead": "print is used instead of the logger",
         "log-format": "the log line does not have the right format",

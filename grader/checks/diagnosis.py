@@ -225,8 +225,10 @@ Diagnosis = Literal[
     "not-there",
     "goes-on",
     "still-moving",
+    "drives-on",
     # Log lines
     "no-log",
+    "before-first-pose",
     "never-logs",
     "print-instead",
     "log-format",

@@ -6,8 +6,8 @@ The keys of the format with `schema = 2`:
   (the ids of the checks that exercises/ must fail, for `grader validate`).
 - `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one of
   each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
-- `[[trial]]` has id, executable, node, duration_s, start, rename and pose_every. `[[trial.drive]]` has from_s,
-  linear_x_m_s and angular_z_rad_s (one number, or two between which a number is drawn).
+- `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every and pose_from_s. `[[trial.drive]]` has
+  from_s, linear_x_m_s and angular_z_rad_s (one number, or two between which a number is drawn).
 - `[[check]]` has id, kind, points, needs (ids), title, trial (the default is the first one), hidden, and the parameters
   of its kind. It may have a preset instead (presets.py).
 - `[[hint]]` has text, checks (the ids of the checks that it helps with) and part (a letter). The hints begin with a
@@ -156,6 +156,7 @@ def _scenario(table: Table) -> Scenario:
         anywhere=start == "anywhere",
         rename=table.strings("rename"),
         pose_every=int(table.number("pose_every", 1, 1000, "a number of frames from 1 to 1000", default=1)),
+        pose_from_s=table.number("pose_from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)", default=0.0),
     )
     for rule in scenario.rename:
         if not REMAP.fullmatch(rule):

@@ -51,7 +51,8 @@ class Scenario:
     """What happens in a trial: it lasts for `duration_s` (s) on the trial's clock, and then SIGINT is sent.
 
     If `anywhere` is set, the start pose is random even without a seed. `rename` holds remapping rules for the
-    simulator, such as "/turtle1/pose:=/where". `pose_every` is the number of frames between two poses.
+    simulator, such as "/turtle1/pose:=/where". `pose_every` is the number of frames between two poses; the
+    first one is published at `pose_from_s` (s), as if the simulator were late.
     """
 
     duration_s: float
@@ -59,6 +60,7 @@ class Scenario:
     anywhere: bool = False
     rename: tuple[str, ...] = ()
     pose_every: int = 1
+    pose_from_s: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from grader.trial.start_pose import MARGIN_M
@@ -20,17 +20,18 @@ MOST_DRAWS = 200
 
 @dataclass(frozen=True)
 class Inputs:
-    """`drives` holds start times (s) with speeds (m/s, rad/s). `rename` and `pose_every` are those of the Scenario."""
+    """`drives` holds start times (s) with speeds (m/s, rad/s). The others are those of the Scenario."""
 
     drives: tuple[tuple[float, float, float], ...] = ()
     rename: tuple[str, ...] = ()
     pose_every: int = 1
+    pose_from_s: float = 0.0
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Inputs:
         """Create Inputs from the JSON data that dataclasses.asdict produced."""
         drives = tuple((from_s, linear, angular) for from_s, linear, angular in data["drives"])
-        return cls(drives, tuple(data["rename"]), data["pose_every"])
+        return cls(drives, tuple(data["rename"]), data["pose_every"], data["pose_from_s"])
 
     def drive(self, now_s: float) -> tuple[float, float] | None:
         """Return the speeds of the turtle at this time (m/s, rad/s); None before the first drive."""
@@ -41,7 +42,7 @@ class Inputs:
 def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
     """Draw random speeds until the trajectory stays at least 0.5 m away from every wall."""
     draw = random.Random(seed)
-    inputs = Inputs(rename=scenario.rename, pose_every=scenario.pose_every)
+    inputs = Inputs((), scenario.rename, scenario.pose_every, scenario.pose_from_s)
     if not scenario.drives:
         return inputs
     for _ in range(MOST_DRAWS):
@@ -49,7 +50,7 @@ def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
             (each.from_s, round(draw.uniform(*each.linear_x_m_s), 3), round(draw.uniform(*each.angular_z_rad_s), 3))
             for each in scenario.drives
         )
-        inputs = Inputs(drives, scenario.rename, scenario.pose_every)
+        inputs = replace(inputs, drives=drives)
         if _keeps_clear(inputs, start, scenario.duration_s):
             break
     return inputs

@@ -59,6 +59,7 @@ class Simulation:
         self.turtlesim = TurtlesimNode(
             start=Start(start.x, start.y, start.theta),
             pose_every=inputs.pose_every,
+            pose_from_s=inputs.pose_from_s,
             cli_args=["--ros-args", *(part for rule in inputs.rename for part in ("-r", rule))],
             on_command=self.recorder.keep_command,
             on_publish=self.recorder.keep,

@@ -48,12 +48,14 @@ class Hooks:
 class TurtleInterface:
     """The topics, services and action of the turtle called `name`, which is a different turtle after a reset."""
 
-    def __init__(self, node: Node, name: str, world: World, hooks: Hooks, pose_every: int = 1) -> None:
+    def __init__(
+        self, node: Node, name: str, world: World, hooks: Hooks, pose_every: int = 1, pose_from_s: float = 0.0
+    ) -> None:
         """Add the turtle to the ROS graph. If rclpy raises an error for an invalid name, nothing remains there."""
         self.name = name
         self._world = world
         self._hooks = hooks
-        self._pose_every = pose_every
+        self._pose_every, self._pose_from_s = pose_every, pose_from_s
         self._frames = 0
         self._log = node.get_logger()
         with ExitStack() as parts:
@@ -91,8 +93,8 @@ class TurtleInterface:
         if not self._rotate.idle:
             self._rotate.before_frame()
 
-    def after_frame(self) -> None:
-        """Publish the turtle's pose and colour, and the feedback of its rotation."""
+    def after_frame(self, now_s: float) -> None:
+        """Publish the turtle's pose and colour at `now_s` (s), and the feedback of its rotation."""
         if not self._rotate.idle:
             self._rotate.after_frame()
         turtle = self._turtle()
@@ -102,9 +104,9 @@ class TurtleInterface:
             x, y = turtle.clamped_from
             # In this message, turtlesim counts y from the top.
             self._log.warning(f"Oh no! I hit the wall! (Clamping from [x={x:f}, y={SIDE_M - y:f}])")
-        self._publish(turtle)
+        self._publish(turtle, now_s)
 
-    def _publish(self, turtle: Turtle) -> None:
+    def _publish(self, turtle: Turtle, now_s: float) -> None:
         state = turtle.state()
         if state != self._state:
             self._state = state
@@ -118,7 +120,7 @@ class TurtleInterface:
             color.r, color.g, color.b = turtle.color
             self._color.serialize()
         self._frames += 1
-        due = self._frames % self._pose_every == 0
+        due = self._frames % self._pose_every == 0 and max(now_s, 0.0) >= self._pose_from_s
         for sender in (self._pose, self._color) if due else (self._color,):
             sender.publish(sender.data)
             self._hooks.on_publish(sender.topic, sender.type_name, sender.data)

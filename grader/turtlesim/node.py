@@ -51,15 +51,16 @@ class TurtlesimNode(Node):
         on_publish: Callable[[str, str, bytes], object] = _nobody,
         on_intervention: Callable[[str], object] = _nobody,
         pose_every: int = 1,
+        pose_from_s: float = 0.0,
         canvas: Canvas | None = None,
         **node: Any,  # noqa: ANN401 - handed on to rclpy
     ) -> None:
         """Create the node. turtle1 begins at `start` (m, m, rad), also after a reset.
 
-        `Hooks` describes the callbacks. A pose is published every `pose_every` frames, whereas the real turtlesim
-        publishes one in each frame. `canvas` is what the turtles draw on.
+        `Hooks` describes the callbacks. A pose is published every `pose_every` frames from `pose_from_s` (s) on. The
+        real turtlesim publishes one in each frame. `canvas` is what the turtles draw on.
         """
-        self._pose_every = pose_every
+        self._pose_every, self._pose_from_s = pose_every, pose_from_s
         self._hooks = Hooks(on_command, on_publish, on_intervention)
         super().__init__("turtlesim", **node)
         parameters.declare(self)
@@ -93,7 +94,7 @@ class TurtlesimNode(Node):
             interface.before_frame()
         self.world.step(now_s)
         for interface in interfaces:
-            interface.after_frame()
+            interface.after_frame(now_s)
 
     def turtle_state(self, name: str = "turtle1") -> State | None:
         """Return the state of a turtle after the last frame, or None if there is no turtle with that name."""
@@ -113,7 +114,9 @@ class TurtlesimNode(Node):
                 self._leaving.remove(waiting)
                 self._interfaces[name] = waiting[1]
                 return
-        self._interfaces[name] = TurtleInterface(self, name, self.world, self._hooks, self._pose_every)
+        self._interfaces[name] = TurtleInterface(
+            self, name, self.world, self._hooks, self._pose_every, self._pose_from_s
+        )
 
     def _hide(self, name: str) -> None:
         # Remove it later, since this runs in a callback, and the executor may hold other callbacks of the same turtle.

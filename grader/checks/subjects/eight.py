@@ -12,6 +12,7 @@ from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.requested import Requested, first_heading
 from grader.checks.subjects.path import CircleParams, expected_centre, not_driven
+from grader.checks.subjects.standstill import ZEROS, no_standstill
 from grader.checks.tolerance import Band, unless_starved
 from grader.common.lazy import np
 from grader.evidence.circle_fit import Circle, fit_circle
@@ -98,6 +99,9 @@ def eight(evidence: Evidence, params: Eight) -> Finding:
         if finding is not None:
             open_ = finding.diagnosis == "lobe-angle" and abs(lobes[0].turned_rad) < math.tau
             return too_soon(finding, evidence) if open_ and second[0] is None else finding
+    further = _drives_on(evidence, lobes, expected)
+    if further is not None:
+        return further
     return passed(f"The turtle drove a figure eight with radius {params.radius_m:.1f} m.", near_edge=near)
 
 
@@ -125,8 +129,6 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
         return failed(observed, wanted, Cause("lobe-radius", cause, where), near_edge=near), near
     degrees = abs(math.degrees(lobe.turned_rad))
     full = Band.around(360.0, params.angle_tolerance_deg)
-    if last:  # (a turtle that continues after the second lobe has still driven a figure eight)
-        full = Band(full.low, None, params.angle_tolerance_deg)
     near |= full.near(degrees)
     if not full.holds(degrees):
         if degrees < 360.0:
@@ -134,6 +136,8 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
         else:
             observed = f"{subject} continues for {degrees - 360.0:.0f} degrees after it was closed."
         cause = "A full circle takes 2 pi / angular.z seconds. How many timer calls is that?"
+        if last and degrees > 360.0:
+            cause = f"After the second lobe, the turtle stands still. {ZEROS}"
         finding = failed(observed, wanted, Cause("lobe-angle", cause, evidence.place("create_timer")), near_edge=near)
         turning = math.degrees(float(np.abs(recording.frames.angular).max()))
         return unless_starved(finding, recording, abs(degrees - 360.0) - params.angle_tolerance_deg, turning), near
@@ -148,6 +152,15 @@ def _lobe(evidence: Evidence, params: Eight, name: str, lobe: Lobe, *, last: boo
         speed = float(recording.frames.linear.max())
         return unless_starved(finding, recording, gap - params.closing_m, speed), near
     return None, near
+
+
+def _drives_on(evidence: Evidence, lobes: list[Lobe], expected: str) -> Finding | None:
+    """Return a failed finding if the turtle does not stand still after the second lobe, else None."""
+    if len(lobes) > len(NAMES):
+        observed = f"After the second lobe, the turtle drives a third one, to the {lobes[len(NAMES)].side}."
+        cause = f"After two lobes, the turtle stands still. {ZEROS}"
+        return failed(observed, expected, Cause("drives-on", cause, evidence.place("publish")))
+    return no_standstill(evidence, expected)
 
 
 def requested_eight(evidence: Evidence, params: Eight) -> Requested:
@@ -165,7 +178,8 @@ EIGHT = Kind(
     "The turtle drives a figure eight",
     Eight,
     eight,
-    about="The turtle drives two round lobes of the same size, one to each side, that meet where it started.",
+    about="The turtle drives two round lobes of the same size, one to each side, that meet where it started; then it "
+    "stands still.",
     drives=True,
     requested=requested_eight,
     radius_m=lambda params: params.radius_m,

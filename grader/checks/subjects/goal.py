@@ -11,15 +11,13 @@ from grader.checks.kind import Kind, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.requested import Requested
 from grader.checks.subjects.path import MOVED_M, not_driven
+from grader.checks.subjects.standstill import no_standstill
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
-REST_S = 0.5
-"""The turtle must stand still for this long at the end."""
-REST_M = 0.02
 STROKE_M = 0.3
 """The length of each of the four strokes that lead to a goal in a drawing."""
 
@@ -43,9 +41,7 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
     trajectory = evidence.trajectory
     away = np.hypot(trajectory.x - params.x_m, trajectory.y - params.y_m)
     end, nearest = float(away[-1]), float(away.min())
-    late = trajectory.t_s >= trajectory.t_s[-1] - REST_S
-    drift = float(trajectory.steps[late].sum())
-    rests = drift <= REST_M
+    moving = no_standstill(evidence, expected)
     close = Band.at_most(params.tolerance_m)
     near = close.near(end)
     if not close.holds(end):
@@ -55,7 +51,7 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
             cause = "The turtle does not stop at the goal. Near the goal, publish a command with all values 0."
             return failed(observed, expected, Cause("goes-on", cause, where), near_edge=near)
         last = evidence.commands[-1] if evidence.commands else None
-        if last is not None and rests and not (last.linear[0] or last.angular[2]):
+        if last is not None and moving is None and not (last.linear[0] or last.angular[2]):
             cause = (
                 "The last command has all values 0, as if the turtle had arrived. "
                 "Compare the numbers of the goal in the code with those of the task."
@@ -68,10 +64,8 @@ def goal(evidence: Evidence, params: Goal) -> Finding:
         if trajectory.wall.any():
             cause = "The turtle ran into a wall. Keep the angle between -pi and pi with atan2(sin(a), cos(a))."
         return failed(observed, expected, Cause("not-there", cause, where), near_edge=near)
-    if not rests:
-        observed = f"The turtle is still moving at the end: {drift:.2f} m in the last {REST_S:g} s."
-        cause = "Near the goal, publish a command with all values 0."
-        return failed(observed, expected, Cause("still-moving", cause, where))
+    if moving is not None:
+        return moving
     start = math.dist((float(trajectory.x[0]), float(trajectory.y[0])), (params.x_m, params.y_m))
     return passed(f"The turtle drove to its goal, {start:.1f} m away, and stopped.", near_edge=near)
 

@@ -54,6 +54,13 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
     if len(logged) < FEWEST:
         return _too_few(evidence, params.format)
 
+    early = [line for line in logged if line.t_s < evidence.trial.scenario.pose_from_s]
+    if early:
+        observed = f"At {early[0].t_s:.0f} s no pose had arrived yet, but the log has a line with numbers."
+        cause = "Before the first pose, nothing is known, not even 0. Keep None until then, and log nothing meanwhile."
+        where = evidence.place("info", "create_subscription")
+        return failed(observed, expected, Cause("before-first-pose", cause, where))
+
     def off(line: Line, x: float, y: float) -> float:
         near = _window(recording, line.t_s, params.lag_s)
         return float(np.hypot(frames.x[near] - x, frames.y[near] - y).min())
@@ -78,7 +85,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
 def log_distance(evidence: Evidence, params: LogDistance) -> Finding:
     """Every line shows how far the turtle has driven since the start."""
     recording, frames = evidence.recording, evidence.recording.frames
-    logged = _trusted(recording, params.format)
+    logged = [line for line in _trusted(recording, params.format) if line.t_s >= evidence.trial.scenario.pose_from_s]
     expected = "The distance is the length of the trajectory so far, in metres. It never gets smaller."
     if len(logged) < FEWEST:
         return _too_few(evidence, params.format)

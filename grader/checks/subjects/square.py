@@ -13,6 +13,7 @@ from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.requested import Requested, first_heading
 from grader.checks.subjects.path import not_driven
+from grader.checks.subjects.standstill import ZEROS, no_standstill, silent_while_moving
 from grader.checks.tolerance import Band, unless_starved
 from grader.common.lazy import np
 from grader.common.words import count
@@ -34,7 +35,7 @@ SHORT_M = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class Square:
-    """Sides of this length and corners of 90 degrees; the fourth side ends at the start position."""
+    """Sides of this length and corners of 90 degrees; the fourth side ends at the start; then the turtle stands."""
 
     side_m: float = number(above=0, at_most=5, about="The length of a side.")
     side_tolerance_m: float = number(0.15, above=0, about="How far a side may be off.")
@@ -45,12 +46,17 @@ class Square:
 
 @dataclass(frozen=True)
 class Sides:
-    """The straight parts: their lengths (m), the turns between them (rad), and their end points (m)."""
+    """The straight parts: their lengths (m), the turns between them (rad), and their end points (m).
+
+    After the fourth one, the turtle drives `more_m` (m) and turns by `more_rad` (rad).
+    """
 
     lengths: tuple[float, ...]
     corners: tuple[float, ...]
     ends: tuple[tuple[float, float], ...]
     curved_share: float
+    more_m: float
+    more_rad: float
 
 
 def sides_of(trajectory: Trajectory) -> Sides:
@@ -63,11 +69,14 @@ def sides_of(trajectory: Trajectory) -> Sides:
     # A side ends where the heading changes by more than noise before the next straight frame.
     breaks = np.flatnonzero(np.abs(np.diff(turned[frames])) > math.radians(10.0)) + 1
     pieces = [piece for piece in np.split(frames, breaks) if trajectory.steps[piece].sum() > SHORT_M]
+    after = int(pieces[SIDES - 1][-1]) + 1 if len(pieces) >= SIDES else len(trajectory.steps)
     return Sides(
         lengths=tuple(float(trajectory.steps[piece].sum()) for piece in pieces),
         corners=tuple(float(turned[after[0]] - turned[before[-1]]) for before, after in pairwise(pieces)),
         ends=tuple((float(trajectory.x[piece[-1] + 1]), float(trajectory.y[piece[-1] + 1])) for piece in pieces),
         curved_share=float(trajectory.steps[curved].sum()) / trajectory.length_m if trajectory.length_m else 0.0,
+        more_m=float(trajectory.steps[after:].sum()),
+        more_rad=float(trajectory.turn[after:].sum()),
     )
 
 
@@ -132,8 +141,28 @@ def _measured(evidence: Evidence, params: Square, sides: Sides, expected: str) -
         observed = f"The fourth side ends {gap:.2f} m away from the start position."
         finding = failed(observed, expected, Cause("square-gap", where=where), near_edge=True)
         return unless_starved(finding, recording, gap - params.closing_m, SIDES * float(speed.max()))
+    further = _drives_on(evidence, params, sides, sign, expected)
+    if further is not None:
+        return further
     observed = f"The turtle drove a square with sides of {params.side_m:.1f} m."
     return passed(observed, near_edge=near or closed.near(gap))
+
+
+def _drives_on(evidence: Evidence, params: Square, sides: Sides, sign: float, expected: str) -> Finding | None:
+    """Return a failed finding if more than one last corner follows the fourth side, else None."""
+    where = evidence.place("publish")
+    turned = math.degrees(sign * sides.more_rad)
+    last = (Band.around(0.0, params.corner_tolerance_deg), Band.around(90.0, params.corner_tolerance_deg))
+    cause = f"After four sides, the node needs a state in which the turtle stands still. {ZEROS}"
+    if sides.more_m > SHORT_M:
+        observed = f"After the fourth side, the turtle drives {sides.more_m:.1f} m further."
+    elif not any(band.holds(turned) for band in last):
+        observed = f"After the fourth side, the turtle turns by {turned:.0f} degrees."
+    else:
+        return no_standstill(evidence, expected)
+    if silent_while_moving(evidence):
+        cause = f"The last command is not 0, and without a new one the turtle goes on for a second. {ZEROS}"
+    return failed(observed, "After four sides, the turtle stands still.", Cause("drives-on", cause, where))
 
 
 def requested_square(evidence: Evidence, params: Square) -> Requested:
@@ -156,7 +185,7 @@ SQUARE = Kind(
     "The turtle drives a square",
     Square,
     square,
-    about="The turtle drives four straight sides with four corners of 90 degrees, and is back at its start.",
+    about="The turtle drives four straight sides with corners of 90 degrees, is back at its start, and stands still.",
     drives=True,
     requested=requested_square,
 )

@@ -1,0 +1,45 @@
+"""The end of a drive: the turtle stands still, and it does so because the node said so."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.outcome import Finding, failed
+from grader.checks.subjects.path import LIVES_S
+from grader.common.lazy import np
+from grader.evidence import activity
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+REST_S = 0.5
+"""The turtle must stand still for this long at the end."""
+STILL = 1e-3
+"""A slower turtle (m/s, rad/s) stands still."""
+ZEROS = "Publish a command with all values 0, and go on doing so or stop the timer."
+
+
+def no_standstill(evidence: Evidence, expected: str) -> Finding | None:
+    """Return a failed finding if the turtle moves at the end, or if the node did not tell it to stop; else None."""
+    where = evidence.place("publish")
+    frames = evidence.recording.frames
+    until = activity.end_s(evidence.recording)
+    late = (frames.t_s >= until - REST_S) & (frames.t_s < until)
+    linear, angular = (float(np.abs(speed[late]).max(initial=0.0)) for speed in (frames.linear, frames.angular))
+    if max(linear, angular) > STILL:
+        what = f"drives at {linear:.2f} m/s" if linear > STILL else f"turns at {angular:.2f} rad/s"
+        cause = f"Small speeds are not 0. {ZEROS}" if max(linear, angular) < 0.1 else ZEROS
+        return failed(f"The turtle still {what} at the end.", expected, Cause("still-moving", cause, where))
+    if silent_while_moving(evidence):
+        observed = "The last command is not 0. The turtle stopped only because nothing more arrived."
+        return failed(observed, expected, Cause("still-moving", ZEROS, where))
+    return None
+
+
+def silent_while_moving(evidence: Evidence) -> bool:
+    """Return whether the last command moves the turtle, and the node sent nothing more for a second after it."""
+    last = evidence.commands[-1] if evidence.commands else None
+    if last is None or max(abs(last.linear[0]), abs(last.angular[2])) <= STILL:
+        return False
+    return activity.end_s(evidence.recording) - last.t_s >= LIVES_S
