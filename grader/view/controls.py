@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from grader.turtlesim.programs.teleop_keys import Cancel, Drive, Key, Turn, keys
 
@@ -39,6 +39,18 @@ class Hands:
         self._driving: dict[object, str] = {}
         """The turtle that each page drives."""
         self._drivers: set[object] = set()
+
+    def receive(self, page: object, said: dict[str, Any]) -> bool:
+        """Handle a message from a page: the keys that are held, a key that acts once, or a button."""
+        if "held" in said:
+            keys = [str(key) for key in said["held"]]
+            self.held(page, str(said["turtle"]), keys)
+            return bool(keys)
+        if "press" in said:
+            self.pressed(str(said["turtle"]), str(said["press"]))
+        elif "do" in said:
+            self.request(str(said["do"]))
+        return page in self._driving
 
     def held(self, page: object, turtle: str, keys: list[str]) -> None:
         """Drive while keys are held; stop when they are released."""

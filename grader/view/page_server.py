@@ -31,17 +31,11 @@ HOLD_S = 0.5
 _LARGEST = 10_000
 
 
-class Pressed(Protocol):
-    """The receiver of a page's requests."""
+class Controls(Protocol):
+    """The receiver of what a user does on a page."""
 
-    def held(self, page: object, turtle: str, keys: list[str]) -> None:
-        """Handle the keys that are currently held on this page."""
-
-    def pressed(self, turtle: str, key: str) -> None:
-        """Handle a key that acts once."""
-
-    def request(self, what: str) -> None:
-        """Handle a click on a button."""
+    def receive(self, page: object, said: dict[str, Any]) -> bool:
+        """Handle a message from this page. Return whether its user holds keys from now on."""
 
     def let_go(self, page: object) -> None:
         """Handle the release of all keys on this page."""
@@ -50,11 +44,11 @@ class Pressed(Protocol):
         """Handle the closing of this page."""
 
 
-def application(hub: Hub, hands: Pressed, door: Door) -> ASGIApp:
-    """Return the application, protected by the guard."""
+def application(hub: Hub, controls: Controls, door: Door, index: str = "index.html") -> ASGIApp:
+    """Return the application, protected by the guard. `index` is the file in assets/ that "/" serves."""
 
     def file(request: Request) -> Response:
-        name = request.path_params.get("name", "index.html")
+        name = request.path_params.get("name", index)
         path = STYLE if name == STYLE.name else ASSETS / name
         # Only these files are served. No other path can be requested.
         if path != STYLE and path not in set(ASSETS.iterdir()):
@@ -70,7 +64,7 @@ def application(hub: Hub, hands: Pressed, door: Door) -> ASGIApp:
         if shown != door.token:
             # The page connected with a code. Send it the token, so that it can also connect to the next simulator.
             await socket.send_text(json.dumps({"kind": "token", "token": door.token}))
-        await _Page(socket, hub, hands).run()
+        await _Page(socket, hub, controls).run()
 
     routes = [Route("/", file), Route("/{name}", file), WebSocketRoute("/live", live)]
     return _Guard(Starlette(routes=routes))
@@ -107,10 +101,10 @@ class _Guard:
 class _Page:
     """One open page."""
 
-    def __init__(self, socket: WebSocket, hub: Hub, hands: Pressed) -> None:
+    def __init__(self, socket: WebSocket, hub: Hub, controls: Controls) -> None:
         self._socket = socket
         self._hub = hub
-        self._hands = hands
+        self._controls = controls
         self._following: asyncio.Task[None] | None = None
         self._holding = False
 
@@ -123,27 +117,21 @@ class _Page:
                     text = await asyncio.wait_for(self._socket.receive_text(), HOLD_S if self._holding else None)
                 except asyncio.TimeoutError:
                     self._holding = False
-                    self._hands.let_go(self)
+                    self._controls.let_go(self)
                     continue
                 with suppress(ValueError, TypeError, KeyError, AttributeError):
                     await self._hear(json.loads(text) if len(text) <= _LARGEST else {})
         except (WebSocketDisconnect, KeyError):
             pass
         finally:
-            self._hands.gone(self)
+            self._controls.gone(self)
             await self._sleep()
 
     async def _hear(self, said: dict[str, Any]) -> None:
-        if "held" in said:
-            keys = [str(key) for key in said["held"]]
-            self._holding = bool(keys)
-            self._hands.held(self, str(said["turtle"]), keys)
-        elif "press" in said:
-            self._hands.pressed(str(said["turtle"]), str(said["press"]))
-        elif "do" in said:
-            self._hands.request(str(said["do"]))
-        elif "awake" in said:
+        if "awake" in said:
             await (self._wake() if said["awake"] else self._sleep())
+        else:
+            self._holding = self._controls.receive(self, said)
 
     async def _wake(self) -> None:
         await self._sleep()

@@ -55,13 +55,17 @@ class System:
 class Ears:
     """A thread that spins `node`. It looks at the graph at regular intervals and passes the result to `tell`.
 
-    `known` returns the topics that are counted elsewhere. `looking` is true while somebody looks at the rates.
+    `known` returns the topics that are counted elsewhere. `looking` returns whether somebody looks at the rates.
     """
 
     def __init__(
-        self, node: Node, tell: Callable[[System], object], known: Callable[[], Collection[str]] = tuple
+        self,
+        node: Node,
+        tell: Callable[[System], object],
+        looking: Callable[[], bool],
+        known: Callable[[], Collection[str]] = tuple,
     ) -> None:
-        self.looking = False
+        self._looking = looking
         self._node = node
         self._tell = tell
         self._known = known
@@ -90,6 +94,10 @@ class Ears:
             while not self._stop.is_set():
                 self._executor.spin_once(timeout_sec=1.0)
 
+    def later(self, call: Callable[..., object], *arguments: object) -> None:
+        """Call a function in the thread of the node."""
+        self._executor.create_task(call, *arguments)
+
     # --- the graph and the rates --------------------------------------------------------------------------------
 
     def _look(self) -> None:
@@ -97,7 +105,7 @@ class Ears:
         now = time.monotonic()
         if now >= self._leave_s:
             self._leave()
-        wanted = self._wanted(observed) if self.looking else {}
+        wanted = self._wanted(observed) if self._looking() else {}
         for topic in [topic for topic in self._counters if topic not in wanted]:
             self._counters.pop(topic).close(self._node)
         for topic, type_name in wanted.items():

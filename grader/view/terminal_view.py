@@ -122,13 +122,12 @@ def watch(feed: socket.socket, said: int) -> int:
     try:
         with (
             cli_node(f"{VIEWS[1:]}{os.getpid()}") as node,
-            Ears(node, look, lambda: list(shown.state.rates)) as ears,
+            Ears(node, look, looking=lambda: True, known=lambda: list(shown.state.rates)) as ears,
             keyboard() as read,
             Live(
                 console=console, screen=True, auto_refresh=False, redirect_stderr=False, redirect_stdout=False
             ) as live,
         ):
-            ears.looking = True
             _loop(shown, read, live, Hands(ears, shown.state, feed))
     except KeyboardInterrupt:
         pass

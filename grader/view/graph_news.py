@@ -1,0 +1,58 @@
+"""What pages are told about the ROS graph: the drawn graph, and the table of topics with their rates."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from typing import TYPE_CHECKING, Any
+
+from grader.errors import GraderError
+from grader.graph.graph import picture
+from grader.view.page_graph import laid_out
+from grader.view.topics import rows
+
+if TYPE_CHECKING:
+    from grader.graph.graph import Show
+    from grader.view.hub import Hub
+    from grader.view.state import State
+    from grader.view.system import System
+
+
+class GraphNews:
+    """Tells the hub about the graph whenever it has changed. `state` has the rates that the simulator knows."""
+
+    def __init__(self, hub: Hub, show: Show, state: State) -> None:
+        self._hub = hub
+        self._show = show
+        self._state = state
+        self._system: System | None = None
+        self._graph: dict[str, Any] = {"width": 0.0, "height": 0.0, "nodes": [], "arrows": []}
+        self._drawn: object = None
+        self._drawing: asyncio.Task[None] | None = None
+
+    def look(self, system: System) -> None:
+        """Take a new look at the system."""
+        self._system = system
+        if not self._hub.pages:
+            return
+        self._hub.tell("topics", {"topics": self._topics()})
+        if self._drawing is None or self._drawing.done():
+            self._drawing = asyncio.create_task(self._draw(system))
+
+    def whole(self) -> dict[str, object]:
+        """Return the whole state for a new page."""
+        return {"domain": os.environ.get("ROS_DOMAIN_ID", "0"), "topics": self._topics(), "graph": self._graph}
+
+    async def _draw(self, system: System) -> None:
+        drawn = picture(system.observed.nodes, system.observed.ends, self._show)
+        if drawn == self._drawn:
+            return
+        try:
+            self._graph = await asyncio.to_thread(laid_out, drawn)
+        except GraderError as error:
+            self._graph = {**self._graph, "problem": str(error)}
+        self._drawn = drawn
+        self._hub.tell("graph", {"graph": self._graph})
+
+    def _topics(self) -> list[dict[str, object]]:
+        return rows(self._system, self._state, self._show) if self._system else []

@@ -1,0 +1,90 @@
+"""Serve a page until Ctrl-C, or until the program behind it exits, and open it in the user's browser."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import uvicorn
+
+from grader.view import browser
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from starlette.types import ASGIApp
+
+    from grader.view.address import Place
+    from grader.view.guard import Door
+    from grader.view.hub import Hub
+
+_RECONNECTS_S = 2.0
+"""How long a tab that is still open from an earlier view needs to reconnect."""
+_TIMES = 20
+_SETTINGS: dict[str, Any] = {
+    "log_level": "warning",
+    "access_log": False,
+    "ws": "websockets-sansio",
+    # Compression would only waste time, since the page is on the same machine.
+    "ws_per_message_deflate": False,
+    "ws_max_size": 65536,
+    "lifespan": "off",
+    "timeout_graceful_shutdown": 1,
+}
+
+
+def ended_by_signals() -> asyncio.Event:
+    """Return an event that SIGINT, SIGTERM and SIGHUP set."""
+    ended = asyncio.Event()
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        asyncio.get_running_loop().add_signal_handler(number, ended.set)
+    return ended
+
+
+def in_loop(loop: asyncio.AbstractEventLoop, call: Callable[..., object], *arguments: object) -> None:
+    """Call a function in the thread of the event loop. Do nothing if the loop has been closed already."""
+    with suppress(RuntimeError):
+        loop.call_soon_threadsafe(call, *arguments)
+
+
+async def serve(place: Place, app: ASGIApp, door: Door, hub: Hub, ended: asyncio.Event, *, stays: bool) -> bool:
+    """Serve until `ended` is set; return whether the page could be opened in a browser.
+
+    If it cannot be opened, return immediately, unless it `stays`: then the user opens its address elsewhere.
+    """
+    server = _Server(uvicorn.Config(app, **_SETTINGS))
+    serving = asyncio.create_task(server.serve([place.listening]))
+    ending = asyncio.create_task(ended.wait())
+    opening = asyncio.create_task(_open(place, door, hub))
+    try:
+        opened = True
+        if not stays:
+            await asyncio.wait([opening, ending, serving], return_when=asyncio.FIRST_COMPLETED)
+            opened = not opening.done() or opening.result()
+        if opened:
+            await asyncio.wait([ending, serving], return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        server.should_exit = True
+        await serving
+    return opened
+
+
+async def _open(place: Place, door: Door, hub: Hub) -> bool:
+    """Open the page if there is a browser, unless a tab from an earlier view reconnects."""
+    for _ in range(_TIMES if place.before else 0):
+        if hub.pages:
+            return True
+        await asyncio.sleep(_RECONNECTS_S / _TIMES)
+    return await asyncio.to_thread(browser.open_page, replace(place.address, token=door.code()).url)
+
+
+class _Server(uvicorn.Server):
+    """A uvicorn server that lets its caller handle the signals."""
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Capture no signals."""
+        yield
