@@ -7,7 +7,9 @@ The keys of the format with `schema = 2`:
 - `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one of
   each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
 - `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every and pose_from_s. `[[trial.drive]]` has
-  from_s, linear_x_m_s and angular_z_rad_s (one number, or two between which a number is drawn).
+  from_s, linear_x_m_s and angular_z_rad_s (one number, or two between which a number is drawn). `[[trial.call]]` has
+  at_s, service, type and request (a table with fields), `[[trial.set]]` has at_s, parameter and value.
+  `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.
 - `[[check]]` has id, kind, points, needs (ids), title, trial (the default is the first one), hidden, and the parameters
   of its kind. It may have a preset instead (presets.py).
 - `[[hint]]` has text, checks (the ids of the checks that it helps with) and part (a letter). The hints begin with a
@@ -23,9 +25,10 @@ from typing import TYPE_CHECKING, Any
 from grader.common.words import nearest, shorten
 from grader.errors import UsageError
 from grader.exercise.kind_spec import Allowed
-from grader.exercise.model import CheckSpec, Drive, Exercise, Hint, Scenario, TrialSpec
+from grader.exercise.model import CheckSpec, Exercise, Hint
 from grader.exercise.own_numbers import NumbersSpec, Own
 from grader.exercise.presets import expand, problem_of
+from grader.exercise.scenario_toml import ID, NAME, ROS_NAME, read_trials
 from grader.exercise.tables import Table, read_toml, shown
 
 if TYPE_CHECKING:
@@ -40,15 +43,7 @@ OLDER = {
     "its own; likewise the keys of [trial.scenario]; write [[trial.drive]] for [[scenario.drive]]; then schema = 2."
 }
 """How to update a file that has an older version of the format."""
-ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
-ROS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-NAME = "letters, digits and _, beginning with a letter"
 PART = re.compile(r"[a-z]")
-REMAP = re.compile(r"(/\w+)+:=(/\w+)+")
-MAX_DURATION_S = 600.0
-MAX_SPEED = 10.0
-"""The maximum speed (m/s, rad/s)."""
-
 FIELD = Allowed(
     "a number, a string, true or false", lambda value: value if isinstance(value, str | int | float) else None, ""
 )
@@ -96,7 +91,7 @@ def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) 
     package = head.string("package", ROS_NAME, NAME, default=None if "package" in head.values else "")
     id_ = head.string("id", ID, "small letters, digits and single dashes, as in 03-circle-publisher")
     numbers = _numbers(top.table("numbers"), id_) if "numbers" in top.values else None
-    trials = _trials(top, package)
+    trials = read_trials(top, package)
     checks = _checks(top, tuple(trial.id for trial in trials), kinds, numbers)
     exercise = Exercise(
         id=id_,
@@ -121,57 +116,6 @@ def _numbers(table: Table, step: str) -> NumbersSpec:
     if not options:
         table.problem("there is no list of values.")
     return NumbersSpec(step, file, options)
-
-
-def _trials(top: Table, package: str) -> tuple[TrialSpec, ...]:
-    tables = top.tables("trial")
-    if not tables:
-        top.problem("there is no [[trial]], so nothing would be run.")
-    trials = tuple(_trial(table, package) for table in tables)
-    for table, trial in zip(tables, trials, strict=True):
-        if [each.id for each in trials].count(trial.id) > 1:
-            table.problem(f'the id "{trial.id}" is used twice; each trial needs one of its own.')
-    return trials
-
-
-def _trial(table: Table, package: str) -> TrialSpec:
-    id_ = table.string("id", ID, "small letters, digits and single dashes, as in figure-eight")
-    if id_:
-        table.place += f" ({id_})"
-    spec = TrialSpec(
-        id=id_,
-        executable=table.string("executable", ROS_NAME, NAME) if package else "",
-        node=table.string("node", ROS_NAME, NAME) if package else "",
-        scenario=_scenario(table),
-    )
-    table.finish()
-    return spec
-
-
-def _scenario(table: Table) -> Scenario:
-    start = table.string("start", re.compile("turtlesim|anywhere"), '"turtlesim" or "anywhere"', default="turtlesim")
-    scenario = Scenario(
-        duration_s=table.number("duration_s", 0.1, MAX_DURATION_S, f"from 0.1 to {MAX_DURATION_S:g} (s)"),
-        drives=tuple(_drive(each) for each in table.tables("drive")),
-        anywhere=start == "anywhere",
-        rename=table.strings("rename"),
-        pose_every=int(table.number("pose_every", 1, 1000, "a number of frames from 1 to 1000", default=1)),
-        pose_from_s=table.number("pose_from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)", default=0.0),
-    )
-    for rule in scenario.rename:
-        if not REMAP.fullmatch(rule):
-            table.problem(f'"rename" holds "{shorten(rule)}"; a rule reads "/old/name:=/new/name".')
-    return scenario
-
-
-def _drive(table: Table) -> Drive:
-    drive = Drive(
-        table.number("from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)"),
-        table.limits("linear_x_m_s", MAX_SPEED),
-        table.limits("angular_z_rad_s", MAX_SPEED),
-    )
-    table.finish()
-    return drive
 
 
 def _hint(table: Table, checks: tuple[CheckSpec, ...]) -> Hint:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from grader.errors import MachineError
 
@@ -46,13 +46,28 @@ class Drive:
     angular_z_rad_s: tuple[float, float]
 
 
+Setting = bool | int | float | str
+"""The value of a parameter of a node."""
+
+
+@dataclass(frozen=True)
+class CallInput:
+    """At `at_s` (s), the trial calls a service of the node. `type` is such as "std_srvs/srv/SetBool"."""
+
+    at_s: float
+    service: str
+    type: str
+    request: Mapping[str, Any]
+
+
 @dataclass(frozen=True)
 class Scenario:
     """What happens in a trial: it lasts for `duration_s` (s) on the trial's clock, and then SIGINT is sent.
 
     If `anywhere` is set, the start pose is random even without a seed. `rename` holds remapping rules for the
     simulator, such as "/turtle1/pose:=/where". `pose_every` is the number of frames between two poses; the
-    first one is published at `pose_from_s` (s), as if the simulator were late.
+    first one is published at `pose_from_s` (s), as if the simulator were late. The node starts
+    with `parameters` on its command line, and with those of `params_file` in a file.
     """
 
     duration_s: float
@@ -61,6 +76,9 @@ class Scenario:
     rename: tuple[str, ...] = ()
     pose_every: int = 1
     pose_from_s: float = 0.0
+    calls: tuple[CallInput, ...] = ()
+    parameters: Mapping[str, Setting] = field(default_factory=dict)
+    params_file: Mapping[str, Setting] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

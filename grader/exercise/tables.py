@@ -18,6 +18,9 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+SETTING = (bool, int, float, str)
+"""The possible types of a node's parameter."""
+
 
 def read_toml(data: bytes, name: str) -> dict[str, Any]:
     """Return the tables of a TOML file. Raises UsageError if it is not TOML."""
@@ -112,6 +115,25 @@ class Table:
             return numbers or all(isinstance(each, str) for each in value)
 
         return tuple(self._get(key, "a list of at least two different numbers or strings", good, default=["", ""]))
+
+    def setting(self, key: str) -> Any:  # noqa: ANN401 - one of four types
+        """Return the value of a node's parameter: true or false, a number, or a string."""
+        allowed = "true or false, a number, or a string"
+        return self._get(key, allowed, lambda value: isinstance(value, SETTING), default=None) or 0
+
+    def settings(self, key: str) -> dict[str, Any]:
+        """Return a table with parameters of a node. The default is an empty table."""
+
+        def good(value: object) -> bool:
+            return isinstance(value, dict) and all(
+                isinstance(each, bool | int | float | str) for each in value.values()
+            )
+
+        return dict(self._get(key, "a table with numbers, strings, true or false", good, default={}))
+
+    def anything(self, key: str) -> dict[str, Any]:
+        """Return a table with any content. The default is an empty table."""
+        return dict(self._get(key, "a table", lambda value: isinstance(value, dict), default={}))
 
     def table(self, key: str) -> Table:
         """Return the table `[key]`, which is required."""

@@ -100,6 +100,21 @@ def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:
     return message
 
 
+MOST_TEXT = 1000
+"""The maximum length of a string, and of an array, in the result of `plain`."""
+
+
+def plain(message: Any) -> Any:  # noqa: ANN401
+    """Return a message, or a value of a field, as plain data. Long strings and arrays are cut."""
+    if hasattr(message, "get_fields_and_field_types"):
+        return {name: plain(getattr(message, name)) for name in message.get_fields_and_field_types()}
+    if isinstance(message, str):
+        return message[:MOST_TEXT]
+    if isinstance(message, bool | int | float):
+        return message
+    return [plain(each) for each in list(message)[:MOST_TEXT]]
+
+
 def _is_stamp(value: Any, declared: str) -> bool:  # noqa: ANN401
     return (value, declared) in (("auto", "std_msgs/Header"), ("now", "builtin_interfaces/Time"))
 

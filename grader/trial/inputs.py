@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,9 @@ from grader.trial.start_pose import MARGIN_M
 from grader.turtlesim.turtle import FRAME_S, SIDE_M, Start, Turtle
 
 if TYPE_CHECKING:
-    from grader.exercise.model import Scenario
+    from collections.abc import Mapping
+
+    from grader.exercise.model import Scenario, Setting
     from grader.trial.recording import Pose
     from grader.turtlesim.turtle import Pen, Rgb
 
@@ -19,19 +22,38 @@ MOST_DRAWS = 200
 
 
 @dataclass(frozen=True)
+class PlannedCall:
+    """At `at_s` (s), the trial calls this service of the node."""
+
+    at_s: float
+    service: str
+    type: str
+    request: dict[str, Any]
+
+
+@dataclass(frozen=True)
 class Inputs:
-    """`drives` holds start times (s) with speeds (m/s, rad/s). The others are those of the Scenario."""
+    """What happens to the node in a trial.
+
+    `drives` holds start times (s) with speeds (m/s, rad/s). `arguments` are additional ROS arguments of the node, and
+    `params_file` is the text of a file with parameters. The others are those of the Scenario.
+    """
 
     drives: tuple[tuple[float, float, float], ...] = ()
     rename: tuple[str, ...] = ()
     pose_every: int = 1
     pose_from_s: float = 0.0
+    calls: tuple[PlannedCall, ...] = ()
+    arguments: tuple[str, ...] = ()
+    params_file: str = ""
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Inputs:
         """Create Inputs from the JSON data that dataclasses.asdict produced."""
         drives = tuple((from_s, linear, angular) for from_s, linear, angular in data["drives"])
-        return cls(drives, tuple(data["rename"]), data["pose_every"], data["pose_from_s"])
+        calls = tuple(PlannedCall(**call) for call in data["calls"])
+        lists = {"drives": drives, "calls": calls, **{name: tuple(data[name]) for name in ("rename", "arguments")}}
+        return cls(**{**data, **lists})
 
     def drive(self, now_s: float) -> tuple[float, float] | None:
         """Return the speeds of the turtle at this time (m/s, rad/s); None before the first drive."""
@@ -42,7 +64,14 @@ class Inputs:
 def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
     """Draw random speeds until the trajectory stays at least 0.5 m away from every wall."""
     draw = random.Random(seed)
-    inputs = Inputs((), scenario.rename, scenario.pose_every, scenario.pose_from_s)
+    inputs = Inputs(
+        rename=scenario.rename,
+        pose_every=scenario.pose_every,
+        pose_from_s=scenario.pose_from_s,
+        calls=tuple(PlannedCall(call.at_s, call.service, call.type, dict(call.request)) for call in scenario.calls),
+        arguments=tuple(part for each in _settings(scenario.parameters) for part in ("-p", each)),
+        params_file=_params_file(scenario.params_file),
+    )
     if not scenario.drives:
         return inputs
     for _ in range(MOST_DRAWS):
@@ -54,6 +83,16 @@ def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
         if _keeps_clear(inputs, start, scenario.duration_s):
             break
     return inputs
+
+
+def _settings(parameters: Mapping[str, Setting]) -> list[str]:
+    """Return rules such as "radius:=2.0" for `--ros-args -p`."""
+    return [f"{name}:={json.dumps(value)}" for name, value in parameters.items()]
+
+
+def _params_file(parameters: Mapping[str, Setting]) -> str:
+    """Return the text of a file for `--ros-args --params-file`; JSON is also YAML. Empty if there is nothing in it."""
+    return json.dumps({"/**": {"ros__parameters": dict(parameters)}}, indent=2) + "\n" if parameters else ""
 
 
 class _NoPaper:

@@ -94,6 +94,10 @@ def main() -> None:
         # A malicious member can do no harm in a cell, and the Python of Debian 12 does not have extraction filters yet.
         tree.extraction_filter = lambda member, _path: member
         tree.extractall(order["install"])
+    if order.get("params_file"):
+        file = Path(order["install"]).parent / "params.yaml"
+        file.write_text(order["params_file"], encoding="utf-8")
+        order["ros_arguments"] += ["--ros-args", "--params-file", str(file)]
     # A node that reads from the keyboard gets end-of-file.
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.environ.update(order["env"])

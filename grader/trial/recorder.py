@@ -13,6 +13,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 
+from grader.trial.observed import Offer
 from grader.trial.recording import Command, Endpoint, Graph, LogLine, Message
 
 if TYPE_CHECKING:
@@ -33,6 +34,9 @@ MOST_TOPICS = 100
 MOST_TYPES = 200
 """The maximum number of types on one topic."""
 MOST_NODES = 100
+MOST_SERVICES = 200
+OF_EVERY_NODE = ("rcl_interfaces/", "type_description_interfaces/")
+"""The beginnings of the types of the services that rclpy adds to every node, below the name of the node."""
 MOST_OBSERVED = 50_000
 """The maximum number of nodes and endpoints in all snapshots together."""
 MOST_MESSAGES = 20_000
@@ -61,6 +65,8 @@ class Recorder(Node):
         self.topics: dict[str, set[str]] = {}
         self.dropped = 0
         self.graph_dropped = 0
+        self.follows_services = False
+        self._offers: set[Offer] = set()
         self._judged = frozenset(judged)
         self._subscribed: Counter[str] = Counter()
         """The number of types for each judged topic. The empty string stands for all other topics together."""
@@ -112,8 +118,24 @@ class Recorder(Node):
                     fresh |= self._subscribe(topic, type_name)
         return fresh
 
+    @property
+    def offers(self) -> tuple[Offer, ...]:
+        """The services of other nodes that were found in snapshots, if `follows_services` is set."""
+        return tuple(sorted(self._offers, key=lambda offer: (offer.service, offer.type, offer.node)))
+
+    def _follow_services(self) -> None:
+        for name, space in self.get_node_names_and_namespaces():
+            node = f"{space.rstrip('/')}/{name}"
+            if node in OWN_NODES or len(self._offers) >= MOST_SERVICES:
+                continue
+            for service, types in self.get_service_names_and_types_by_node(name, space)[:MOST_SERVICES]:
+                if not service.startswith(f"{node}/") or not types[0].startswith(OF_EVERY_NODE):
+                    self._offers.add(Offer(node, service, types[0]))
+
     def snapshot(self) -> None:
         """Store a snapshot of the current graph."""
+        if self.follows_services:
+            self._follow_services()
         # The judged topics come first, because a hundred other topics must not crowd them out.
         topics = sorted((topic not in self._judged, topic) for topic, _ in self.get_topic_names_and_types())
         shown = [topic for beside, topic in topics if not beside]

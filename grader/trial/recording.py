@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 from grader.common.lazy import np
+from grader.trial.observed import Call, Offer, PenChange, Track
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -170,6 +171,14 @@ class Recording:
     """
     interventions_dropped: int = 0
     """The number of calls that were not kept because there were too many."""
+    calls: tuple[Call, ...] = ()
+    """The service calls of the node to the simulator and of the trial to the node, in order. There is a limit."""
+    offers: tuple[Offer, ...] = ()
+    """The services of the submission's nodes, if the trial calls any."""
+    pens: tuple[PenChange, ...] = ()
+    """The changes of pens, in order. A turtle begins with the pen of turtlesim."""
+    tracks: tuple[Track, ...] = ()
+    """Where the turtles other than turtle1 were."""
     graph_dropped: int = 0
     """The number of topics, nodes, endpoints and snapshots of the graph that were not kept because there were too
     many."""
@@ -245,6 +254,13 @@ def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> 
             "end": ProcessEnd(**data["end"]),
             "own_nodes": tuple(data["own_nodes"]),
             "interventions": tuple(data["interventions"]),
+            "calls": tuple(Call(**call) for call in data.get("calls", ())),
+            "offers": tuple(Offer(**offer) for offer in data.get("offers", ())),
+            "pens": tuple(PenChange(**{**pen, "color": tuple(pen["color"])}) for pen in data.get("pens", ())),
+            "tracks": tuple(
+                Track(track["turtle"], tuple(tuple(row) for row in track["rows"]), track["gone_s"])
+                for track in data.get("tracks", ())
+            ),
             "doubts": tuple(data["doubts"]),
             "stalls": tuple((begin, end) for begin, end in data["stalls"]),
         }

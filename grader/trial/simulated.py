@@ -52,6 +52,8 @@ _POLL_S = 0.00005
 class SimulatedTrial(Simulation):
     """A simulation that publishes /clock, which the node follows."""
 
+    held = True
+
     def __init__(
         self,
         node: NodeProcess,

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import time
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor, TimeoutException
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 
+from grader.ros.message_values import plain
+from grader.trial.caller import Caller
+from grader.trial.observed import Call
 from grader.trial.recorder import Recorder
+from grader.trial.turtles import TurtleWatch
 from grader.turtlesim.node import TurtlesimNode
 from grader.turtlesim.turtle import FRAME_S, Start
 
@@ -40,8 +44,11 @@ class Simulation:
     """The ROS side of a trial. `frame` moves the turtle, and `spin` handles everything that has arrived.
 
     An executor checks every service and every event each time, which takes longer than anything else in a frame. `hear`
-    only takes messages. It is sufficient as long as no other node `may_ask` for a service.
+    only takes messages. It is sufficient as long as no other node `may_request` a service.
     """
+
+    held = False
+    """Whether the trial's clock stands still while a frame runs."""
 
     def __init__(
         self, node: NodeProcess, start: Pose, prefixes: list[Path], inputs: Inputs, judged: Collection[str] = ()
@@ -64,7 +71,12 @@ class Simulation:
             on_command=self.recorder.keep_command,
             on_publish=self.recorder.keep,
             on_intervention=self._intervened,
+            on_call=self._called,
         )
+        self.turtles = TurtleWatch()
+        self.caller = Caller(self.recorder, inputs.calls, self.now) if inputs.calls else None
+        self.recorder.follows_services = self.caller is not None
+        self._calls: list[Call] = []
         leave_out_events(self.recorder)
         leave_out_events(self.turtlesim)
         self.executor = SingleThreadedExecutor()
@@ -107,10 +119,13 @@ class Simulation:
 
     def frame(self, now_s: float) -> None:
         """Run one frame of the simulator, and record it."""
+        if self.caller is not None:
+            self.caller.make_due(now_s, spin=self.spin if self.held else None)
         drive = self.inputs.drive(now_s)
         if drive is not None and self.turtlesim.turtle_state("turtle1") is not None:
             self.turtlesim.world.command("turtle1", drive[0], 0.0, drive[1])
         self.turtlesim.frame(now_s)
+        self.turtles.look(now_s, self.turtlesim.world)
         state = self.turtlesim.turtle_state("turtle1")
         if state is not None:
             self.frames.append(
@@ -136,7 +151,9 @@ class Simulation:
         return handled
 
     def may_request(self) -> bool:
-        """Return whether any node has a client for one of our services or actions."""
+        """Return whether any node has a client for one of our services or actions, or owes us a response."""
+        if self.caller is not None and self.caller.pending:
+            return True
         if not self._services:
             self._services = [
                 name
@@ -174,6 +191,17 @@ class Simulation:
         others: list[str] = self.recorder.nodes()
         others.remove(self.turtlesim.get_fully_qualified_name())
         return others
+
+    @property
+    def calls(self) -> tuple[Call, ...]:
+        """The calls to the simulator and to the node, in order."""
+        made = self.caller.calls if self.caller is not None else ()
+        return tuple(sorted((*self._calls, *made), key=lambda call: call.t_s))
+
+    def _called(self, service: str, type_name: str, request: Any, response: Any) -> None:  # noqa: ANN401
+        if len(self._calls) < _MOST_INTERVENTIONS:
+            now_s = self.now()
+            self._calls.append(Call(now_s, service, type_name, plain(request), plain(response), now_s))
 
     def _intervened(self, name: str) -> None:
         # A thousand calls to a harmless service must not hide the next teleport.

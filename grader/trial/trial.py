@@ -146,10 +146,14 @@ class Trial:
         install = self._workspace / "install"
         prefix = install / package
         env = installation.environment(self._ros, home=self._home, overlays=[prefix], domain=self._domain)
-        simulated = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []
+        arguments = ["--ros-args", "-p", "use_sim_time:=true"] if self._plan.clock == "simulated" else []
+        inputs = self._plan.inputs
+        if inputs.arguments:
+            arguments += ["--ros-args", *inputs.arguments]
         order = {
             "script": str(prefix / "lib" / package / executable),
-            "ros_arguments": simulated,
+            "ros_arguments": arguments,
+            "params_file": inputs.params_file,
             "python_path": env["PYTHONPATH"].split(os.pathsep)[:1],
             "env": env,
             "install": str(install),

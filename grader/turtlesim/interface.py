@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rclpy.node import Node
+    from rclpy.service import Service
 
     from grader.turtlesim.turtle import Rgb, State, Turtle
     from grader.turtlesim.world import World
@@ -37,12 +38,26 @@ class Hooks:
     `on_command(topic, data, twist)` is called when a command has arrived, before it moves the turtle.
     `on_publish(topic, type, data)` is called when a pose or a colour is published. `on_intervention(name)` is called
     when somebody calls a service or an action ("spawn", "rotate_absolute") or sets a parameter ("set_background" if
-    only colours are set, or else "set_parameters").
+    only colours are set, or else "set_parameters"). `on_call(service, type, request, response)` is called when a
+    service has been called.
     """
 
     on_command: Callable[[str, bytes, Any], object]
     on_publish: Callable[[str, str, bytes], object]
     on_intervention: Callable[[str], object]
+    on_call: Callable[[str, str, Any, Any], object]
+
+    def serve(self, node: Node, service_type: Any, name: str, handle: Callable[[Any, Any], Any]) -> Service:  # noqa: ANN401
+        """Create a service of the node. `on_call` hears of each call."""
+
+        def handle_and_tell(request: Any, response: Any) -> Any:  # noqa: ANN401
+            response = handle(request, response)
+            self.on_call(service.service_name, type_name, request, response)
+            return response
+
+        type_name = f"{service_type.__module__.partition('.')[0]}/srv/{service_type.__name__}"
+        service = node.create_service(service_type, name, handle_and_tell)
+        return service
 
 
 class TurtleInterface:
@@ -71,7 +86,7 @@ class TurtleInterface:
                 (TeleportRelative, "teleport_relative", self._teleport_relative),
                 (TeleportAbsolute, "teleport_absolute", self._teleport_absolute),
             ):
-                service = node.create_service(service_type, f"{name}/{service_name}", serve)
+                service = hooks.serve(node, service_type, f"{name}/{service_name}", serve)
                 parts.callback(node.destroy_service, service)
             self._rotate = RotateAbsoluteServer(
                 node, name, self._turtle, lambda: hooks.on_intervention("rotate_absolute")

@@ -50,6 +50,7 @@ class TurtlesimNode(Node):
         on_command: Callable[[str, bytes, Any], object] = _nobody,
         on_publish: Callable[[str, str, bytes], object] = _nobody,
         on_intervention: Callable[[str], object] = _nobody,
+        on_call: Callable[[str, str, Any, Any], object] = _nobody,
         pose_every: int = 1,
         pose_from_s: float = 0.0,
         canvas: Canvas | None = None,
@@ -61,7 +62,7 @@ class TurtlesimNode(Node):
         real turtlesim publishes one in each frame. `canvas` is what the turtles draw on.
         """
         self._pose_every, self._pose_from_s = pose_every, pose_from_s
-        self._hooks = Hooks(on_command, on_publish, on_intervention)
+        self._hooks = Hooks(on_command, on_publish, on_intervention, on_call)
         super().__init__("turtlesim", **node)
         parameters.declare(self)
         self.world = World(start or Start(), canvas)
@@ -73,10 +74,10 @@ class TurtlesimNode(Node):
             self.create_subscription(
                 ParameterEvent, "/parameter_events", lambda _: None, qos_profile_parameter_events, raw=True
             )
-        self.create_service(Empty, "clear", self._clear)
-        self.create_service(Empty, "reset", self._reset)
-        self.create_service(Spawn, "spawn", self._spawn)
-        self.create_service(Kill, "kill", self._kill)
+        self._hooks.serve(self, Empty, "clear", self._clear)
+        self._hooks.serve(self, Empty, "reset", self._reset)
+        self._hooks.serve(self, Spawn, "spawn", self._spawn)
+        self._hooks.serve(self, Kill, "kill", self._kill)
         self._interfaces: dict[str, TurtleInterface] = {}
         self._leaving: deque[tuple[int, TurtleInterface]] = deque()
         self._frames = 0

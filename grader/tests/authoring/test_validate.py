@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 ROOT = Path(__file__).parent.parent.parent.parent
-NEW = "08-straight-on"
+NEW = "14-straight-on"
 NODE = "my_robot_controller/straight_on.py"
 TASK = """\
         # BEGIN SOLUTION

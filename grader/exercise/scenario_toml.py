@@ -1,0 +1,107 @@
+"""Read the `[[trial]]` tables of exercise.toml: what is run, and what happens meanwhile."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from grader.common.words import shorten
+from grader.exercise.model import CallInput, Drive, Scenario, TrialSpec
+
+if TYPE_CHECKING:
+    from grader.exercise.tables import Table
+
+ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+ROS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+NAME = "letters, digits and _, beginning with a letter"
+REMAP = re.compile(r"(/\w+)+:=(/\w+)+")
+SERVICE = re.compile(r"(/\w+)+")
+SERVICE_TYPE = re.compile(r"[a-z][a-z0-9_]*/srv/[A-Z][A-Za-z0-9]*")
+PARAMETER_TYPES = (
+    (bool, 1, "bool_value"),
+    (int, 2, "integer_value"),
+    (float, 3, "double_value"),
+    (str, 4, "string_value"),
+)
+"""For each type of a parameter: its number in rcl_interfaces/msg/ParameterType, and the field with its value."""
+MAX_DURATION_S = 600.0
+MAX_SPEED = 10.0
+"""The maximum speed (m/s, rad/s)."""
+
+
+def read_trials(top: Table, package: str) -> tuple[TrialSpec, ...]:
+    """Return the trials. A mistake is recorded in the table in which it stands."""
+    tables = top.tables("trial")
+    if not tables:
+        top.problem("there is no [[trial]], so nothing would be run.")
+    trials = tuple(_trial(table, package) for table in tables)
+    for table, trial in zip(tables, trials, strict=True):
+        if [each.id for each in trials].count(trial.id) > 1:
+            table.problem(f'the id "{trial.id}" is used twice; each trial needs one of its own.')
+    return trials
+
+
+def _trial(table: Table, package: str) -> TrialSpec:
+    id_ = table.string("id", ID, "small letters, digits and single dashes, as in figure-eight")
+    if id_:
+        table.place += f" ({id_})"
+    spec = TrialSpec(
+        id=id_,
+        executable=table.string("executable", ROS_NAME, NAME) if package else "",
+        node=table.string("node", ROS_NAME, NAME) if package else "",
+        scenario=_scenario(table, f"/{table.values.get('node')}"),
+    )
+    table.finish()
+    return spec
+
+
+def _scenario(table: Table, node: str) -> Scenario:
+    start = table.string("start", re.compile("turtlesim|anywhere"), '"turtlesim" or "anywhere"', default="turtlesim")
+    scenario = Scenario(
+        duration_s=table.number("duration_s", 0.1, MAX_DURATION_S, f"from 0.1 to {MAX_DURATION_S:g} (s)"),
+        drives=tuple(_drive(each) for each in table.tables("drive")),
+        anywhere=start == "anywhere",
+        rename=table.strings("rename"),
+        pose_every=int(table.number("pose_every", 1, 1000, "a number of frames from 1 to 1000", default=1)),
+        pose_from_s=table.number("pose_from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)", default=0.0),
+        calls=tuple(_call(each) for each in table.tables("call"))
+        + tuple(_set(each, node) for each in table.tables("set")),
+        parameters=table.settings("parameters"),
+        params_file=table.settings("params_file"),
+    )
+    for rule in scenario.rename:
+        if not REMAP.fullmatch(rule):
+            table.problem(f'"rename" holds "{shorten(rule)}"; a rule reads "/old/name:=/new/name".')
+    return scenario
+
+
+def _drive(table: Table) -> Drive:
+    drive = Drive(
+        table.number("from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)"),
+        table.limits("linear_x_m_s", MAX_SPEED),
+        table.limits("angular_z_rad_s", MAX_SPEED),
+    )
+    table.finish()
+    return drive
+
+
+def _call(table: Table) -> CallInput:
+    call = CallInput(
+        table.number("at_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)"),
+        table.string("service", SERVICE, "a full name, as in /pause"),
+        table.string("type", SERVICE_TYPE, "a type of a service, as in std_srvs/srv/SetBool"),
+        table.anything("request"),
+    )
+    table.finish()
+    return call
+
+
+def _set(table: Table, node: str) -> CallInput:
+    """Return the call that sets a parameter of the node, as `ros2 param set` makes it."""
+    at_s = table.number("at_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)")
+    name = table.string("parameter")
+    value = table.setting("value")
+    number, field = next(row[1:] for row in PARAMETER_TYPES if type(value) is row[0])
+    request = {"parameters": [{"name": name, "value": {"type": number, field: value}}]}
+    table.finish()
+    return CallInput(at_s, f"{node}/set_parameters", "rcl_interfaces/srv/SetParameters", request)

@@ -1,0 +1,69 @@
+"""What happens to the node in a trial, as exercise.toml says it."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from grader.exercise.scenario_toml import read_trials
+from grader.exercise.tables import Table
+from grader.trial.inputs import Inputs, draw_inputs
+from grader.trial.recording import Pose
+
+if TYPE_CHECKING:
+    from grader.exercise.model import Scenario
+
+TRIAL = {"id": "circle", "executable": "draw", "node": "draw", "duration_s": 5.0}
+CALL = {"at_s": 1.0, "service": "/pause", "type": "std_srvs/srv/SetBool", "request": {"data": True}}
+
+
+def read(**more: Any) -> tuple[Scenario, list[str]]:  # noqa: ANN401 - TOML
+    problems: list[str] = []
+    trials = read_trials(Table({"trial": [{**TRIAL, **more}]}, "", problems), "my_package")
+    return trials[0].scenario, problems
+
+
+def test_a_trial_may_call_a_service_and_set_a_parameter() -> None:
+    scenario, problems = read(call=[CALL], set=[{"at_s": 2.0, "parameter": "radius", "value": -1.0}])
+    assert problems == []
+    pause, radius = scenario.calls
+    assert (pause.at_s, pause.service, pause.type, pause.request) == tuple(CALL.values())
+    assert (radius.at_s, radius.service) == (2.0, "/draw/set_parameters")
+    value = {"name": "radius", "value": {"type": 3, "double_value": -1.0}}
+    assert radius.request == {"parameters": [value]}
+
+
+@pytest.mark.parametrize(
+    ("value", "number", "field"), [(True, 1, "bool_value"), (2, 2, "integer_value"), ("a", 4, "string_value")]
+)
+def test_a_parameter_has_the_type_of_its_value(value: object, number: int, field: str) -> None:
+    scenario, _ = read(set=[{"at_s": 2.0, "parameter": "radius", "value": value}])
+    assert scenario.calls[0].request["parameters"][0]["value"] == {"type": number, field: value}
+
+
+def test_the_parameters_at_the_start_are_ros_arguments_and_a_file() -> None:
+    scenario, problems = read(parameters={"radius": 2.0}, params_file={"speed": 1.5}, call=[CALL])
+    assert problems == []
+    inputs = draw_inputs(scenario, Pose(5.5, 5.5, 0.0), 1)
+    assert inputs.arguments == ("-p", "radius:=2.0")
+    assert '"/**"' in inputs.params_file
+    assert '"speed": 1.5' in inputs.params_file
+    assert Inputs.from_json(asdict(inputs)) == inputs
+
+
+@pytest.mark.parametrize(
+    ("more", "key"),
+    [
+        ({"call": [{**CALL, "service": "pause"}]}, "service"),
+        ({"call": [{**CALL, "type": "std_srvs/SetBool"}]}, "type"),
+        ({"call": [{**CALL, "at_s": -1.0}]}, "at_s"),
+        ({"call": [{**CALL, "request": 3}]}, "request"),
+        ({"call": [{**CALL, "answer": 3}]}, "answer"),
+        ({"set": [{"at_s": 2.0, "parameter": "radius"}]}, "value"),
+        ({"parameters": {"radius": []}}, "parameters"),
+    ],
+)
+def test_a_wrong_key_is_named(more: dict[str, Any], key: str) -> None:
+    assert any(f'"{key}"' in problem for problem in read(**more)[1])

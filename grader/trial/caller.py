@@ -1,0 +1,81 @@
+"""Caller: the service calls that the trial itself makes at given times, and what the node answered."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+from grader.ros.message_values import fill, load_type, plain
+from grader.trial.observed import Call
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rclpy.client import Client
+    from rclpy.node import Node
+
+    from grader.trial.inputs import PlannedCall
+
+LATE_S = 1.0
+"""How long a call waits for its service, on the trial's clock (s)."""
+FOUND_S = 0.5
+"""How long the first attempt waits for discovery if simulated time stands still meanwhile (s of wall time)."""
+
+
+class Caller:
+    """Makes the calls when they are due. The clients exist from the start, so that discovery is over by then."""
+
+    def __init__(self, node: Node, calls: tuple[PlannedCall, ...], now: Callable[[], float]) -> None:
+        self._node = node
+        self._now = now
+        self._waiting = [(call, self._client(call)) for call in sorted(calls, key=lambda call: call.at_s)]
+        self._first_s: dict[int, float] = {}
+        self._made: list[Call] = []
+
+    @property
+    def calls(self) -> tuple[Call, ...]:
+        """The calls so far, in the order in which they were due."""
+        return tuple(self._made)
+
+    @property
+    def pending(self) -> bool:
+        """Whether a call has not been answered yet."""
+        return any(call.response is None and not call.missing for call in self._made)
+
+    def make_due(self, now_s: float, *, spin: Callable[[float], object] | None) -> None:
+        """Make the calls that are due. `spin` is given if time stands still during this method."""
+        while self._waiting and self._waiting[0][0].at_s <= now_s:
+            call, client = self._waiting[0]
+            if not client.service_is_ready() and not self._given_up(call, client, now_s, spin):
+                return
+            self._waiting.pop(0)
+            self._make(call, client, now_s)
+
+    def _given_up(
+        self, call: PlannedCall, client: Client, now_s: float, spin: Callable[[float], object] | None
+    ) -> bool:
+        """Wait for the service. Return whether it has had its time, or is there now."""
+        until = time.monotonic() + FOUND_S
+        while spin is not None and id(call) not in self._first_s and time.monotonic() < until:
+            spin(0.01)
+            if client.service_is_ready():
+                return True
+        first_s = self._first_s.setdefault(id(call), now_s)
+        return now_s - first_s >= LATE_S
+
+    def _make(self, call: PlannedCall, client: Client, now_s: float) -> None:
+        index = len(self._made)
+        ready = client.service_is_ready()
+        self._made.append(Call(now_s, call.service, call.type, call.request, by_trial=True, missing=not ready))
+        if not ready:
+            return
+
+        def answered(future: Any) -> None:  # noqa: ANN401 - a future of rclpy
+            response = future.result()
+            if response is not None:
+                self._made[index] = self._made[index].answered(self._now(), plain(response))
+
+        client.call_async(fill(client.srv_type.Request(), call.request)).add_done_callback(answered)
+
+    def _client(self, call: PlannedCall) -> Client:
+        return self._node.create_client(load_type(call.type, "srv"), call.service)
