@@ -14,4 +14,4 @@ def test_all_that_has_come_is_handled_at_once_and_what_is_said_about_it_too(in_r
 
 
 def test_who_has_a_client_may_ask_and_nobody_else(in_ros: InRos) -> None:
-    assert in_ros.run("trial.scenarios:who_may_ask").result is False
+    assert in_ros.run("trial.scenarios:who_may_request").result is False
