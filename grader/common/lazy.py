@@ -1,12 +1,22 @@
 """Import numpy when it is first used, because the import takes 0.1 s and most commands do not need it.
 
 Use `from grader.common.lazy import np` in modules that many commands import but only a few commands use.
+
+A thread may be importing numpy while another one forks (grader/submission/reader.py). The child would then wait for
+ever for a module that nobody finishes. So whoever forks holds `IMPORTING` meanwhile.
 """
 
 from __future__ import annotations
 
 import importlib
+import threading
 from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+IMPORTING = threading.RLock()
+"""Held while a module of this file is imported, and while the process forks."""
 
 
 class _Lazy:
@@ -16,12 +26,24 @@ class _Lazy:
         self._name = name
 
     def __getattr__(self, attribute: str) -> Any:  # noqa: ANN401 - whatever the module holds
-        return getattr(importlib.import_module(self._name), attribute)
+        return getattr(self.load(), attribute)
+
+    def load(self) -> ModuleType:
+        """Import the module now, if it has not been imported yet."""
+        with IMPORTING:
+            return importlib.import_module(self._name)
 
 
+_NUMPY = _Lazy("numpy")
 if TYPE_CHECKING:
     import numpy as np
 else:
-    np = _Lazy("numpy")
+    np = _NUMPY
 
-__all__ = ["np"]
+
+def load_numpy() -> None:
+    """Import numpy now, for example in a thread while there is time for it."""
+    _NUMPY.load()
+
+
+__all__ = ["IMPORTING", "load_numpy", "np"]

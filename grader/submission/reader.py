@@ -22,6 +22,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 
+from grader.common.lazy import IMPORTING
 from grader.common.system_errors import refusal
 from grader.errors import GraderError, MachineError, TooLargeError, UnreadableError
 
@@ -83,9 +84,10 @@ def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> 
 
 def _fork() -> int:
     try:
-        # The child does not need any lock that another thread may hold. It only reads, computes, and writes to its
-        # pipe.
-        return os.fork()
+        # The child must not need a lock that another thread holds. It only reads, computes, and writes to its pipe, but
+        # it may import numpy, which another thread may be importing now.
+        with IMPORTING:
+            return os.fork()
     except OSError as error:
         message = refusal(error) or str(error)
         raise MachineError(message) from error

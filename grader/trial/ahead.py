@@ -7,11 +7,12 @@ for itself, so the caller first waits for the other trials (`settle`).
 
 from __future__ import annotations
 
-import importlib
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import ExitStack
 from threading import Lock
 from typing import TYPE_CHECKING, Protocol
+
+from grader.common.lazy import load_numpy
 
 if TYPE_CHECKING:
     from grader.trial.recording import Recording
@@ -64,7 +65,7 @@ class Ahead:
         self._under_way: dict[str, Future[Recording]] = {}
 
     def __enter__(self) -> Ahead:  # noqa: PYI034 - typing.Self is Python 3.11's
-        self._pool.submit(importlib.import_module, "numpy")  # needed to read a recording, and there is time for it now
+        self._pool.submit(load_numpy)  # needed to read a recording, and there is time for it now
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -6,6 +6,8 @@ import copyreg
 import ctypes
 import os
 import resource
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -18,6 +20,7 @@ from grader.errors import MachineError, TooLargeError, UnreadableError, UsageErr
 from grader.submission import reader
 from grader.submission.reader import read
 from grader.submission.where import Where
+from grader.tests.case import ROOT
 
 
 def add(one: int, other: int = 1) -> int:
@@ -133,3 +136,30 @@ def test_threads_read_at_the_same_time() -> None:
 def test_nothing_but_plain_data_is_taken(value: object) -> None:
     with pytest.raises(MachineError, match=r"handed over|cannot be taken"):
         read(lambda: value)
+
+
+SLOW_NUMPY = """
+import numpy_test
+numpy_test.begun.set()
+numpy_test.forked.wait(0.3)
+value = 5
+"""
+READ_MEANWHILE = """
+import os, sys, threading
+sys.modules["numpy_test"] = numpy_test = type(sys)("numpy_test")
+numpy_test.begun, numpy_test.forked = threading.Event(), threading.Event()
+os.register_at_fork(after_in_parent=numpy_test.forked.set)
+from grader.common.lazy import load_numpy, np
+from grader.submission import reader
+reader.TIMEOUT_S = 10
+threading.Thread(target=load_numpy).start()
+numpy_test.begun.wait()
+print(reader.read(lambda: np.value))
+"""
+
+
+def test_a_child_never_waits_for_an_import_of_its_parent(tmp_path: Path) -> None:
+    (tmp_path / "numpy.py").write_text(SLOW_NUMPY)
+    command = [sys.executable, "-c", f"import sys; sys.path.insert(0, {str(tmp_path)!r})\n{READ_MEANWHILE}"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
+    assert done.stdout == "5\n", done.stderr
