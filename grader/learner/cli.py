@@ -1,4 +1,4 @@
-"""The learner's commands: start, watch, hint, status and solution. This module has no logic."""
+"""The learner's commands: start, run, watch, hint, status and solution. This module has no logic."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ Step = Annotated[Optional[str], typer.Argument(help="A step such as 03-circle-pu
 def add_to(app: typer.Typer) -> None:
     """Add these commands to `app`."""
     app.command(rich_help_panel=PANEL, epilog="Example: grader start 01")(start)
+    app.command(rich_help_panel=PANEL, epilog="Examples: grader run; grader run 07 draw_square")(run)
     app.command(rich_help_panel=PANEL, epilog="Example: grader watch")(watch)
     app.command(rich_help_panel=PANEL, epilog="Example: grader hint")(hint)
     app.command(rich_help_panel=PANEL, epilog="Example: grader status")(status)
@@ -44,6 +45,21 @@ def start(
 
     begun = steps.start(step, workspace, student=student, fresh=fresh)
     typer.echo(steps.begin_message(begun))
+
+
+def run(
+    step: Step = None,
+    program: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Argument(help="An executable of the step. Default: the first one.", metavar="EXECUTABLE"),
+    ] = None,
+    workspace: Workspace = None,
+    view: Annotated[bool, typer.Option("--view/--no-view", help="Show the turtle on a page on this machine.")] = True,
+) -> None:
+    """Build your package and run its node beside a turtlesim that you can watch. Ctrl-C ends both."""
+    from grader.learner import run_node
+
+    raise typer.Exit(run_node.run(run_node.program_of(step, program, workspace), view=view))
 
 
 def hint(

@@ -1,0 +1,215 @@
+"""Run the node of a step beside a turtlesim with its view: build, start both, and end both with Ctrl-C."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from contextlib import contextmanager, nullcontext, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.common.interpreter import interpreter
+from grader.common.words import nearest
+from grader.errors import MachineError, UsageError
+from grader.learner.exercise_argument import meant
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from grader.exercise.model import Exercise
+
+READY_S = 30.0
+"""How long turtlesim may take until it is there (s)."""
+ENDS_S = 5.0
+"""How long a program may take to end after Ctrl-C (s). Then it is killed."""
+
+
+@dataclass(frozen=True)
+class Program:
+    """What is run: the folder of the package, its name, and the executable."""
+
+    folder: Path
+    package: str
+    executable: str
+
+
+def program_of(step: str | None, executable: str | None, workspace: Path | None) -> Program:
+    """Return the program that is meant: by default, the one that the current step is about.
+
+    Raises:
+        UsageError: the step has no node, was not started, or does not run this executable.
+    """
+    exercise, place = meant(Path(step) if step else None, None, workspace)
+    names = _executables(exercise)
+    if not names:
+        message = f"{exercise.id} has no node to run. `grader sim --view` starts the turtle alone."
+        raise UsageError(message)
+    name = executable or names[0]
+    if name not in names:
+        guess = nearest(name, names)
+        hint = f" Did you mean {guess}?" if guess else ""
+        message = f"{exercise.id} has no program {name}.{hint} It has: {', '.join(names)}."
+        raise UsageError(message)
+    folder = place if (place / "package.xml").is_file() else place / exercise.package
+    return Program(folder.resolve(), exercise.package, name)
+
+
+def _executables(exercise: Exercise) -> list[str]:
+    return list(dict.fromkeys(trial.executable for trial in exercise.trials if trial.executable))
+
+
+def run(program: Program, *, view: bool) -> int:
+    """Build the package, and run the program beside a turtlesim until Ctrl-C. Return the exit code for the user.
+
+    `view` shows the turtle on a page. If a turtlesim runs already, the program drives that one. The exit code is 0
+    after Ctrl-C, and 1 if the build failed or the node ended with an error; what they printed is on the terminal.
+    """
+    from grader.ros import shell
+
+    env = shell.users_environment(None, _tell)
+    with tempfile.TemporaryDirectory(prefix="grader-run-") as place:
+        _tell(f"Building {program.package}")
+        overlay = _built(program, Path(place), env)
+        if overlay is None:
+            return 1
+        script = overlay / "lib" / program.package / program.executable
+        if not script.is_file():
+            print(
+                f"\nThe package has no executable {program.executable}. Look at the list console_scripts in "
+                f"{program.folder / 'setup.py'}.",
+                file=sys.stderr,
+            )
+            return 1
+        with nullcontext() if _turtle_is_there(env) else _turtlesim(env, view=view):
+            print(f"{program.executable} runs. Ctrl-C ends it, and the turtle, too.\n", file=sys.stderr, flush=True)
+            return _until_it_ends(program, script, _with_overlay(env, overlay, program.folder))
+
+
+def _built(program: Program, place: Path, env: Mapping[str, str]) -> Path | None:
+    """Build with colcon outside of the workspace. Return install/<package>, or None if colcon failed and said why."""
+    bases = ["--build-base", str(place / "build"), "--install-base", str(place / "install")]
+    colcon = interpreter(
+        *("-c", "import sys; from colcon_core.command import main; sys.exit(main())"),
+        *("--log-base", str(place / "log"), "build", "--base-paths", str(program.folder), *bases),
+        *(
+            "--event-handlers",
+            "console_direct+",
+            "console_start_end-",
+            "console_stderr-",
+            "summary-",
+        ),
+        env=env,
+        searches=True,
+    )
+    done = subprocess.run(
+        colcon.argv, cwd=place, env=colcon.env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False
+    )
+    overlay = place / "install" / program.package
+    if done.returncode == 0 and overlay.is_dir():
+        return overlay
+    print(done.stdout.rstrip(), file=sys.stderr)
+    print("\nThe package could not be built: colcon says why, above.", file=sys.stderr)
+    return None
+
+
+def _with_overlay(env: Mapping[str, str], overlay: Path, folder: Path) -> dict[str, str]:
+    """Return the environment in which the package is found, as after `source install/setup.bash`."""
+    modules = next(overlay.glob("lib/python3*/site-packages"), overlay)
+    # The learner's own folder comes first, so that a traceback names the learner's files and not copies of them.
+    own = [str(folder)] if (modules / overlay.name).is_dir() else []
+
+    def first(name: str, *paths: str) -> str:
+        return os.pathsep.join(filter(None, [*paths, env.get(name, "")]))
+
+    return {
+        **env,
+        "AMENT_PREFIX_PATH": first("AMENT_PREFIX_PATH", str(overlay)),
+        "PYTHONPATH": first("PYTHONPATH", *own, str(modules)),
+        "ROS_PYTHON_CHECK_FIELDS": "1",
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
+
+
+def _turtle_is_there(env: Mapping[str, str]) -> bool:
+    """Return whether a turtlesim runs already, for example `grader sim --view` in another terminal."""
+    start = interpreter("-m", "grader.ros2.main", "node", "list", env=env, searches=True)
+    listed = subprocess.run(start.argv, env=start.env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
+    there = b"/turtlesim" in listed.stdout.split()
+    if there:
+        print("A turtlesim runs already, and the node uses it.", file=sys.stderr)
+    return there
+
+
+@contextmanager
+def _turtlesim(env: Mapping[str, str], *, view: bool) -> Iterator[None]:
+    """Run turtlesim, and end it at the end of the block.
+
+    Raises:
+        MachineError: it did not start; it has said why.
+    """
+    options = ["--view"] if view else []
+    with tempfile.TemporaryDirectory(prefix="grader-run-") as place:
+        log = Path(place, "log")
+        with log.open("wb") as writing:
+            start = interpreter("-m", "grader.view.turtlesim_node", *options, env=env, searches=True)
+            simulator = subprocess.Popen(
+                start.argv, env=start.env, stderr=writing, start_new_session=True, stdin=subprocess.DEVNULL
+            )
+        try:
+            begun = time.monotonic()
+            while b"Spawning turtle" not in log.read_bytes():
+                if simulator.poll() is not None or time.monotonic() - begun > READY_S:
+                    print(log.read_text("utf-8", "replace").rstrip(), file=sys.stderr)
+                    message = "turtlesim did not start. `grader doctor` looks at the machine."
+                    raise MachineError(message)
+                time.sleep(0.02)
+            yield
+        finally:
+            _end(simulator)
+
+
+def _until_it_ends(program: Program, script: Path, env: Mapping[str, str]) -> int:
+    start = interpreter(str(script), env=env, searches=True)
+    node = subprocess.Popen(start.argv, env=start.env)
+    interrupted = False
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _interrupt)
+    while True:
+        try:
+            code = node.wait(ENDS_S if interrupted else None)
+            break
+        except KeyboardInterrupt:
+            if not sys.stdin.isatty():  # a terminal has sent Ctrl-C to the node, too
+                node.send_signal(signal.SIGINT)
+            interrupted = True
+        except subprocess.TimeoutExpired:
+            print(f"\n{program.executable} did not end on Ctrl-C, so it was stopped by force.", file=sys.stderr)
+            node.kill()
+    if interrupted:
+        return 0
+    how = "without an error." if code == 0 else f"with exit code {code}. The lines above say where, and why."
+    print(f"\n{program.executable} has ended by itself, {how}", file=sys.stderr)
+    return 0 if code == 0 else 1
+
+
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    with suppress(ProcessLookupError):
+        process.send_signal(signal.SIGINT)
+    try:
+        process.wait(ENDS_S)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+def _tell(text: str) -> None:
+    print(f"{text} ...", file=sys.stderr, flush=True)

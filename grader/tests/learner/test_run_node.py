@@ -1,0 +1,74 @@
+"""`grader run` builds the learner's package and runs its node beside a turtlesim; Ctrl-C ends all of it."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pexpect
+import pytest
+
+from grader.tests.domains import own_domain
+from grader.tests.learner.story import Learner
+
+NODE = "src/my_robot_controller/my_robot_controller/draw_circle.py"
+
+
+@pytest.fixture(scope="module")
+def learner(tmp_path_factory: pytest.TempPathFactory) -> Learner:
+    """A learner who has solved step 03."""
+    learner = Learner(tmp_path_factory.mktemp("home"))
+    learner.env["ROS_DOMAIN_ID"] = str(own_domain())
+    learner.reads("start", "03")
+    learner.solves("03-circle-publisher")
+    return learner
+
+
+def children_of(pid: int) -> list[int]:
+    found = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True, check=False)
+    return [int(word) for word in found.stdout.split()]
+
+
+def test_one_command_shows_the_turtle_and_ctrl_c_ends_everything(learner: Learner) -> None:
+    child = learner.types("run")
+    child.expect("See it move: http://127")
+    child.expect("draw_circle runs")
+    child.expect(r"\[draw_circle\]: ")
+    started = children_of(child.pid)
+    assert len(started) == 2, "a turtlesim and a node"
+    child.sendintr()
+    child.expect(pexpect.EOF)
+    child.close()
+    assert child.exitstatus == 0
+    assert [pid for pid in started if Path(f"/proc/{pid}").exists()] == []
+
+
+def test_a_crash_shows_the_learners_own_file(learner: Learner) -> None:
+    node = learner.home / "ros2_ws" / NODE
+    right = node.read_text("utf-8")
+    node.write_text(right.replace("Twist()", "Twits()"), "utf-8")
+    printed = learner.reads("run", "03", "draw_circle", "--no-view")
+    node.write_text(right, "utf-8")
+    assert f'File "{node}", line ' in printed
+    assert "NameError: name 'Twits' is not defined" in printed
+    assert "draw_circle has ended by itself, with exit code 1." in printed
+
+
+def test_it_says_what_colcon_says(learner: Learner) -> None:
+    setup = learner.home / "ros2_ws/src/my_robot_controller/setup.py"
+    right = setup.read_text("utf-8")
+    setup.write_text(right.replace("setup(", "setup((", 1), "utf-8")
+    printed = learner.reads("run")
+    setup.write_text(right, "utf-8")
+    assert "SyntaxError" in printed
+    assert "The package could not be built: colcon says why, above." in printed
+
+
+def test_it_names_what_it_can_run(learner: Learner) -> None:
+    assert "Did you mean draw_circle? It has: draw_circle." in learner.reads("run", "03", "drawcircle")
+    learner.reads("start", "02")
+    assert "02-discover-topics has no node to run." in learner.reads("run")
+
+
+def test_nothing_is_left_in_the_workspace(learner: Learner) -> None:
+    assert sorted(path.name for path in (learner.home / "ros2_ws").iterdir()) == ["answers", "src"]
