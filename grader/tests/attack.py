@@ -1,7 +1,7 @@
 """An attack: a submission that tries to harm or cheat the grader, and what must be true after its grading.
 
 grader/tests/hostile/NNN-name/
-  files/           added to the solution of step 03, or replacing its files
+  files/           added to the solution of step 03, or replacing its files; for a few lines, there is `edit`
   make.py          make(package): makes files that git cannot store
   expected.toml    the keys are the fields of `Attack`, below
 """
@@ -13,9 +13,12 @@ import shutil
 import sys
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from grader.tests.case import copy_solution
+from grader.tests.case import apply_edits, copy_solution
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -59,6 +62,8 @@ class Attack:
     """Text that the grader must not print."""
     never_html: tuple[str, ...] = ()
     """Text that the page must not contain."""
+    edit: tuple[Mapping[str, str], ...] = ()
+    """Changes of the solution: in `file`, `old` becomes `new`, everywhere."""
     sample: bool = False
     clock: str = "auto"
 
@@ -79,7 +84,7 @@ def _read(folder: Path) -> Attack:
     if unknown:
         message = f"{folder.name}/expected.toml: {unknown}"
         raise ValueError(message)
-    lists = {key: tuple(values.get(key, ())) for key in ("never", "never_html")}
+    lists = {key: tuple(values.get(key, ())) for key in ("never", "never_html", "edit")}
     return Attack(name=folder.name, **{**values, **lists})
 
 
@@ -87,6 +92,7 @@ def make_attack(attack: Attack, to: Path) -> Path:
     """Write the package below the new folder `to`. Return its path."""
     package = to / "my_robot_controller"
     copy_solution("03-circle-publisher", package)
+    apply_edits(attack.edit, package, attack.name)
     files = FOLDER / attack.name / "files"
     if files.is_dir():
         shutil.copytree(files, package, dirs_exist_ok=True)

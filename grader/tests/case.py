@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from grader.exercise.markers import solved, syntax_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -109,10 +109,7 @@ def make_submission(case: Case, to: Path) -> Path:
         shutil.copytree(base, to, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
     elif base is not None:
         copy_solution(case.base, package)
-    for edit in case.edit:
-        text = (package / edit["file"]).read_text("utf-8")
-        assert edit["old"] in text, f"{case.name}: {edit}"
-        (package / edit["file"]).write_text(text.replace(edit["old"], edit["new"]), "utf-8")
+    apply_edits(case.edit, package, case.name)
     for path in case.remove:
         target = package / path
         if target.is_dir():
@@ -131,6 +128,15 @@ def make_submission(case: Case, to: Path) -> Path:
         spec.loader.exec_module(module)
         module.make(to)
     return to / case.give
+
+
+def apply_edits(edits: Iterable[Mapping[str, str]], package: Path, name: str) -> None:
+    """In each `file` of a package, replace `old` by `new` everywhere; AssertionError if `old` is not there."""
+    for edit in edits:
+        file = package / edit["file"]
+        text = file.read_text("utf-8")
+        assert edit["old"] in text, f"{name}: {edit}"
+        file.write_text(text.replace(edit["old"], edit["new"]), "utf-8")
 
 
 def copy_solution(step: str, to: Path) -> None:
