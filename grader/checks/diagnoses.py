@@ -35,6 +35,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "unreadable": "the grader cannot read the submission, or what the submission sends to it",
     },
     "setup.py and the build": {
+        "colcon-ignore": "a file in the package makes colcon ignore it",
         "setup-py-missing": "the package has no setup.py",
         "setup-py-syntax": "setup.py has a syntax error",
         "setup-py-raises": "setup.py raises an exception",

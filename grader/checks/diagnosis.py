@@ -25,6 +25,7 @@ Diagnosis = Literal[
     "rejected-file",
     "unreadable",
     # setup.py and the build
+    "colcon-ignore",
     "setup-py-missing",
     "setup-py-syntax",
     "setup-py-raises",

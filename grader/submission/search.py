@@ -123,9 +123,7 @@ def _none(search: _Search, root: int, name: str) -> str:
             f"{none} {shown(search.linked[0])} is a link, and links are not followed: give the folder that it leads to."
         )
     if search.ignored:
-        return (
-            f"{none} {shown(search.ignored[0])} was passed over, as by colcon, since it holds a file {IGNORE_MARKER}."
-        )
+        return f"{none} colcon ignores {shown(search.ignored[0])}, because a file {IGNORE_MARKER} is in it."
     for above in list(Path(name).resolve().parents)[:2]:
         if any((above / file).is_file() for file in PACKAGE_FILES):
             return f"{none} The folder around it, {shown(str(above))}, is one: give that."

@@ -15,6 +15,7 @@ from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.package_xml import why_not_read
 from grader.common.words import a_list, shorten
 from grader.submission.code import import_path
+from grader.submission.search import IGNORE_MARKER
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -28,6 +29,9 @@ SETUP_PY_FRAME = re.compile(r"(?P<before>, in run_setup\n.*\n(?:[ ^~]+\n)?\s+Fil
 UNREAD_SETUP = "return ast.literal_eval(output)"
 """The line of colcon that reads the arguments of setup()."""
 NO_FILE = re.compile(r"can't copy '?(?P<file>[^':]*)'?: doesn't exist")
+IGNORE_MARKERS = (IGNORE_MARKER, "AMENT_IGNORE", "CATKIN_IGNORE")
+"""Files with these names make colcon ignore a ROS 2 package."""
+IGNORED = "colcon builds no package in a folder with such a file. Without the file, it finds this package."
 EXPECTED = "`colcon build` succeeds and installs the package."
 
 
@@ -65,7 +69,11 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
 
 
 def early(evidence: Evidence, _: NoParams) -> Finding | None:
-    """Return a failed finding if setup.py is missing or has a syntax error, so that no build can succeed; else None."""
+    """Return a failed finding if the files alone show that no build can succeed; else None."""
+    ignored = next((name for name in IGNORE_MARKERS if name in evidence.submission.files), None)
+    if ignored is not None:
+        observed = f"colcon ignores the package, because a file {ignored} is next to package.xml."
+        return failed(observed, EXPECTED, Cause("colcon-ignore", IGNORED, Where(ignored)))
     setup = evidence.setup_py
     if setup is None:
         cause = "colcon builds an ament_python package by running its setup.py."

@@ -55,6 +55,8 @@ NO_MARKER = "error: can't copy 'resource/my_robot_controller': doesn't exist or 
     ("files", "build", "diagnosis", "where"),
     [
         ({"setup.py": None}, NOTHING, "setup-py-missing", "package.xml"),
+        ({"COLCON_IGNORE": ""}, NOTHING, "colcon-ignore", "COLCON_IGNORE"),
+        ({"AMENT_IGNORE": ""}, NOTHING, "colcon-ignore", "AMENT_IGNORE"),
         ({"setup.py": "setup(\n"}, replace(NOTHING, exit_code=1), "setup-py-syntax", "setup.py:1"),
         ({}, replace(NOTHING, exit_code=1, log=SETUP_TRACEBACK), "setup-py-raises", "setup.py:5"),
         ({}, replace(NOTHING, exit_code=1, log=READ_BY_COLCON), "setup-py-raises", "setup.py:7"),
