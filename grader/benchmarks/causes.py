@@ -11,7 +11,9 @@ benchmark prints how often each of these is true:
 - at all: any failed check names the cause in this way;
 - false: a failed check names a wrong cause. A diagnosis that only repeats what was observed does not count.
 
-It also lists what the reports missed. `--keep` stores the recordings, and `--again` judges stored recordings again
+Each is counted twice: by the diagnoses that the operators expect, and by facts that know no diagnosis (the difference
+between the two packages, the source and the recording; grader/tests/operators/facts.py). It also lists what the reports
+missed, with the difference. `--keep` stores the recordings, and `--again` judges stored recordings again
 without running anything.
 """
 
@@ -25,9 +27,11 @@ import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.checks.edit import difference
 from grader.checks.exercises import find_exercise
 from grader.checks.judge import judge
 from grader.checks.outcome import Status
@@ -36,12 +40,14 @@ from grader.grading.options import Options
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_submission
 from grader.tests.grading_here import Builds
+from grader.tests.operators.facts import Facts
 from grader.tests.operators.made import OPERATORS, Made, bases, make
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from grader.checks.outcome import Outcome
+    from grader.evidence.evidence import Evidence
 
 OBSERVATIONS = frozenset(
     {
@@ -60,6 +66,7 @@ class Judged:
     """A wrong package with the outcomes of its checks, and how long judging it took (s)."""
 
     made: Made
+    evidence: Evidence
     outcomes: tuple[Outcome, ...]
     seconds: float
 
@@ -79,9 +86,31 @@ class Judged:
         return any(names(outcome, self.made) for outcome in self.failed)
 
     @property
-    def false(self) -> list[Outcome]:
-        """The failed checks that say something false."""
-        return [outcome for outcome in self.failed if is_false(outcome, self.made)]
+    def false(self) -> bool:
+        """Whether a failed check says something false."""
+        return any(is_false(outcome, self.made) for outcome in self.failed)
+
+    @cached_property
+    def facts(self) -> Facts:
+        """What is true about the package, without the tables of diagnoses."""
+        return Facts(self.made.right, self.made.files, self.evidence)
+
+    @property
+    def contradicted(self) -> list[str]:
+        """The sentences that contradict a fact."""
+        return [sentence for outcome in self.failed for sentence in self.facts.false(outcome)]
+
+    def marks(self) -> dict[str, bool]:
+        """Return each measure with its result; a bad result is False for what names, True for what is false."""
+        by_fact = [self.facts.names(outcome) for outcome in self.failed]
+        return {
+            "cause named first": self.first,
+            "cause named at all": self.at_all,
+            "false statements": self.false,
+            "cause named first, by facts": by_fact[0],
+            "cause named at all, by facts": any(by_fact),
+            "false statements, by facts": bool(self.contradicted),
+        }
 
 
 def names(outcome: Outcome, made: Made) -> bool:
@@ -120,7 +149,7 @@ def judged(made: Made, folder: Path, builds: Builds, keep: Path | None) -> Judge
         mistakes = [(operator.name, change) for operator, change in made.mistakes]
         kept = (dataclasses.replace(made, mistakes=()), mistakes, dataclasses.replace(graded.evidence))
         (keep / f"{made.name}.pickle").write_bytes(pickle.dumps(kept))
-    return Judged(made, graded.report.outcomes, seconds)
+    return Judged(made, graded.evidence, graded.report.outcomes, seconds)
 
 
 def again(kept: Path) -> Judged:
@@ -129,36 +158,44 @@ def again(kept: Path) -> Judged:
     known = {operator.name: operator for operator in OPERATORS}
     made = dataclasses.replace(made, mistakes=tuple((known[name], change) for name, change in mistakes))
     begun = time.monotonic()
-    return Judged(made, judge(evidence), time.monotonic() - begun)
+    return Judged(made, evidence, judge(evidence), time.monotonic() - begun)
 
 
-def tell(all_: Iterable[Judged]) -> None:
+def tell(all_: Iterable[Judged], *, everything: bool = False) -> None:
     """Print what the reports missed, and the statistics."""
     every = list(all_)
     wrong = [each for each in every if each.failed]
     for each in wrong:
-        marks = [
-            mark for mark, bad in (("first", not each.first), ("at all", not each.at_all), ("FALSE", each.false)) if bad
-        ]
-        if marks:
-            print(f"\n{each.made.name} {each.made.exercise} {each.made.operators}: {', '.join(marks)}")
-            for _, change in each.made.mistakes:
-                print(f"  true: {change.file}:{','.join(map(str, sorted(change.lines)))}")
-            for outcome in each.failed:
-                finding = outcome.finding
-                print(f"  {outcome.id} [{finding.diagnosis}] {finding.where}: {finding.observed} | {finding.cause}")
+        bad = [label for label, holds in each.marks().items() if holds == label.startswith("false")]
+        if bad or everything:
+            print(f"\n{each.made.name} {each.made.exercise} {each.made.operators}: {', '.join(bad)}")
+            _explain(each)
     passed = [each.made.operators for each in every if not each.failed]
     for each in every:
         broken = [outcome.finding.observed for outcome in each.outcomes if outcome.status is Status.ERROR]
         if broken:
             print(f"\n{each.made.name} {each.made.operators}: error: {broken[0]}")
     print(f"\nnot made wrong: {len(passed)} ({', '.join(sorted(set(passed)))})")
-    for label, hits in (
-        ("cause named first", sum(each.first for each in wrong)),
-        ("cause named at all", sum(each.at_all for each in wrong)),
-        ("false statements", sum(bool(each.false) for each in wrong)),
-    ):
-        print(f"{label}: {hits} of {len(wrong)} ({100.0 * hits / max(len(wrong), 1):.1f} %)")
+    marks = [each.marks() for each in wrong]
+    for label in marks[0] if marks else ():
+        hits = sum(mark[label] for mark in marks)
+        print(f"{label}: {hits} of {len(wrong)} ({100.0 * hits / len(wrong):.1f} %)")
+
+
+def _explain(judged: Judged) -> None:
+    """Print what was changed and what the report says about it."""
+    encoded = [
+        {path: text.encode() for path, text in files.items()} for files in (judged.made.right, judged.made.files)
+    ]
+    print("  " + difference({**dict.fromkeys(encoded[1], b""), **encoded[0]}, encoded[1]).replace("\n", "\n  "))
+    gone = sorted(encoded[0].keys() - encoded[1].keys())
+    if gone:
+        print(f"  removed: {', '.join(gone)}")
+    for outcome in judged.failed:
+        finding = outcome.finding
+        print(f"  {outcome.id} [{finding.diagnosis}] {finding.where}: {finding.observed} | {finding.cause}")
+    if judged.contradicted:
+        print(f"  false: {judged.contradicted}")
 
 
 def main() -> None:
@@ -168,6 +205,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="which ones")
     parser.add_argument("--only", nargs="*", default=[], help="names of operators (default: all)")
     parser.add_argument("--keep", type=Path, help="a folder for the recordings")
+    parser.add_argument("--all", action="store_true", help="list all packages, also those that nothing was missed of")
     parser.add_argument("--again", type=Path, help="a folder of recordings to judge again")
     parser.add_argument("--workers", type=int, default=2, help="how many packages are judged at once")
     wanted = parser.parse_args()
@@ -183,7 +221,7 @@ def main() -> None:
                 wanted.keep.mkdir(parents=True, exist_ok=True)
             builds = Builds()
             found = list(pool.map(lambda made: judged(made, Path(name) / "made", builds, wanted.keep), mades))
-        tell(found)
+        tell(found, everything=wanted.all)
         print(f"{len(right)} right packages, seed {wanted.seed}: {time.monotonic() - begun:.0f} s")
 
 

@@ -117,6 +117,8 @@ def _binary(op: ast.operator, left: Constant | None, right: Constant | None) -> 
             return float(left) - right
         if isinstance(op, ast.Mult):
             return float(left) * right
+        if isinstance(op, ast.FloorDiv):
+            return float(left) // right
         return float(left) / right if isinstance(op, ast.Div) else None
     except (ArithmeticError, ValueError):
         return None

@@ -25,6 +25,9 @@ def bad_entry_point(point: EntryPoint) -> Finding:
     elif "/" in point.text:
         why = Cause("entry-point-slash", "This is a file path. A module name has a dot between folder and file.")
         why = why.fixed_by(at(where, "/", "."))
+    elif "(" in point.text:
+        why = Cause("entry-point-format", "It names the function without parentheses, because it does not call it.")
+        why = why.fixed_by(at(where, point.text, point.text.partition("(")[0]))
     elif ":" not in point.text:
         text = "It does not name a function. After the module comes a colon, then the function name."
         why = Cause("entry-point-no-function", text)

@@ -47,6 +47,22 @@ MODULES = (
 ROS_1 = frozenset({"rospy", "roslib", "tf", "catkin", "roscpp", "rosbag", "actionlib"})
 """Modules that exist only in ROS 1."""
 
+OF_ROS_1 = {
+    "init_node": "The node gets its name in super().__init__.",
+    "is_shutdown": "The opposite in ROS 2 is rclpy.ok().",
+    "Publisher": "In ROS 2, the method create_publisher of the node creates one.",
+    "Subscriber": "In ROS 2, the method create_subscription of the node creates one.",
+    "Rate": "In ROS 2, a node does regular work in the callback of a timer.",
+    "Timer": "In ROS 2, the method create_timer of the node creates one.",
+    "sleep": "In ROS 2, a node does regular work in the callback of a timer.",
+    "get_time": "In ROS 2, the node's clock tells the time: get_clock().now().",
+    "get_param": "In ROS 2, a node has declare_parameter and get_parameter.",
+    "loginfo": "In ROS 2, the logger has the method info.",
+    "logwarn": "In ROS 2, the logger has the method warning.",
+    "logerr": "In ROS 2, the logger has the method error.",
+}
+"""Name in rospy -> what ROS 2 has instead."""
+
 NODE = (
     "create_publisher",
     "create_subscription",

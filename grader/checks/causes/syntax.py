@@ -65,6 +65,8 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
 """(pattern of Python's message, diagnosis, cause). The first pattern that matches is used."""
 NOT_CLOSED = re.compile(r"does not match opening parenthesis '(?P<bracket>.)' on line (?P<line>\d+)")
 ENTRY_POINT = re.compile(r"\s*\w+\s*=\s*[\w.]+:\w+\s*,?\s*")
+NO_SPACE = re.compile(r"\s*(?P<keyword>def|class)(?P<rest>\w+\s*[(:].*)")
+"""A definition whose first word has no space after it."""
 CONFLICT = r"^(<<<<<<<|=======|>>>>>>>)"
 OTHERWISE = "The mistake is often at the end of the line before: a bracket, a colon or the indentation."
 
@@ -80,6 +82,11 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
     unquoted = _unquoted(unreadable, data)
     if unquoted:
         return Cause("syntax-error", "An entry point is a string, so it needs quotation marks.", Where(file, unquoted))
+    glued = NO_SPACE.fullmatch(_line(unreadable, data))
+    if glued is not None:
+        place = Where(file, unreadable.line)
+        fix = at(place, glued["keyword"] + glued["rest"], f"{glued['keyword']} {glued['rest']}")
+        return Cause("syntax-error", f"A space is missing after {glued['keyword']}.", place).fixed_by(fix)
     other = NOT_CLOSED.search(unreadable.message)
     if other is not None:
         text = f"The bracket {other['bracket']} of line {other['line']} is still open in line {unreadable.line}."

@@ -26,6 +26,8 @@ NO_ATTRIBUTE = re.compile(
     r"(?:'(?P<object>\w+)' object|type object '(?P<type>\w+)'|module '(?P<module>[\w.]+)')"
     r" has no attribute '(?P<name>\w+)'"
 )
+MANGLED = re.compile(r"^_[A-Za-z]\w*?__(?=[a-zA-Z])")
+"""What Python puts in front of an attribute whose name begins with two underscores."""
 PLAIN = {
     "str": "a string",
     "int": "an integer",
@@ -47,26 +49,35 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
     match = NO_ATTRIBUTE.search(scene.crash.message)
     if match is None:
         return None
-    name = match["name"]
+    name = MANGLED.sub("__", match["name"])
     if match["module"]:
         return _of_module(scene, match["module"], name)
     owner = match["object"] or match["type"]
     if owner in ("property", "function", "method", "builtin_function_or_method", "NoneType"):
         return _of_a_wrong_thing(scene, owner, name)
+    if scene.class_named(owner) is not None:
+        return (_of_own_type if match["type"] else _of_own_class)(scene, owner, name)
     if match["type"] or owner.startswith("Metaclass_"):
         return _class_for_object(owner.removeprefix("Metaclass_"))
-    if scene.class_named(owner) is not None:
-        return _of_own_class(scene, owner, name)
+    return _of_another_object(scene, owner, name)
+
+
+def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None:
+    """Return the cause if an object of rclpy, a message or a plain value has no such attribute."""
     if owner in ros_names.FIELDS:
         fields = ros_names.FIELDS[owner]
         guess = nearest(name, fields)
         more = f" Did you mean {guess}?" if guess else ""
         fix = at(scene.crash.where, name, guess) if guess else ()
         return Cause("message-field", f"A {owner} has {a_list(fields)}.{more}").fixed_by(fix)
+    if owner in ros_names.OTHERS and name in ros_names.OF_ROS_1:
+        return _of_ros_1(name)
     if owner in ros_names.OTHERS:
-        return _misspelt(scene, name, ros_names.OTHERS[owner]) or Cause(
-            "attribute-missing", f"A {owner} has no attribute or method with that name."
-        )
+        text = f"A {owner} has no attribute or method with that name."
+        return _misspelt(scene, name, ros_names.OTHERS[owner]) or _set_twice(scene, name, text)
+    if owner in ("int", "float") and name == "self":
+        text = "Between two arguments there is a comma, not a dot."
+        return Cause("comma-missing", text).fixed_by(at(scene.crash.where, ". self", ", self"))
     if owner in PLAIN:
         return Cause("attribute-missing", f"This value is {PLAIN[owner]}, and that has no {shorten(name)}.")
     return None
@@ -75,12 +86,18 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
 def _of_module(scene: CrashScene, module: str, name: str) -> Cause | None:
     if module == "rclpy" and name in ros_names.MODULE_OF:
         return Cause("import-wrong-place", f"{name} is in the module {ros_names.MODULE_OF[name]}.")
+    if module == "rclpy" and name in ros_names.OF_ROS_1:
+        return _of_ros_1(name)
     known: Iterable[str] = (
         ros_names.RCLPY if module == "rclpy" else dir(MODULES_READ[module]) if module in MODULES_READ else ()
     )
     return _misspelt(scene, name, known) or Cause(
         "attribute-missing", f"The module {shorten(module)} has nothing with that name."
     )
+
+
+def _of_ros_1(name: str) -> Cause:
+    return Cause("attribute-missing", f"{name} belongs to rospy, the library of ROS 1. {ros_names.OF_ROS_1[name]}")
 
 
 def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | None:
@@ -96,6 +113,41 @@ def _misspelt(scene: CrashScene, name: str, known: Iterable[str]) -> Cause | Non
 
 def _class_for_object(name: str) -> Cause:
     return Cause("class-for-object", f"{shorten(name)} is a class. {CREATE_OBJECT}")
+
+
+def _set_twice(scene: CrashScene, name: str, text: str) -> Cause:
+    """Return the cause, which names the line that sets the object again if there is one."""
+    holders = [dotted(node.value) for node in scene.on_line if isinstance(node, ast.Attribute) and node.attr == name]
+    for holder in filter(None, holders):
+        lines = [
+            node.lineno for node in scene.nodes if isinstance(node, ast.Assign) and holder in map(dotted, node.targets)
+        ]
+        if len(lines) > 1:
+            more = (
+                f"{shorten(holder)} is set in lines {a_list(list(map(str, sorted(lines))))}. Use one name per object."
+            )
+            return Cause("attribute-missing", f"{text} {more}", scene.at(max(lines)))
+    return Cause("attribute-missing", text)
+
+
+def _of_own_type(scene: CrashScene, owner: str, name: str) -> Cause:
+    """Return the cause if a class of the file has no such attribute: only its objects have it, or nothing has it."""
+    own = scene.class_named(owner)
+    assert own is not None
+    outside = next((each for each in scene.top_functions() if each.name == name), None)
+    if outside is not None:
+        return Cause("method-outside-class", f"{name} is outside the class. Indent it like the other methods.").at(
+            scene.at(outside)
+        )
+    first = next((each for each in scene.top_functions() if "self" in [a.arg for a in each.args.args]), None)
+    if first is not None and first.lineno > own.lineno:
+        text = f"{first.name} is at the left edge, so the class ends before it. Indent it like the other methods."
+        return Cause("method-outside-class", text, scene.at(first))
+    if name in {attribute for attribute, _ in attributes_set(own)} or name in ros_names.NODE:
+        return _class_for_object(owner)
+    return _misspelt(scene, name, _members(scene, own)) or Cause(
+        "attribute-missing", f"The class {shorten(owner)} has no method or attribute with that name."
+    )
 
 
 def _of_a_wrong_thing(scene: CrashScene, owner: str, name: str) -> Cause | None:
@@ -121,17 +173,29 @@ def _of_none(scene: CrashScene, name: str) -> Cause | None:
             text = f"{shorten(holder)} is None until the first message arrives. Check for None before you use it."
             return Cause("none-before-message", text)
     if name == "executor":
-        return Cause("no-object", "rclpy.spin was called with None instead of a node.")
+        return _no_object(scene)
     known = [holder for holder in holders if holder]
     what = f"{shorten(known[0])} is None here, so it" if len(known) == 1 else "The value is None here, which"
     return Cause("attribute-missing", f"{what} has no attribute {shorten(name)}. A function without return gives None.")
+
+
+def _no_object(scene: CrashScene) -> Cause:
+    """Return the cause if rclpy.spin gets None: a function without return, if the node comes from one."""
+    text = "rclpy.spin was called with None instead of a node."
+    given = {dotted(call.args[0]) for call in scene.calls_on_line("spin") if call.args}
+    for node in scene.nodes:
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and given & set(map(dotted, node.targets)):
+            for maker in scene.functions(dotted(node.value.func) or ""):
+                if not any(isinstance(each, ast.Return) and each.value for each in ast.walk(maker)):
+                    return Cause("no-object", f"{text} {maker.name} has no return, so it gives None.", scene.at(maker))
+    return Cause("no-object", text)
 
 
 def _of_own_class(scene: CrashScene, owner: str, name: str) -> Cause:
     own = scene.class_named(owner)
     assert own is not None
     made = next((each for each in methods(own) if each.name == "__init__"), None)
-    if name.startswith("_") and made is not None:
+    if name.startswith("_") and not name.startswith("__") and made is not None:
         base = [node for node in ast.walk(made) if isinstance(node, ast.Call) and (_attr(node.func) == "__init__")]
         if not base:
             text = "__init__ never calls super().__init__, which creates the node."
@@ -170,6 +234,9 @@ def _never_set(scene: CrashScene, own: ast.ClassDef, name: str) -> Cause:
     if inside is not None:
         text = f"{name} is indented too far. It is inside another method, so self.{name} does not exist."
         return Cause("method-in-method", text, scene.at(inside))
+    if name in ros_names.OTHERS["RcutilsLogger"]:
+        text = f"{name} is a method of the logger, and get_logger() returns the logger."
+        return Cause("attribute-missing", text).fixed_by(at(scene.crash.where, f".{name}(", f".get_logger().{name}("))
     if name == "publish":
         return Cause("node-publishes", "A node has no method publish. Call publish on the publisher instead.")
     return _misspelt(scene, name, {*ros_names.NODE, *_members(scene, own)}) or Cause(

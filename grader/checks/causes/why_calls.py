@@ -119,9 +119,21 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
         return Cause(
             "string-and-number", "A string and a number cannot be added. Use an f-string to put a number into a string."
         )
+    if "'NoneType' object does not support the context manager" in text:
+        return _after_shutdown(scene)
     if "Expected QoSProfile or int" in text:
         return Cause("queue-size", "The last argument is the queue size, a whole number.")
     return None
+
+
+def _after_shutdown(scene: CrashScene) -> Cause | None:
+    """Return the cause if an earlier line of the same function calls rclpy.shutdown, else None."""
+    calls = (node for node in scene.nodes if isinstance(node, ast.Call) and node.lineno < scene.line)
+    ended = [node for node in calls if (dotted(node.func) or "").rpartition(".")[2] in ("shutdown", "try_shutdown")]
+    if not ended or scene.function_around(ended[-1]) is not scene.function:
+        return None
+    text = "ROS 2 ends with this call of shutdown, so nothing after it can spin or publish."
+    return Cause("crash", text, scene.at(ended[-1]))
 
 
 def _too_few(scene: CrashScene, function: str, names: str) -> Cause:

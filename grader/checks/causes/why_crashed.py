@@ -25,13 +25,27 @@ def _always(diagnosis: Diagnosis) -> Callable[[CrashScene], Cause]:
     return lambda scene: Cause(diagnosis, scene.crash.meaning)
 
 
+TOPIC_RULES = {
+    "must not end with": "A topic name must not end with a slash.",
+    "repeated": "A topic name must not have two slashes in a row.",
+    "start with a number": "No part of a topic name may begin with a digit.",
+    "must not be empty": "A topic name must not be empty.",
+}
+"""Part of rclpy's message about a topic name -> the rule."""
+
+
+def _why_no_topic(scene: CrashScene) -> Cause:
+    rules = (rule for words, rule in TOPIC_RULES.items() if words in scene.crash.message)
+    return Cause("topic-name-invalid", next(rules, scene.crash.meaning))
+
+
 EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "AssertionError": why_field,
     "AttributeError": why_no_attribute,
     "EOFError": _always("needs-stdin"),
     "ImportError": why_no_import,
     "InvalidNodeNameException": _always("node-name-invalid"),
-    "InvalidTopicNameException": _always("topic-name-invalid"),
+    "InvalidTopicNameException": _why_no_topic,
     "ModuleNotFoundError": why_no_import,
     "NameError": why_no_name,
     "NotInitializedException": _always("no-init"),

@@ -25,11 +25,32 @@ def why_ended(evidence: Evidence) -> Cause:
         return bare
     if not any(code.calls(name) for name in SPINS):
         return Cause("no-spin", "rclpy.spin keeps a node running, but it is never called.", evidence.place("init"))
-    if not code.calls("spin") and code.calls("spin_once") and not _loops(evidence):
+    if not code.calls("spin") and code.calls("spin_once") and not loops(evidence):
         text = "rclpy.spin_once handles one event and returns. rclpy.spin continues until Ctrl-C."
         return Cause("spin-once", text, evidence.place("spin_once"))
+    returned = _returns_before_spin(evidence)
+    if returned is not None:
+        return returned
     ended: Diagnosis = "ends-at-once" if ended_at_start(evidence.recording) else "ended-early"
     return Cause(ended, "", evidence.place("spin", "init"))
+
+
+def _returns_before_spin(evidence: Evidence) -> Cause | None:
+    """Return the cause if a function returns unconditionally before it calls rclpy.spin, else None."""
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if not isinstance(node, ast.FunctionDef):
+                continue
+            lines = [each.lineno for each in node.body if isinstance(each, ast.Return)]
+            spins = [each.lineno for each in ast.walk(node) if isinstance(each, ast.Call) and _is_spin(each)]
+            if lines and spins and min(lines) < min(spins):
+                text = f"{node.name} returns here, before it calls rclpy.spin."
+                return Cause("ends-at-once", text, Where(module.file, min(lines)))
+    return None
+
+
+def _is_spin(call: ast.Call) -> bool:
+    return (dotted(call.func) or "").rpartition(".")[2] == "spin"
 
 
 def why_no_node(evidence: Evidence) -> Cause:
@@ -63,5 +84,6 @@ def _is_node(of: ast.ClassDef) -> bool:
     return any((dotted(base) or "").rpartition(".")[2] == "Node" for base in of.bases)
 
 
-def _loops(evidence: Evidence) -> bool:
+def loops(evidence: Evidence) -> bool:
+    """Return whether the code of the node has a loop."""
     return any(isinstance(node, ast.While | ast.For) for module in evidence.code.modules for node in module.nodes)

@@ -30,6 +30,8 @@ MEMBERS = {
     "random": frozenset(name for name in dir(random) if name.islower() and not name.startswith("_")),
 }
 """Module -> its names that learners use and often forget to prefix with the module."""
+TAKE_A_STRING = {"__init__": 0, "create_node": 0, "create_publisher": 1, "create_subscription": 1, "create_client": 1}
+"""Functions of rclpy that take the name of a node, a topic or a service, and the place of that argument."""
 CONSTANTS = {"true": "True", "false": "False", "none": "None", "null": "None", "TRUE": "True", "FALSE": "False"}
 
 
@@ -41,14 +43,19 @@ def why_no_name(scene: CrashScene) -> Cause | None:
     name = match["name"]
     return (
         _of_self(scene, name)
+        or _of_string(scene, name)
         or _of_import(scene, name)
         or _bound_elsewhere(scene, name)
         or _alike(scene, name)
-        or Cause(
-            "name-undefined",
-            "Nothing defines this name before this line. If it should be a string, it needs quotation marks.",
-        )
+        or _unknown(name)
     )
+
+
+def _unknown(name: str) -> Cause:
+    text = "Nothing defines this name before this line. If it should be a string, it needs quotation marks."
+    if name[:1].isupper():
+        text = "No class with this name is defined or imported."
+    return Cause("name-undefined", text)
 
 
 def _of_self(scene: CrashScene, name: str) -> Cause | None:
@@ -64,6 +71,17 @@ def _of_self(scene: CrashScene, name: str) -> Cause | None:
     return None
 
 
+def _of_string(scene: CrashScene, name: str) -> Cause | None:
+    """Return the cause if the name stands where rclpy takes a string: a node name or a topic."""
+    for function, place in TAKE_A_STRING.items():
+        for call in scene.calls_on_line(function):
+            given = call.args[place] if len(call.args) > place else None
+            if isinstance(given, ast.Name) and given.id == name:
+                text = f"Here {function} takes a string, and a string needs quotation marks."
+                return Cause("name-undefined", text).fixed_by(at(scene.at(given), name, f'"{name}"'))
+    return None
+
+
 def _is_called(scene: CrashScene, name: str) -> bool:
     return any(isinstance(call.func, ast.Name) for call in scene.calls_on_line(name))
 
@@ -71,6 +89,12 @@ def _is_called(scene: CrashScene, name: str) -> bool:
 def _of_import(scene: CrashScene, name: str) -> Cause | None:
     if name in ros_names.MODULE_OF:
         module = ros_names.MODULE_OF[name]
+        star = _star_import(scene, module)
+        if star is not None:
+            text = f"{name} is in the module {module}. This line imports from another module."
+            return Cause("import-wrong-place", text, scene.at(star)).fixed_by(
+                at(scene.at(star), f"from {star.module} ", f"from {module} ")
+            )
         text = f"The file does not import {name}. It is in the module {module}."
         return Cause("missing-import", text).fixed_by(_import(scene, f"from {module} import {name}"))
     if name in WELL_KNOWN:
@@ -84,6 +108,16 @@ def _of_import(scene: CrashScene, name: str) -> Cause | None:
             if module != "rclpy":
                 text = f"The file does not import {name}. It is in the module {module}."
                 return Cause("missing-import", text).fixed_by(_import(scene, f"from {module} import {name}"))
+    return None
+
+
+def _star_import(scene: CrashScene, module: str) -> ast.ImportFrom | None:
+    """Return the line that imports everything from the package of this module instead of from the module, or None."""
+    for node in scene.nodes:
+        if isinstance(node, ast.ImportFrom) and node.module and node.names[0].name == "*":
+            same_package = node.module.partition(".")[0] == module.partition(".")[0]
+            if same_package and node.module != module:
+                return node
     return None
 
 

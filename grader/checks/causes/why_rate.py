@@ -6,6 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.common.words import a_list
 from grader.submission.constants import dotted, number
 from grader.submission.where import Where
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 OFTEN = 0.5
 """In a loop without a pause, the mean interval is less than this fraction of the expected period."""
+SEVERAL = 0.1
+"""Several calls in a row explain a rate if the number of messages per period differs by less than this share."""
 FRAME_S = 0.016
 """The duration of a frame of turtlesim (s). turtlesim publishes the pose once per frame."""
 
@@ -29,6 +32,10 @@ def why_often(evidence: Evidence, call: str, mean_s: float, period_s: float) -> 
             busy = isinstance(node, ast.While) and _calls(node, call) and not _calls(node, "sleep", "spin_once")
             if busy and mean_s < OFTEN * period_s:
                 return Cause("loop-without-pause", f"This loop calls {call} without a pause.", where)
+    for timer in evidence.code.calls("create_timer"):
+        if number(timer.argument(0, "timer_period_sec"), timer.module.names) == 0.0:
+            text = "The period of this timer is 0 s, so it calls its method without a pause."
+            return Cause("timer-period", text, timer.where)
     if abs(mean_s - FRAME_S) > 0.1 * FRAME_S:
         return None
     for module, name in callbacks_of(evidence):
@@ -76,6 +83,22 @@ def why_sleep_in_callback(evidence: Evidence) -> Cause | None:
         return None
     text = "While a method sleeps, nothing else in the node runs, not even its timer."
     return Cause("sleep-in-callback", text, found[1])
+
+
+def why_several_calls(evidence: Evidence, call: str, mean_s: float, period_s: float) -> Cause | None:
+    """Return the cause if one function calls `call` in as many lines as there are messages per period, else None."""
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.FunctionDef):
+                lines = sorted(
+                    each.lineno
+                    for each in ast.walk(node)
+                    if isinstance(each, ast.Call) and getattr(each.func, "attr", "") == call
+                )
+                if len(lines) > 1 and abs(period_s / mean_s - len(lines)) <= SEVERAL * len(lines):
+                    text = f"{node.name} calls {call} {len(lines)} times, in lines {a_list(list(map(str, lines)))}."
+                    return Cause("wrong-rate", text, Where(module.file, lines[-1]))
+    return None
 
 
 def _length(sleep: Call) -> float | None:

@@ -83,6 +83,11 @@ def _stuck(evidence: Evidence) -> Cause | None:
             if method.name == "__init__" and isinstance(node, ast.While) and ast.unparse(node.test) in ALWAYS:
                 text = "__init__ loops forever, so rclpy.spin is never reached. A timer repeats without a loop."
                 return Cause("blocks-in-init", text, where)
+            if method.name == "__init__" and isinstance(node, ast.Call) and dotted(node.func) == "rclpy.spin":
+                text = "rclpy.spin returns only after Ctrl-C, so the lines after it in __init__ do not run before that."
+                return Cause("blocks-in-init", text, where)
+            if method.name == "__init__" and isinstance(node, ast.While) and _only_waits(node):
+                return Cause("blocks-in-init", "This loop in __init__ may never end, so that nothing spins.", where)
             if method.name in callbacks and _waits_inside(node):
                 text = "This callback waits for a response, but rclpy.spin cannot receive it while the callback waits."
                 return Cause("waits-in-callback", text, where)
@@ -100,6 +105,31 @@ def _waits(node: ast.AST, module: Module) -> Cause | None:
     guess = nearest(f"/{name.strip('/')}", ros_names.SERVICES)
     more = f" There is {guess}." if guess else ""
     return Cause("service-not-there", f"The node waits for the service {shorten(name)}, which does not exist.{more}")
+
+
+def hidden_error(evidence: Evidence, call: str) -> Cause | None:
+    """Return the cause if `call` is in a try whose except catches every error and says nothing, else None."""
+    for module in evidence.code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.Try) and any(_calls(each, call) for each in node.body):
+                for handler in node.handlers:
+                    catches_all = handler.type is None or dotted(handler.type) in ("Exception", "BaseException")
+                    if catches_all and not any(isinstance(each, ast.Call | ast.Raise) for each in ast.walk(handler)):
+                        text = f"This except hides every error. An error before {call} may be the reason."
+                        return Cause("never-publishes", text, Where(module.file, handler.lineno))
+    return None
+
+
+def _calls(node: ast.AST, name: str) -> bool:
+    return any(isinstance(each, ast.Call) and getattr(each.func, "attr", "") == name for each in ast.walk(node))
+
+
+def _only_waits(loop: ast.While) -> bool:
+    """Return whether the body of a loop does nothing but wait."""
+    calls = [each.value for each in loop.body if isinstance(each, ast.Expr)]
+    return all(isinstance(each, ast.Pass | ast.Expr) for each in loop.body) and all(
+        isinstance(call, ast.Call) and getattr(call.func, "attr", "") == "sleep" for call in calls
+    )
 
 
 def _waits_inside(node: ast.AST) -> bool:

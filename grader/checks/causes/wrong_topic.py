@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.edit import at
 from grader.common.words import nearest
-from grader.submission.constants import written
+from grader.submission.constants import evaluate, written
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
 
 
-def why_topic(wanted: str, topic: str) -> Cause:
-    """Return the cause of a wrong topic name, as far as the two names show it."""
+def why_topic(wanted: str, topic: str, evidence: Evidence) -> Cause:
+    """Return the cause of a wrong topic name, as far as the two names and the source show it."""
     last = wanted.rpartition("/")[2]
     if topic == f"/{last}":
         return Cause(
@@ -25,7 +25,7 @@ def why_topic(wanted: str, topic: str) -> Cause:
         )
     if topic.lower() == wanted.lower():
         return Cause("topic-capitals", "Upper and lower case matter.")
-    if topic.endswith(wanted):
+    if topic.endswith(wanted) and not _is_absolute(evidence, topic):
         return Cause(
             "topic-namespace",
             "The node adds its namespace to the name. A name that starts with a slash stays as it is.",
@@ -35,6 +35,12 @@ def why_topic(wanted: str, topic: str) -> Cause:
     return Cause(
         "wrong-topic", "The topic name is the second argument of create_publisher. Compare it letter by letter."
     )
+
+
+def _is_absolute(evidence: Evidence, topic: str) -> bool:
+    """Return whether the source has this whole name, so that no namespace was added to it."""
+    calls = evidence.code.calls("create_publisher")
+    return any(evaluate(call.argument(1, "topic"), call.module.names) == topic for call in calls)
 
 
 def right_name(evidence: Evidence, maker: str, topic: str, wanted: str) -> tuple[Edit, ...]:

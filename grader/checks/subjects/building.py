@@ -15,6 +15,7 @@ from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.package_xml import why_not_read
 from grader.common.words import a_list, shorten
 from grader.submission.code import import_path
+from grader.submission.package_xml import line_of
 from grader.submission.search import IGNORE_MARKER
 from grader.submission.where import Where
 
@@ -63,7 +64,7 @@ def builds(evidence: Evidence, _: NoParams) -> Finding:
     if build.out_of is not None:
         observed = f"`colcon build` used all the {shorten(build.out_of, 40)} that a package may use."
         return failed(observed, EXPECTED, Cause("build-limit", "setup.py should only call setup().", Where("setup.py")))
-    if build.exit_code != 0:
+    if build.exit_code != 0 or build.package is None:
         return _broken(evidence)
     return _modules(evidence)
 
@@ -103,15 +104,27 @@ def _broken(evidence: Evidence) -> Finding:
     if UNREAD_SETUP in build.log:
         observed = "colcon could not read the arguments of setup() in setup.py."
         cause = "setup.py should only call setup(). It must not print anything or exit."
-        return failed(observed, EXPECTED, Cause("setup-py-output", cause, where))
+        printed = _line_of(evidence, r"^\s*(?:print|exit|quit|sys\.exit)\(")
+        return failed(observed, EXPECTED, Cause("setup-py-output", cause, printed or where))
     words = [line for line in LAST_WORDS.findall(build.log) if "CalledProcessError" not in line]
     message = f": {shorten(words[-1], 150)}" if words else f" (exit code {build.exit_code})"
     missing = NO_FILE.search(words[-1]) if words else None
     if missing is not None:
         cause = "data_files in setup.py names a file that does not exist in the package."
         diagnosis: Diagnosis = "package-xml-missing" if missing["file"] == "package.xml" else "data-file-missing"
-        return failed(f"`colcon build` failed{message}.", EXPECTED, Cause(diagnosis, cause, where))
+        last = missing["file"].rpartition("/")[2]
+        if last == setup.name != evidence.exercise.package:
+            cause += f" Its name comes from the package name {shorten(last)}."
+            where = Where("setup.py", setup.name_line)
+        named = _line_of(evidence, rf"['\"/]{re.escape(last)}['\"]", r"['\"]resource/")
+        return failed(f"`colcon build` failed{message}.", EXPECTED, Cause(diagnosis, cause, named or where))
     return failed(f"`colcon build` failed{message}.", EXPECTED, Cause("build-failed", _other_type(evidence), where))
+
+
+def _line_of(evidence: Evidence, *patterns: str) -> Where | None:
+    """Return the first line of setup.py that matches the first of the patterns found there, or None."""
+    line = line_of(evidence.submission.files["setup.py"], *patterns)
+    return None if line is None else Where("setup.py", line)
 
 
 def _other_type(evidence: Evidence) -> str:

@@ -85,6 +85,9 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
         text = "The braces are in the line as they are in the code. Only in an f-string do they stand for a value."
         where = evidence.place(*LEVELS)
         why = Cause("log-numbers", text, where).fixed_by(at(where, '("', '(f"'))
+    elif re.search(r"%[-+.\d]*[dfsi]|\{\}", line):
+        text = "A placeholder such as {} or %d is still in the line, so no value was put in its place."
+        why = Cause("log-numbers", text)
     elif re.fullmatch(pattern.pattern, line, re.IGNORECASE | re.ASCII):
         why = Cause("log-capitals", "Upper and lower case matter.")
     elif re.search(rf"{pattern.pattern}(?!\.?\d)", line, re.ASCII):  # (not only the first digits of a number)
@@ -136,8 +139,10 @@ def log_counter(evidence: Evidence, params: Counter) -> Finding:
     steps = [later - earlier for earlier, later in pairwise(numbers)]
     if not any(steps):
         observed = f"The number is always {numbers[0]:.0f}."
-        why = _thrown_away(evidence) or Cause(
-            "counter-stuck", "Store the counter as an attribute of self and increase it in every call.", where
+        why = (
+            _thrown_away(evidence)
+            or _set_again(evidence)
+            or Cause("counter-stuck", "Store the counter as an attribute of self and increase it in every call.", where)
         )
         return failed(observed, expected, why)
     if any(step != 1.0 for step in steps):
@@ -166,6 +171,25 @@ def _thrown_away(evidence: Evidence) -> Cause | None:
                 where = Where(module.file, node.lineno)
                 return Cause("counter-stuck", text, where).fixed_by(at(where, " + ", " += "))
     return None
+
+
+def _set_again(evidence: Evidence) -> Cause | None:
+    """Return the cause if the method that logs sets a name to a constant and raises it later, else None."""
+    for module in evidence.code.modules:
+        for method in (node for node in module.nodes if isinstance(node, ast.FunctionDef) and node.name != "__init__"):
+            inside = list(ast.walk(method))
+            raised = {ast.unparse(node.target) for node in inside if isinstance(node, ast.AugAssign)}
+            for node in inside:
+                if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
+                    names = raised & {ast.unparse(target) for target in node.targets}
+                    if names and any(isinstance(each, ast.Call) and _logs(each) for each in inside):
+                        text = f"{method.name} sets {shorten(names.pop())} to {ast.unparse(node.value)} in each call."
+                        return Cause("counter-stuck", text, Where(module.file, node.lineno))
+    return None
+
+
+def _logs(call: ast.Call) -> bool:
+    return isinstance(call.func, ast.Attribute) and call.func.attr in LEVELS
 
 
 LOG_LINES = Kind(

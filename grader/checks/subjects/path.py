@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.causes.crash import ended_early
+from grader.checks.causes.crash import crash_of, end_observed, ended_early
+from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.kind import Kind, NoParams, choice, number
 from grader.checks.outcome import Finding, Status, failed, passed
 from grader.checks.requested import Requested
@@ -30,6 +31,8 @@ STRAIGHT_RADIUS_M = 50.0
 """A larger circle than this looks straight on a canvas of 11 m."""
 LIVES_S = 1.0
 """How long one command moves a turtle."""
+LATE_S = 3.0
+"""If the first command comes later than this (s), a circle that is too short is explained by that."""
 MEANS = frozenset({"reset", "kill", "teleport_absolute", "teleport_relative", "rotate_absolute", "set_parameters"})
 """Calls that move a turtle, remove it or change how it moves. Calls for the pen and for other turtles are allowed."""
 POLYGON_SHARE = 0.6
@@ -108,10 +111,13 @@ def _no_circle(evidence: Evidence, trajectory: Trajectory, expected: str) -> Fin
     if trajectory.length_m <= MOVED_M:
         if trajectory.turned_rad > TURNED_RAD:
             cause = "linear.x is the forward speed. Without it the turtle only turns."
-            return failed(
-                "The turtle turned on the spot.", expected, Cause("turns-on-the-spot", cause, _line(evidence))
-            )
-        return failed("The turtle did not move.", expected, Cause("not-moving", _all_zero(evidence), _line(evidence)))
+            why = _replaced(evidence) or Cause("turns-on-the-spot", cause, _line(evidence))
+            return failed("The turtle turned on the spot.", expected, replace(why, diagnosis="turns-on-the-spot"))
+        crash = crash_of(evidence)
+        if crash is not None:
+            return crash_finding(evidence, crash, f"The turtle did not move. {end_observed(evidence)}", expected)
+        why = _replaced(evidence) or Cause("not-moving", _all_zero(evidence), _line(evidence))
+        return failed("The turtle did not move.", expected, why)
     if trajectory.wall.any():
         observed = f"The turtle ran into a wall after {_wall_s(trajectory):.1f} s."
         return failed(observed, expected, Cause("wall", _size(evidence), _line(evidence)))
@@ -184,7 +190,12 @@ def _too_short(evidence: Evidence, trajectory: Trajectory, turns: float, expecte
     early = ended_early(evidence)
     if early:
         return failed(observed, expected, Cause("ended-early", early, evidence.place("publish")), near_edge=near_edge)
-    if trajectory.rests:
+    if evidence.commands[0].t_s > LATE_S:
+        observed = (
+            f"The turtle drove {turns:.2f} of a turn; the first command arrived at {evidence.commands[0].t_s:.1f} s."
+        )
+        why = Cause("late-start", "A turtle that starts late has less time for the circle.")
+    elif trajectory.rests:
         observed = f"The turtle drove {turns:.2f} of a turn, with {count(trajectory.rests, 'stop')} on the way."
         why = Cause("stops-and-goes", "The turtle stops when no command arrives for 1 s.")
     elif activity.end_s(evidence.recording) - evidence.commands[-1].t_s > LIVES_S:
@@ -217,6 +228,15 @@ def _size(evidence: Evidence) -> str:
     return f"The radius is linear.x divided by angular.z: {shown(speed[0])} / {shown(speed[1])} = {shown(radius)} m."
 
 
+def _replaced(evidence: Evidence) -> Cause | None:
+    """Return the cause if some commands drive, but another one replaces each of them at once; else None."""
+    if not any(command.linear[0] for command in evidence.commands):
+        return None
+    publish = evidence.code.calls("publish")
+    text = "Some commands drive, but each of them is replaced at once: the turtle follows only the last command."
+    return Cause("not-moving", text, publish[-1].where if publish else _line(evidence))
+
+
 def _all_zero(evidence: Evidence) -> str:
     commands = evidence.commands
     zero = commands and not any(command.linear[0] or command.angular[2] for command in commands)
@@ -225,7 +245,10 @@ def _all_zero(evidence: Evidence) -> str:
 
 def _line(evidence: Evidence) -> Where | None:
     code = evidence.code
-    return code.assigned("angular", "z") or code.assigned("linear", "x") or evidence.place("Twist", "publish")
+    if len({command.angular for command in evidence.commands}) == 1 < len({each.linear for each in evidence.commands}):
+        return code.assigned("linear", "x") or evidence.place("Twist", "publish")
+    turns = (code.assigned("angular", axis) for axis in "zxy")
+    return next(filter(None, turns), None) or code.assigned("linear", "x") or evidence.place("Twist", "publish")
 
 
 def _wall_s(trajectory: Trajectory) -> float:

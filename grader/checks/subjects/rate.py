@@ -13,6 +13,7 @@ from grader.checks.causes.why_ended import why_ended
 from grader.checks.causes.why_rate import (
     why_often,
     why_publishers_grow,
+    why_several_calls,
     why_sleep_in_callback,
     why_timers_grow,
 )
@@ -177,6 +178,8 @@ def _few(evidence: Evidence, params: Rate, what: Subject, measured: Measured, ex
         return failed(observed, expected, slow)
     if amount == 1:
         cause = f"A timer calls a method again and again, so that {what.call} is called more than once."
+        if evidence.code.calls("create_timer") and evidence.code.calls("cancel"):
+            cause, where = "cancel stops the timer, so it does not call its method again.", evidence.place("cancel")
         return failed(observed, expected, Cause("published-once" if what is COMMAND else "logged-once", cause, where))
     return failed(
         observed,
@@ -226,6 +229,9 @@ def _why_mean(evidence: Evidence, what: Subject, mean: float, params: Rate) -> C
         length = constant(sleep.argument(0, "secs"), sleep.module.names)
         if length is not None and abs(length - mean) <= SAME * mean:
             return Cause("sleep-period", f"The node sleeps for {length:g} s between two {what.noun}s.", sleep.where)
+    several = why_several_calls(evidence, what.call, mean, 1.0 / params.rate_hz)
+    if several is not None:
+        return several
     if len(timers) > 1:
         return Cause(
             "several-timers",

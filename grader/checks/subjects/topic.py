@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
-from grader.checks.causes.why_ended import why_ended
-from grader.checks.causes.why_silent import why_nothing, why_qos
+from grader.checks.causes.why_ended import loops, why_ended
+from grader.checks.causes.why_silent import WAKES, hidden_error, why_nothing, why_qos
 from grader.checks.causes.wrong_topic import right_name, why_topic
 from grader.checks.kind import Kind, string
 from grader.checks.outcome import Finding, failed, passed
@@ -78,7 +78,7 @@ def _wrong_topic(evidence: Evidence, params: Topic, publishers: tuple[Endpoint, 
     guess = nearest(params.topic, topics)
     shown = [guess] if guess is not None else topics
     observed = f"The node publishes on {a_list([shorten(topic) for topic in shown])}, but no turtle subscribes to that."
-    why = why_topic(params.topic, shown[0])
+    why = why_topic(params.topic, shown[0], evidence)
     why = why.fixed_by(right_name(evidence, "create_publisher", shown[0], params.topic))
     return failed(observed, _expected(params), why.at(_publisher_line(evidence, shown[0])))
 
@@ -124,7 +124,9 @@ def _why_silent(evidence: Evidence) -> Cause:
     if why is not None:
         return why.at(code.start)
     text = "The line that publishes is never reached, or it runs only at the start, before a subscription is connected."
-    return Cause("never-publishes", text, evidence.place("publish"))
+    if not any(code.calls(name) for name in WAKES) and not loops(evidence):
+        text = "create_timer is never called, and there is no loop, so nothing publishes again and again."
+    return hidden_error(evidence, "publish") or Cause("never-publishes", text, evidence.place("publish"))
 
 
 def _publisher_line(evidence: Evidence, topic: str) -> Where | None:

@@ -48,6 +48,7 @@ class Made:
 
     name: str
     exercise: str
+    right: Mapping[str, str]
     files: Mapping[str, str]
     mistakes: tuple[tuple[Operator, Change], ...]
 
@@ -97,4 +98,4 @@ def make(right: Sequence[tuple[str, Package]], number: int, seed: int, operators
             if change is not None:
                 mistakes.append((operator, change))
         if len(mistakes) == amount:
-            return Made(f"{number:04}", exercise, mistakes[-1][1].files, tuple(mistakes))
+            return Made(f"{number:04}", exercise, package.files, mistakes[-1][1].files, tuple(mistakes))

@@ -62,7 +62,12 @@ OPERATORS = (
     _in_setup("entry-point-without-quotes", POINT, r"\g<name> = \g<folder>.\g<module>:\g<function>", "setup-py-syntax"),
     _in_setup("entry-point-comma", rf"({POINT}),(?=\s*[\"'])", r"\1", "entry-point-comma"),
     _in_setup("group-misspelt", r"console_scripts(?=[\"'] *:)", "console_script", "entry-point-group"),
-    _in_setup("setup-py-other-name", r"^package_name = .*$", 'package_name = "my_robot_controler"', "package-name"),
+    Operator(
+        "setup-py-other-name",
+        replace(r"^package_name = .*$", 'package_name = "my_robot_controler"', file=FILE),
+        frozenset({"package-name"}),
+        also=frozenset({"data-file-missing"}),
+    ),
     _in_setup("no-packages", r"packages=(?:find_packages\(.*\)|\[.*\])", "packages=[]", "nothing-installed"),
     _in_setup("marker-not-listed", r"^ *\(.*resource_index.*\),?$", "", "resource-marker"),
     _in_setup("package-xml-not-listed", r"^ *\(.*package\.xml.*\),?$", "", "package-xml-not-installed"),

@@ -105,7 +105,7 @@ OPERATORS = (
     _source(
         "super-without-parentheses", r"super\(\)\.__init__\(", "super.__init__(", "not-called", "super-init-missing"
     ),
-    _source("init-misspelt", r"def __init__\(self", "def _init_(self", "node-name-missing"),
+    _source("init-misspelt", r"def __init__\(self", "def _init_(self", "init-misspelt", "node-name-missing"),
     _source("node-name-with-space", r"(super\(\)\.__init__\([\"'])\w+", r"\1my node", "node-name-invalid"),
     _source("node-name-other", r"(super\(\)\.__init__\([\"'])\w+", r"\1my_node", "node-name"),
     _source("topic-with-space", r"[\"']/turtle1/\w+[\"']", '"/turtle1/cmd vel"', "topic-name-invalid"),

@@ -65,7 +65,7 @@ OPERATORS = (
     _source("quote-left-out", r"(?<=[\w.])([\"'])(?=[,)])", "", "quote-open"),
     _source("quote-typographic", r"\"(/?\w[\w/]*)\"", "\u201c\\1\u201d", "typographic-character"),
     _source("comma-left-out", r"(?<=\w), (?=[\"'])", " ", "comma-missing", *SYNTAX),
-    _source("comma-for-dot", r"(rclpy|self|msg)\.(?=\w+)", r"\1,", *SYNTAX, "equals"),
+    _source("comma-for-dot", r"(rclpy|self|msg)\.(?=\w+)", r"\1,", *SYNTAX, "equals", "missing-self"),
     _source("space-after-def-left-out", r"^( *)def (\w+\()", r"\1def\2", *SYNTAX),
     _source("two-equals", r"^( +self\.\w+) = ", r"\1 == ", "equals", "attribute-missing"),
     _source("ampersands", r"if (.*):$", r"if \1 && True:", *SYNTAX),

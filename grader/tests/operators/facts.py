@@ -1,0 +1,306 @@
+"""Whether a report names a mistake and says nothing false, judged without the tables of diagnoses.
+
+The only inputs are the difference between the correct and the wrong package, the source of the wrong package, and its
+recording. An outcome names the mistake if it points at a changed line and speaks of something that was changed there.
+A statement is false if it contradicts one of these facts. Each entry of FACTS recognises one form of sentence by a
+pattern and says whether it is true.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections import Counter
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from grader.evidence import activity
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from grader.checks.outcome import Outcome
+    from grader.evidence.evidence import Evidence
+    from grader.submission.where import Where
+
+WORD = re.compile(r"[A-Za-z_]\w*|\d+(?:\.\d+)?|[^\w\s]")
+COMMON = frozenset({"self", "msg", "my_robot_controller", "py", "def", "import", "from", "name", "node"})
+"""Words that are on so many lines that they identify nothing."""
+SIGNS = {
+    ":": "colon",
+    ",": "comma",
+    **dict.fromkeys("()[]{}", "parenthes|bracket|call"),
+    '"': "quot|string|special|typographic",
+    "'": "quot|string",
+    "\u201c": "character",
+    "\u201d": "character",
+    ".": "dot|module",
+    "=": "=|value|compare",
+    "#": "comment",
+    "-": "negative|sign|backwards|Line|two under",
+    "/": "slash|path|divided",
+    "<": "tag|comment|Git",
+    ">": "tag|comment|Git",
+    "&": "&|and|read",
+    "f": "f-string",
+}
+"""Changed sign -> a pattern for the words that may speak of it."""
+
+
+@dataclass(frozen=True)
+class Hunk:
+    """A changed place: lines of the correct package and those in their place, which begin at `line`.
+
+    `moved` is set if the whole file was removed or added.
+    """
+
+    file: str
+    old: tuple[str, ...]
+    new: tuple[str, ...]
+    line: int
+    moved: bool = False
+
+    def is_at(self, where: Where) -> bool:
+        """Whether a report that points there points at the change. What was removed can be pointed at nowhere."""
+        if self.moved or (where.file == self.file and not "".join(self.new).replace("pass", "").strip()):
+            return True
+        return where.file == self.file and (where.line is None or 0 <= where.line - self.line < len(self.new))
+
+    def is_in(self, text: str) -> bool:
+        """Whether a text speaks of the change."""
+        before, after = (Counter(WORD.findall("\n".join(lines))) for lines in (self.old, self.new))
+        words = {*(before - after), *(after - before)}
+        if self.moved:
+            return any(word in text for word in re.findall(r"\w{3,}", self.file))
+        if not words:  # only the indentation or the order was changed
+            return bool(re.search(r"indent|inside|outside|tabs|block|swapped|order|[Ll]ine", text))
+        around = {word for word in after if len(word) > 2} - COMMON
+        return any(_speaks_of(word, text) for word in words | around)
+
+
+def _speaks_of(word: str, text: str) -> bool:
+    if word in SIGNS:
+        return bool(re.search(SIGNS[word], text))
+    if word[0].isdigit():
+        return float(word) in {float(each) for each in re.findall(r"\d+(?:\.\d+)?", text)}
+    return bool(re.search(rf"(?<![A-Za-z]){re.escape(word)}(?![A-Za-z])", text))
+
+
+@dataclass(frozen=True)
+class Facts:
+    """A correct package, the wrong one that was made of it, and the evidence about the wrong one."""
+
+    right: Mapping[str, str]
+    wrong: Mapping[str, str]
+    evidence: Evidence
+
+    @cached_property
+    def changes(self) -> tuple[Hunk, ...]:
+        """The changed places."""
+        found: list[Hunk] = []
+        for path in sorted(self.right.keys() | self.wrong.keys()):
+            old, new = (files.get(path, "").split("\n") for files in (self.right, self.wrong))
+            moved = (path in self.right) != (path in self.wrong)
+            for tag, i, j, begin, end in difflib.SequenceMatcher(a=old, b=new, autojunk=False).get_opcodes():
+                if tag != "equal" or moved:
+                    found.append(Hunk(path, tuple(old[i:j]), tuple(new[begin:end]), begin + 1, moved))
+        return tuple(found)
+
+    @cached_property
+    def changed(self) -> frozenset[str]:
+        """The changed files."""
+        return frozenset(change.file for change in self.changes)
+
+    @cached_property
+    def words(self) -> tuple[Counter[str], Counter[str]]:
+        """The words and signs that were removed, and those that were added."""
+        both = [Counter[str](), Counter[str]()]
+        for path in self.changed:
+            for words, files, others in ((both[0], self.right, self.wrong), (both[1], self.wrong, self.right)):
+                words.update(Counter(WORD.findall(files.get(path, ""))) - Counter(WORD.findall(others.get(path, ""))))
+            if (path in self.right) != (path in self.wrong):
+                (both[0] if path in self.right else both[1]).update(re.findall(r"\w+", path))
+        return both[0], both[1]
+
+    @cached_property
+    def source(self) -> str:
+        """The Python files of the wrong node without comments."""
+        used = {module.file for module in self.evidence.code.modules}
+        files = (text for path, text in self.wrong.items() if path in used)
+        return "\n".join(re.sub(r"(?m)#.*$", "", text) for text in files)
+
+    def line(self, outcome: Outcome, number: int) -> str:
+        """The line with this number of the file that an outcome points at."""
+        where = outcome.finding.where
+        lines = self.wrong.get(where.file, "").splitlines() if where is not None else []
+        return lines[number - 1] if 0 < number <= len(lines) else ""
+
+    def names(self, outcome: Outcome) -> bool:
+        """Whether an outcome points at a change and speaks of what was changed there."""
+        where = outcome.finding.where
+        text = f"{outcome.finding.observed} {outcome.finding.cause}"
+        return where is not None and any(change.is_at(where) and change.is_in(text) for change in self.changes)
+
+    def false(self, outcome: Outcome) -> list[str]:
+        """The sentences of an outcome that contradict a fact."""
+        finding = outcome.finding
+        text = f"{finding.observed} {finding.cause}"
+        found = [
+            match[0]
+            for pattern, holds in FACTS.items()
+            for match in re.finditer(pattern, text)
+            if not holds(self, match, outcome)
+        ]
+        where = finding.where
+        if where is not None and (
+            where.file not in {*self.wrong, *self.right}
+            or (where.line or 1) > self.wrong.get(where.file, "").count("\n") + 1
+        ):
+            found.append(f"no such place: {where}")
+        return found
+
+
+def _is_right_word(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
+    """A suggested name stood in the correct package in the place of a changed one, or is a file that is there."""
+    parts = re.findall(r"\w+", match["word"])
+    there = any(path.endswith(f"{match['word'].replace('.', '/')}.py") for path in facts.wrong)
+    return there or any(part in facts.words[0] for part in parts)
+
+
+def _stands_in(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
+    return any(match["word"] in text for text in facts.wrong.values())
+
+
+def _never_called(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
+    name = match["word"].rpartition(".")[2]
+    return not re.search(rf"(?<!def )\b{name}\(", facts.source)
+
+
+def _is_named_nowhere(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
+    return not re.search(rf"(?<!def )\b{match['word']}\b", facts.source)
+
+
+def _on_line(facts: Facts, match: re.Match[str], outcome: Outcome) -> bool:
+    line = facts.line(outcome, int(match["line"]))
+    return re.search(rf"\b{match['word']}\b", line) is not None
+
+
+def _not_imported(facts: Facts, match: re.Match[str], outcome: Outcome) -> bool:
+    where = outcome.finding.where
+    text = facts.wrong.get(where.file, "") if where is not None else ""
+    return not re.search(rf"(?m)^\s*(?:from\s.*)?import\b.*\b{match['word']}\b|import \*", text)
+
+
+def _was_indentation(facts: Facts, _: re.Match[str], __: Outcome) -> bool:
+    return any(
+        [line.strip() for line in change.old] == [line.strip() for line in change.new] for change in facts.changes
+    )
+
+
+def _missing(signs: str) -> Callable[[Facts, re.Match[str], Outcome], bool]:
+    return lambda facts, _, __: any(facts.words[0][sign] for sign in signs)
+
+
+def _is_extra(facts: Facts, _: re.Match[str], __: Outcome) -> bool:
+    return any(facts.words[1][sign] or facts.words[0][sign] for sign in "()[]{}")
+
+
+def _swapped(facts: Facts, _: re.Match[str], outcome: Outcome) -> bool:
+    """The words of the pointed line, or of it and the next one, stand in the correct package in another order."""
+    where = outcome.finding.where
+    if where is None or where.line is None:
+        return False
+    old, new = (files.get(where.file, "").splitlines() for files in (facts.right, facts.wrong))
+    for size in (1, 2):
+        here = "\n".join(new[where.line - 1 : where.line - 1 + size])
+        there = ["\n".join(old[at : at + size]) for at in range(len(old))]
+        if any(each != here and Counter(WORD.findall(each)) == Counter(WORD.findall(here)) for each in there):
+            return True
+    return False
+
+
+def _timers(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
+    return len(re.findall(r"create_timer\(", facts.source)) == int(match["count"])
+
+
+def _attribute(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
+    word = match["word"]
+    return bool(re.search(rf"self\.{word}\b|def {word}\b", facts.source)) or word.startswith(
+        ("create_", "get_", "destroy_")
+    )
+
+
+def _commands(facts: Facts) -> list[float]:
+    recording = facts.evidence.recording
+    until = activity.end_s(recording)
+    return [command.t_s for command in recording.commands if activity.START_S < command.t_s < until]
+
+
+def _rate(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
+    if not match[0].startswith("Commands"):
+        return True
+    times = _commands(facts)
+    mean = (times[-1] - times[0]) / (len(times) - 1) if len(times) > 1 else math.inf
+    return abs(mean - float(match["number"])) <= max(0.006, 0.03 * mean)
+
+
+def _all_commands(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
+    recording = facts.evidence.recording
+    until = activity.end_s(recording)
+    sent = [command for command in recording.commands if command.t_s < until]
+    return len(sent) == int(match["count"]) and len({tuple(map(str, each.values)) for each in sent}) >= 1
+
+
+def _turned(facts: Facts) -> float:
+    theta = facts.evidence.recording.frames.theta
+    return float(sum(math.remainder(later - earlier, math.tau) for earlier, later in pairwise(theta)))
+
+
+def _direction(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
+    return (_turned(facts) < 0.0) == (match["word"] == "clockwise")
+
+
+def _went(facts: Facts) -> float:
+    frames = facts.evidence.recording.frames
+    return float(max(math.dist((x, y), (frames.x[0], frames.y[0])) for x, y in zip(frames.x, frames.y, strict=True)))
+
+
+def _ended(facts: Facts, _: re.Match[str], __: Outcome) -> bool:
+    return facts.evidence.recording.end.by == "itself"
+
+
+NAME = r"(?P<word>[A-Za-z_][\w.]*\w|\w)"
+FACTS: dict[str, Callable[[Facts, re.Match[str], Outcome], bool]] = {
+    rf"(?:There is|called) (?:a name |a module |a folder )?{NAME}\. (?:Compare|Upper)": _is_right_word,
+    rf"Did you mean {NAME}\?": _is_right_word,
+    rf"but there is {NAME}\.": _stands_in,
+    r'It declares "(?P<word>[^"]+)"': _stands_in,
+    rf"\b{NAME} is never called": _never_called,
+    rf"Nothing calls {NAME}": _is_named_nowhere,
+    rf"Line (?P<line>\d+) sets {NAME}": _on_line,
+    rf"self\.{NAME} is set in line (?P<line>\d+)": _on_line,
+    rf"\b{NAME} gets its value in line (?P<line>\d+)": _on_line,
+    rf"\b{NAME} is a local variable of \w+ \(line (?P<line>\d+)\)": _on_line,
+    rf"The file does not import (?:the module )?{NAME}": _not_imported,
+    r"outside the class|indented too far|is indented, so": _was_indentation,
+    r"[Aa] colon is missing": _missing(":"),
+    r"[Aa] comma is missing": _missing(","),
+    r"never closed": _missing(")]}"),
+    r"[Aa] quotation mark is missing": _missing("\"'"),
+    r"the parentheses are missing": _missing("("),
+    r"one closing bracket too many": _is_extra,
+    r"in this order|are swapped": _swapped,
+    r"There are (?P<count>\d+) timers": _timers,
+    rf"write self\.{NAME}": _attribute,
+    r"Commands arrived every (?P<number>[\d.]+) s": _rate,
+    r"All (?P<count>\d+) commands were": _all_commands,
+    r"drove the circle (?P<word>(?:counter-)?clockwise)": _direction,
+    r"The turtle (?:did not move|turned on the spot)": lambda facts, _, __: _went(facts) < 0.06,
+    r"The turtle never turns": lambda facts, _, __: abs(_turned(facts)) < 0.11,
+    r"ended by itself|crashed": _ended,
+    r"Nothing was built|The node was not run": lambda facts, _, __: facts.evidence.run.recording is None,
+}
+"""The form of a sentence -> whether it is true. `word`, `line`, `count` and `number` are what it speaks of."""
