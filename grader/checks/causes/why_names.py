@@ -54,7 +54,7 @@ def why_no_name(scene: CrashScene) -> Cause | None:
 def _unknown(name: str) -> Cause:
     text = "Nothing defines this name before this line. If it should be a string, it needs quotation marks."
     if name[:1].isupper():
-        text = "No class with this name is defined or imported."
+        text = "Nothing defines this name before this line, and nothing imports it."
     return Cause("name-undefined", text)
 
 

@@ -116,7 +116,8 @@ def _broken(evidence: Evidence) -> Finding:
         if last == setup.name != evidence.exercise.package:
             cause += f" Its name comes from the package name {shorten(last)}."
             where = Where("setup.py", setup.name_line)
-        named = _line_of(evidence, rf"['\"/]{re.escape(last)}['\"]", r"['\"]resource/")
+        marker = missing["file"].startswith("resource/")
+        named = _line_of(evidence, r"['\"]resource/" if marker else rf"['\"/]{re.escape(last)}['\"]")
         return failed(f"`colcon build` failed{message}.", EXPECTED, Cause(diagnosis, cause, named or where))
     return failed(f"`colcon build` failed{message}.", EXPECTED, Cause("build-failed", _other_type(evidence), where))
 

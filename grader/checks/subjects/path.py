@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -31,6 +32,8 @@ STRAIGHT_RADIUS_M = 50.0
 """A larger circle than this looks straight on a canvas of 11 m."""
 LIVES_S = 1.0
 """How long one command moves a turtle."""
+AT_ONCE_S = 0.05
+"""A command that another one follows within this time (s) has no effect."""
 LATE_S = 3.0
 """If the first command comes later than this (s), a circle that is too short is explained by that."""
 MEANS = frozenset({"reset", "kill", "teleport_absolute", "teleport_relative", "rotate_absolute", "set_parameters"})
@@ -230,7 +233,10 @@ def _size(evidence: Evidence) -> str:
 
 def _replaced(evidence: Evidence) -> Cause | None:
     """Return the cause if some commands drive, but another one replaces each of them at once; else None."""
-    if not any(command.linear[0] for command in evidence.commands):
+    commands = evidence.commands
+    after = {id(command): later for command, later in pairwise(commands)}
+    driving = [command for command in commands[:-1] if command.linear[0]]
+    if not driving or any(after[id(each)].linear[0] or after[id(each)].t_s - each.t_s > AT_ONCE_S for each in driving):
         return None
     publish = evidence.code.calls("publish")
     text = "Some commands drive, but each of them is replaced at once: the turtle follows only the last command."

@@ -61,7 +61,7 @@ NO_MARKER = "error: can't copy 'resource/my_robot_controller': doesn't exist or 
         ({}, replace(NOTHING, exit_code=1, log=SETUP_TRACEBACK), "setup-py-raises", "setup.py:5"),
         ({}, replace(NOTHING, exit_code=1, log=READ_BY_COLCON), "setup-py-raises", "setup.py:7"),
         ({}, replace(NOTHING, exit_code=1, log=UNREAD), "setup-py-output", "setup.py:5"),
-        ({}, replace(NOTHING, exit_code=1, log=NO_MARKER), "data-file-missing", "setup.py:5"),
+        ({}, replace(NOTHING, exit_code=1, log=NO_MARKER), "data-file-missing", "setup.py:9"),
         ({}, replace(NOTHING, exit_code=1, log="error: no such option"), "build-failed", "setup.py:5"),
         ({}, replace(NOTHING, exit_code=-9, timed_out=True, seconds=60.0), "build-timeout", "setup.py:5"),
         ({}, replace(NOTHING, exit_code=1, out_of="disk"), "build-limit", "setup.py"),
