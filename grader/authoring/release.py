@@ -167,7 +167,7 @@ def _read(folder: Path) -> tree.Tree:
 def main(arguments: list[str] | None = None) -> int:
     """Run the command. Return 1 if --check finds something out of date."""
     parser = argparse.ArgumentParser(
-        prog="python -m grader.authoring.release", description="Make exercises/ from solutions/."
+        prog="python -m grader.authoring.release", description="Create exercises/ from solutions/."
     )
     parser.add_argument("--check", action="store_true", help="change nothing, and fail if exercises/ is out of date")
     parser.add_argument("--root", type=Path, help="the folder that contains both (default: the course)")

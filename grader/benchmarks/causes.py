@@ -1,4 +1,4 @@
-"""How often a report names the true cause, and how often it says something false, for generated mistakes.
+"""Measure how often a report names the true cause of a generated mistake, and how often it says something false.
 
     python -m grader.benchmarks.causes [--count 200] [--seed 1] [--only OPERATOR ...] [--keep FOLDER]
 
@@ -201,13 +201,13 @@ def _explain(judged: Judged) -> None:
 def main() -> None:
     """Create the wrong packages, judge them, and print the result."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--count", type=int, default=200, help="how many wrong packages")
-    parser.add_argument("--seed", type=int, default=1, help="which ones")
+    parser.add_argument("--count", type=int, default=200, help="number of wrong packages to create")
+    parser.add_argument("--seed", type=int, default=1, help="seed for the choice of packages and mistakes")
     parser.add_argument("--only", nargs="*", default=[], help="names of operators (default: all)")
-    parser.add_argument("--keep", type=Path, help="a folder for the recordings")
-    parser.add_argument("--all", action="store_true", help="list all packages, also those that nothing was missed of")
-    parser.add_argument("--again", type=Path, help="a folder of recordings to judge again")
-    parser.add_argument("--workers", type=int, default=2, help="how many packages are judged at once")
+    parser.add_argument("--keep", type=Path, help="keep the recordings in this folder")
+    parser.add_argument("--all", action="store_true", help="list all packages, also those without a missed cause")
+    parser.add_argument("--again", type=Path, help="judge the recordings in this folder again, and run nothing")
+    parser.add_argument("--workers", type=int, default=2, help="number of packages judged in parallel")
     wanted = parser.parse_args()
     operators = [operator for operator in OPERATORS if not wanted.only or operator.name in wanted.only]
     with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(wanted.workers) as pool:

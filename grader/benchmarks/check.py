@@ -1,4 +1,4 @@
-"""What `grader check` costs in F, that is a bare colcon build of the package plus a bare process with one rclpy node.
+"""Measure the cost of `grader check` in F: a bare colcon build of the package plus a bare process with one rclpy node.
 
     python -m grader.benchmarks.check [--times N] [--submission FOLDER]
 
@@ -25,7 +25,7 @@ _GRADER = str(Path(sys.executable).with_name("grader"))
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
+    parser.add_argument("--times", type=int, default=5, help="number of measurements; their median is printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions/03-circle-publisher")
     arguments = parser.parse_args()
     costs: dict[str, list[Cost]] = {}

@@ -1,4 +1,4 @@
-"""What a class costs per submission, in F: on this machine for several sizes, and with Dask's workers.
+"""Measure the cost of a class per submission in F, for several class sizes and with Dask workers.
 
     python -m grader.benchmarks.grade [--sizes 25,50,100,200] [--workers 1,2,4] [--dask-size 50] [--jobs N]
                                       [--mix right|all] [--times N]
@@ -55,16 +55,19 @@ class ClassCost:
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--sizes", default="25,50,100,200", help="submissions in a class (25,50,100,200)")
-    parser.add_argument("--workers", default="1,2,4", help="Dask workers of one thread each (1,2,4); empty for none")
-    parser.add_argument("--dask-size", type=int, default=50, help="submissions in a class by Dask (50)")
+    parser.add_argument("--sizes", default="25,50,100,200", help="class sizes to measure (default: 25,50,100,200)")
+    parser.add_argument("--workers", default="1,2,4", help="numbers of Dask workers (default: 1,2,4); empty for none")
+    parser.add_argument("--dask-size", type=int, default=50, help="class size for Dask (default: 50)")
     parser.add_argument(
-        "--jobs", type=int, help="how many submissions are graded at once (default: as in `grader grade`)"
+        "--jobs", type=int, help="number of submissions graded in parallel (default: as in `grader grade`)"
     )
     parser.add_argument(
-        "--mix", choices=("all", "right"), default="all", help="which kinds of submissions are in the class"
+        "--mix",
+        choices=("all", "right"),
+        default="all",
+        help="right: only correct submissions; all: wrong and hostile ones, too",
     )
-    parser.add_argument("--times", type=int, default=3, help="repetitions of F before, and after (3)")
+    parser.add_argument("--times", type=int, default=3, help="number of measurements of F (default: 3)")
     arguments = parser.parse_args()
     sizes = [int(size) for size in arguments.sizes.split(",") if size]
     workers = [int(amount) for amount in arguments.workers.split(",") if amount]

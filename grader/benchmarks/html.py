@@ -1,4 +1,4 @@
-"""What the pages cost: the time to make one, in F; a browser's time to show it; a class of 200.
+"""Measure the time to create a page in F, the time to show it in a browser, and both for a class of 200.
 
     python -m grader.benchmarks.html [--times N] [--submission FOLDER]
 
@@ -53,7 +53,7 @@ print(time.perf_counter() - begun, Path(sys.argv[2]).stat().st_size)
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
+    parser.add_argument("--times", type=int, default=5, help="number of measurements; their median is printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions/03-circle-publisher")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""What a mistake costs: how soon the files alone show it, and how long the slowest one in simulated time takes, in F.
+"""Measure in F how soon the files alone show a mistake, and how long the slowest mistake in simulated time takes.
 
     python -m grader.benchmarks.mistakes [--only NNN ...]
 
@@ -44,7 +44,7 @@ CASES_A_PIECE = 10
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--only", nargs="*", default=[], help="numbers of cases (default: all)")
+    parser.add_argument("--only", nargs="*", default=[], help="numbers of the cases to measure (default: all)")
     arguments = parser.parse_args()
     cases = [case for case in read_cases(MISTAKES) if case.result != "usage"]
     cases = [case for case in cases if not arguments.only or case.name.startswith(tuple(arguments.only))]

@@ -1,4 +1,4 @@
-"""What autograde of a notebook costs, compared with its parts; and a class, compared with nbgrader alone.
+"""Measure the cost of autograding a notebook compared with its parts, and of a class compared with nbgrader alone.
 
     python -m grader.benchmarks.notebooks [--repeat N] [--class N]
 

@@ -1,4 +1,4 @@
-"""What it costs that a child process reads what a student wrote: the reading of one check, in children and without.
+"""Measure the cost of reading a submission in child processes, compared with reading it in the same process.
 
     python -m grader.benchmarks.reading [--times N] [--submission FOLDER]
 
@@ -39,7 +39,7 @@ _MOST_S = 0.04
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=20, help="repetitions; medians are printed")
+    parser.add_argument("--times", type=int, default=20, help="number of measurements; their median is printed")
     parser.add_argument("--submission", type=Path, default=course_folder().parent / "solutions/03-circle-publisher")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:

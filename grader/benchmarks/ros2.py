@@ -1,4 +1,4 @@
-"""What the command `ros2` costs: `topic list` beside a turtlesim, and `interface show`, compared with an rclpy node.
+"""Measure `ros2 topic list` with a running turtlesim, and `ros2 interface show`, compared with an rclpy node.
 
     python -m grader.benchmarks.ros2 [--times N]
 
@@ -31,7 +31,7 @@ AIM_S = {"topic list": 0.8, "interface show": 0.25}
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=40, help="repetitions (40)")
+    parser.add_argument("--times", type=int, default=40, help="number of measurements (default: 40)")
     times = parser.parse_args().times
     ros = underlay.with_turtlesim(installation.find_ros())
     with tempfile.TemporaryDirectory() as home:

@@ -1,4 +1,4 @@
-"""What the sandbox costs, in F: the same grading with the student's code in cells and without cells.
+"""Measure the cost of the sandbox in F: the same grading with the student's code in cells and without cells.
 
     python -m grader.benchmarks.sandbox [--times N] [--submission FOLDER]
 
@@ -39,7 +39,7 @@ sys.exit(report.exit_code)
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=5, help="repetitions; medians are printed")
+    parser.add_argument("--times", type=int, default=5, help="number of measurements; their median is printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _EXERCISE)
     arguments = parser.parse_args()
     bubblewrap.require()

@@ -1,4 +1,4 @@
-"""What the live view costs: frames per second, processor time, time from key to moved pixel, ten tabs and one tab.
+"""Measure the live view with one tab and with ten: frames per second, CPU time, and time from key to moved pixel.
 
     python -m grader.benchmarks.view [--seconds 10] [--keys 30]
 
@@ -70,8 +70,8 @@ class Cost:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--seconds", type=float, default=10.0, help="how long each measurement lasts")
-    parser.add_argument("--keys", type=int, default=30, help="how often a key is pressed")
+    parser.add_argument("--seconds", type=float, default=10.0, help="duration of each measurement")
+    parser.add_argument("--keys", type=int, default=30, help="number of key presses")
     options = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
         home = Path(folder)

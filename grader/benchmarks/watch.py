@@ -1,4 +1,4 @@
-"""What `grader watch` costs from save to verdict, in F: a bare colcon build plus a bare process with one rclpy node.
+"""Measure the time of `grader watch` from save to verdict in F: a bare colcon build plus a bare rclpy node.
 
     python -m grader.benchmarks.watch [--times N] [--submission FOLDER --exercise NAME --file PATH]
 
@@ -33,7 +33,7 @@ _REST_S = 2.0
 def main() -> None:
     """Measure everything and print the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--times", type=int, default=5, help="saves; medians are printed")
+    parser.add_argument("--times", type=int, default=5, help="number of saves; the median time is printed")
     parser.add_argument("--submission", type=Path, default=_ROOT / "solutions" / _STEP / "my_robot_controller")
     parser.add_argument("--exercise", default=_STEP)
     parser.add_argument("--file", default=_FILE, help="the file to save, relative to the submission")

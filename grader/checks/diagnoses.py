@@ -234,7 +234,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "wrong-side-first": "the first lobe goes to the wrong side",
         "lobe-not-round": "a lobe of the figure eight is not round",
         "lobe-radius": "a lobe of the figure eight has the wrong radius",
-        "lobe-angle": "a lobe of the figure eight is not closed, or goes on for too long",
+        "lobe-angle": "a lobe of the figure eight is not closed, or is too long",
         "lobe-gap": "the two lobes of the figure eight do not meet",
         "too-soon": "the first commands were published before the simulator was connected",
         "curves": "the sides of the square are curved",
@@ -247,7 +247,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "not-there": "the turtle does not reach the goal",
         "goes-on": "the turtle drives past the goal",
         "still-moving": "the turtle does not stop at the end",
-        "drives-on": "the turtle goes on after the figure is complete",
+        "drives-on": "the turtle continues after the figure is complete",
     },
     "Log lines": {
         "no-log": "the node does not call its logger",

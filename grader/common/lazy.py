@@ -3,7 +3,7 @@
 Use `from grader.common.lazy import np` in modules that many commands import but only a few commands use.
 
 A thread may be importing numpy while another one forks (grader/submission/reader.py). The child would then wait for
-ever for a module that nobody finishes. So whoever forks holds `IMPORTING` meanwhile.
+ever for a module that nobody finishes. So code that forks must hold `IMPORTING`.
 """
 
 from __future__ import annotations

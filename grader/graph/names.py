@@ -34,7 +34,7 @@ def nodes(node: Node, *, all_of_them: bool = False) -> list[str]:
 
 def add_wait(parser: argparse.ArgumentParser) -> None:
     """Add the discovery options of the real `ros2`. --no-daemon has no effect, since these verbs use no daemon."""
-    parser.add_argument("--no-daemon", action="store_true", help="as always here: there is no daemon")
+    parser.add_argument("--no-daemon", action="store_true", help="has no effect: the daemon is not used")
     parser.add_argument("--spin-time", type=float, metavar="S", help="wait at most this long for the graph")
 
 

@@ -165,7 +165,7 @@ def _turtlesim(env: Mapping[str, str], *, view: bool) -> Iterator[None]:
             while b"Spawning turtle" not in log.read_bytes():
                 if simulator.poll() is not None or time.monotonic() - begun > READY_S:
                     print(log.read_text("utf-8", "replace").rstrip(), file=sys.stderr)
-                    message = "turtlesim did not start. `grader doctor` looks at the machine."
+                    message = "turtlesim did not start. `grader doctor` checks the machine."
                     raise MachineError(message)
                 time.sleep(0.02)
             yield

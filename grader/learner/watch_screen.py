@@ -62,9 +62,9 @@ class _Screen:
         self._console = console
 
     def show(self, events: Events, notice: str) -> steps.Begun | None:
-        """Show verdicts until the learner quits or goes on. Return the step to continue with, or None to quit.
+        """Show verdicts until the learner quits or starts another step. Return this step, or None to quit.
 
-        The first verdict clears the screen. `told` is printed below it.
+        The first verdict clears the screen. `notice` is printed below it.
         """
         self._grade(notice)
         for happened in events:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 INSTEAD = {
     "launch": "Start each node in a terminal of its own with: ros2 run PACKAGE EXECUTABLE",
     "security": "The nodes of this course communicate only on this machine, so they need no keys.",
-    "hello": "The nodes of this course talk on this machine only; `ros2 doctor` looks at it.",
+    "hello": "The nodes of this course communicate only on this machine. Use: ros2 doctor",
     "load": "Start a node alone with: ros2 run PACKAGE EXECUTABLE",
     "unload": "End a node with Ctrl-C in its terminal.",
     "standalone": "Start a node alone with: ros2 run PACKAGE EXECUTABLE",

@@ -31,7 +31,7 @@ STAGES = {
 def main(arguments: list[str] | None = None) -> int:
     """Grade `solutions/03-circle-publisher`. Return 0, or the exit code of `grader check` if it is unexpected."""
     parser = argparse.ArgumentParser(description="Grade the solution of a step and say what to type next.")
-    parser.add_argument("--since", type=float, default=time.time(), help="when the command began, seconds since 1970")
+    parser.add_argument("--since", type=float, default=time.time(), help="time when the command began (s since 1970)")
     since = parser.parse_args(arguments).since
 
     image, report = FOLDER / f"{STEP}.png", FOLDER / f"{STEP}.json"

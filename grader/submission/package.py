@@ -38,7 +38,7 @@ class Submission:
     name: str
     """The name that the user gave."""
     package_dir: Path
-    """An absolute path, used for messages and for the name of the folder. What is graded is `files`."""
+    """An absolute path, used for messages and for the name of the folder. Only `files` are graded."""
     files: Mapping[str, bytes]
     rejected: tuple[str, ...]
     digest: str
@@ -134,7 +134,7 @@ def write_copy(submission: Submission, destination: Path) -> None:
         _make_folders(destination, made)
         for path, data in submission.files.items():
             if path.startswith("/") or posixpath.normpath(path) != path or path.split("/")[0] == "..":
-                message = f"{shown(path)} is no path inside a package."
+                message = f"{shown(path)} is not a path inside a package."
                 raise UsageError(message)
             target = destination / path
             _make_folders(target.parent, made)

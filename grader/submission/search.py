@@ -142,11 +142,11 @@ def _for_a_file(name: str) -> str:
     folder = Path(name).resolve().parent
     for above in (folder, *list(folder.parents)[:2]):
         if any((above / file).is_file() for file in PACKAGE_FILES):
-            return f"What is graded is the whole package, so give its folder: {shown(str(above))}."
+            return f"The grader grades whole packages. Give the folder of the package: {shown(str(above))}."
     if name.lower().endswith((".zip", ".tar", ".tar.gz", ".tgz")):
         return "Unpack it, and give the folder of the package."
     if name.endswith(".py"):
-        return "What is graded is the package that it belongs to: give the folder with package.xml in it."
+        return "The grader grades whole packages. Give the folder with package.xml in it."
     return GIVE
 
 

@@ -19,7 +19,7 @@ def main() -> int:
     parser.add_argument("kind", choices=("page", "terminal"))
     parser.add_argument("--feed", type=int, required=True, help="the socket to the simulator")
     parser.add_argument("--listen", type=int, help="the socket to serve the page on")
-    parser.add_argument("--before", action="store_true", help="a tab from the last run may still be open")
+    parser.add_argument("--before", action="store_true", help="whether a tab from the last run may still be open")
     parser.add_argument("--said", type=int, help="a pipe with the output of the simulator")
     options = parser.parse_args()
     feed = socket.socket(fileno=options.feed)

@@ -1,4 +1,4 @@
-"""What pages are told about the ROS graph: the drawn graph, and the table of topics with their rates."""
+"""The news about the ROS graph for pages: the drawn graph, and the table of topics with their rates."""
 
 from __future__ import annotations
 

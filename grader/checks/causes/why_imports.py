@@ -45,7 +45,7 @@ def _no_module(scene: CrashScene, name: str) -> Cause:
         return Cause("module-missing", f"{NOT_HERE[top]} This grader does not have it, so it cannot run this node.")
     files = scene.evidence.submission.files
     if f"{top}.py" in files:
-        text = f"{top}.py is beside setup.py, so it is not installed. It belongs in the folder with the other modules."
+        text = f"{top}.py is next to setup.py, so it is not installed. It belongs in the folder with the other modules."
         return Cause("sibling-import", text)
     beside = next((path for path in sorted(files) if path.endswith(f"/{top}.py")), None)
     if beside is not None:

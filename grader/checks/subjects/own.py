@@ -107,7 +107,7 @@ def own_rate(evidence: Evidence, params: OwnRate) -> Finding:
 
 
 def _requested(evidence: Evidence, params: OwnCircle) -> Requested | None:
-    """The student's own circle; none where the numbers cannot be read."""
+    """The student's own circle; None if the numbers cannot be read."""
     own = own_circle_params(evidence, params)
     return requested_circle(evidence, own) if isinstance(own, CircleParams) else None
 

@@ -161,7 +161,7 @@ def _drives_on(evidence: Evidence, params: Square, sides: Sides, sign: float, ex
     else:
         return no_standstill(evidence, expected)
     if silent_while_moving(evidence):
-        cause = f"The last command is not 0, and without a new one the turtle goes on for a second. {ZEROS}"
+        cause = f"The last command is not 0, so the turtle continues for one second. {ZEROS}"
     return failed(observed, "After four sides, the turtle stands still.", Cause("drives-on", cause, where))
 
 

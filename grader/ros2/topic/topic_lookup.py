@@ -42,7 +42,7 @@ def find(node: Node, topic: str, args: argparse.Namespace) -> None:
 
 
 def type_of(node: Node, topic: str, requested: str) -> Any | None:  # noqa: ANN401
-    """Return the class of a topic's messages, or None if there is no such topic. `asked` is the name that was typed.
+    """Return the class of a topic's messages, or None if there is no such topic. `requested` is what was typed.
 
     Raises:
         Ros2Error: nodes disagree about the type of the topic, or the type is not installed.

@@ -43,7 +43,7 @@ LIMIT_S = 60
 
 @dataclass(frozen=True)
 class Material:
-    """A case and what it is judged from; `seen` is Evidence of the checks that were imported first."""
+    """A case and what it is judged from; `observed` is Evidence of the checks that were imported first."""
 
     name: str
     case: Case

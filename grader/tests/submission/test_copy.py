@@ -46,7 +46,7 @@ def test_a_copy_is_the_submission_again(package: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", ["../out", "/tmp/out", "a/../../out", "a//b", "./a", ""])
 def test_a_copy_stays_in_its_folder(tmp_path: Path, path: str) -> None:
     submission = Submission("x", tmp_path, {path: b""}, (), "")
-    with pytest.raises(UsageError, match="no path inside a package"):
+    with pytest.raises(UsageError, match="not a path inside a package"):
         write_copy(submission, tmp_path / "copy")
     assert not (tmp_path / "out").exists()
 

@@ -81,7 +81,7 @@ def test_a_path_through_a_file_is_no_folder(package: Path) -> None:
 def test_a_node_file_is_answered_with_its_package(package: Path) -> None:
     message = refused(package / "pkg" / "node.py")
     assert "node.py is a file" in message
-    assert message.endswith(f"give its folder: {package.resolve()}.")
+    assert message.endswith(f"Give the folder of the package: {package.resolve()}.")
 
 
 def test_an_archive_is_to_be_unpacked(tmp_path: Path) -> None:
