@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from grader.common.lazy import np
 from grader.evidence import activity
 from grader.evidence.circle_fit import Circle, fit_circle, turns_about
+from grader.evidence.interventions import MOVING, first_driven
+from grader.trial.recording import Pose
 
 if TYPE_CHECKING:
     from grader.trial.recording import Floats, Recording
@@ -95,13 +97,27 @@ class Trajectory:
         return int((np.diff(busy) > 1).sum()) if len(busy) else 0
 
 
+def driven_from(recording: Recording) -> Pose:
+    """Return where the turtle was before the first command. Only a call of the submission can have moved it there."""
+    before, frames = _before_driving(recording), recording.frames
+    if not before:
+        return recording.start
+    return Pose(float(frames.x[before - 1]), float(frames.y[before - 1]), float(frames.theta[before - 1]))
+
+
+def _before_driving(recording: Recording) -> int:
+    """Return the number of frames before the first command if a call may have moved the turtle in them, else 0."""
+    return first_driven(recording) if MOVING & set(recording.interventions) else 0
+
+
 def trajectory_of(recording: Recording) -> Trajectory:
     """Return the trajectory of the turtle from its start up to SIGINT."""
-    frames = recording.frames
+    frames, start = recording.frames, driven_from(recording)
     until = frames.t_s <= activity.end_s(recording)
-    x = np.append(recording.start.x, frames.x[until])
-    y = np.append(recording.start.y, frames.y[until])
+    until[: _before_driving(recording)] = False
+    x = np.append(start.x, frames.x[until])
+    y = np.append(start.y, frames.y[until])
     with np.errstate(invalid="ignore"):  # `finite` checks for NaN and infinity
-        heading = np.append(recording.start.theta, frames.theta[until])
+        heading = np.append(start.theta, frames.theta[until])
         turn = np.mod(np.diff(heading) + np.pi, 2.0 * np.pi) - np.pi
         return Trajectory(x, y, frames.t_s[until], turn, frames.wall[until])

@@ -17,6 +17,8 @@ from grader.checks.tolerance import Band
 from grader.common.words import count, shorten
 from grader.common.words import number as shown
 from grader.evidence import activity
+from grader.evidence.interventions import moved_by
+from grader.evidence.trajectory import driven_from
 
 if TYPE_CHECKING:
     from grader.evidence.circle_fit import Circle
@@ -36,8 +38,6 @@ AT_ONCE_S = 0.05
 """A command that another one follows within this time (s) has no effect."""
 LATE_S = 3.0
 """If the first command comes later than this (s), a circle that is too short is explained by that."""
-MEANS = frozenset({"reset", "kill", "teleport_absolute", "teleport_relative", "rotate_absolute", "set_parameters"})
-"""Calls that move a turtle, remove it or change how it moves. Calls for the pen and for other turtles are allowed."""
 POLYGON_SHARE = 0.6
 """If a larger share of the trajectory than this is straight, the message describes sides and corners."""
 
@@ -84,9 +84,12 @@ def circle(evidence: Evidence, params: CircleParams) -> Finding:
     return _no_circle(evidence, trajectory, expected) or _measured(evidence, params, trajectory, expected)
 
 
-def moved_otherwise(evidence: Evidence, expected: str) -> Finding | None:
-    """Return a failed finding if something other than velocity commands moved the turtle, else None."""
-    means = next((each for each in evidence.recording.interventions if each in MEANS), None)
+def moved_otherwise(evidence: Evidence, expected: str, *, from_start: bool = False) -> Finding | None:
+    """Return a failed finding if something other than velocity commands moved the turtle, else None.
+
+    With `from_start`, what happened before the first command counts, too.
+    """
+    means = moved_by(evidence.recording, from_start=from_start)
     if means is None:
         return None
     observed = f"Something other than a velocity command moved the turtle: {shorten(means)}."
@@ -96,7 +99,7 @@ def moved_otherwise(evidence: Evidence, expected: str) -> Finding | None:
 
 def not_driven(evidence: Evidence, expected: str, where: Where | None) -> Finding | None:
     """Return a failed finding if the turtle did not drive, or if something other than commands moved it, else None."""
-    moved = moved_otherwise(evidence, expected)
+    moved = moved_otherwise(evidence, expected, from_start=True)
     if moved is not None or (evidence.trajectory.finite and evidence.trajectory.length_m > MOVED_M):
         return moved
     return failed("The turtle did not drive.", expected, Cause("not-moving", where=where))
@@ -136,7 +139,7 @@ def _measured(evidence: Evidence, params: CircleParams, trajectory: Trajectory, 
     fitted = trajectory.circle
     assert fitted is not None
     turns = trajectory.turns
-    centre = math.dist((fitted.x, fitted.y), expected_centre(evidence.recording.start, params))
+    centre = math.dist((fitted.x, fitted.y), expected_centre(driven_from(evidence.recording), params))
     round_, size = Band.at_most(params.residual_m), Band.around(params.radius_m, params.radius_tolerance_m)
     place, long = Band.at_most(params.centre_tolerance_m), Band.at_least(params.turns)
     if not round_.holds(fitted.rms):

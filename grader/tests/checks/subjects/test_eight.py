@@ -7,6 +7,7 @@ import pytest
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.eight import EIGHT
 from grader.tests.checks.made import NODE_FILE, TICK_S, every, evidence, found, legs, recording
+from grader.tests.checks.shapes import teleported
 from grader.trial.recording import Pose
 
 TICKS = 40
@@ -108,7 +109,7 @@ def test_either_side_may_come_first_where_the_exercise_allows_it() -> None:
 
 
 def test_a_trajectory_that_was_driven_by_other_means_is_none() -> None:
-    moved = recording(legs(lobe(1), lobe(-1)), interventions=("teleport_absolute",))
+    moved = teleported(recording(legs(lobe(1), lobe(-1))))
     assert found(EIGHT, evidence(moved), radius_m=1.0).diagnosis == "intervention"
     assert found(EIGHT, evidence(recording(every(0.5, math.nan, 1.0))), radius_m=1.0).status is Status.FAILED
 

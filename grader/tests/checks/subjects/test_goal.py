@@ -7,6 +7,7 @@ import pytest
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.goal import GOAL
 from grader.tests.checks.made import NODE_FILE, TICK_S, evidence, found, legs, recording
+from grader.tests.checks.shapes import teleported
 from grader.trial.recording import Pose
 
 Leg = tuple[int, float, float]
@@ -81,7 +82,7 @@ def test_a_turtle_at_the_wall_learns_about_angles() -> None:
 
 
 def test_a_turtle_that_was_put_there_has_not_driven() -> None:
-    moved = recording(legs(ahead(4.0)), START, interventions=("teleport_absolute",))
+    moved = teleported(recording(legs(ahead(4.0)), START), at_s=0.0)
     assert found(GOAL, evidence(moved), x_m=7.0, y_m=5.0).diagnosis == "intervention"
 
 

@@ -7,6 +7,7 @@ import pytest
 from grader.checks.outcome import Finding, Status
 from grader.checks.subjects.square import SQUARE
 from grader.tests.checks.made import NODE_FILE, TICK_S, evidence, found, legs, recording, submission
+from grader.tests.checks.shapes import teleported
 from grader.trial.recording import Pose
 
 TICKS = 10
@@ -97,7 +98,7 @@ def test_clockwise_is_right_where_the_exercise_allows_it() -> None:
 
 
 def test_a_trajectory_that_was_driven_by_other_means_is_none() -> None:
-    moved = recording(legs(*round_()), interventions=("teleport_relative",))
+    moved = teleported(recording(legs(*round_())), name="teleport_relative")
     assert found(SQUARE, evidence(moved), side_m=2.0).diagnosis == "intervention"
 
 
