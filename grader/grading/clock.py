@@ -8,7 +8,8 @@ The rules, in the order in which they are applied:
    (grader.trial.clues).
 3. A trial in simulated time stops at the first sign that the node follows wall time after all: a thread sleeps,
    commands arrive while the clock is held, or the node never becomes idle (grader.trial.simulated). Wall time decides
-   then.
+   then. But if several threads kept the node from becoming idle, this may have happened by chance, so the trial in
+   simulated time is repeated once before.
 4. Wall time also decides if a measured value is near the edge of its tolerance, or if the node did not stop.
 5. If a trial in wall time fails while other programs use the processors, it is repeated without any other grading at
    the same time. A busy machine can make a correct node look wrong, but it cannot make a wrong node look correct. So
@@ -91,6 +92,11 @@ def first_clock(choice: ClockChoice, evidence: Evidence) -> Clock:
 def stops_at_doubt(choice: ClockChoice) -> bool:
     """Return whether a trial in simulated time stops as soon as the node may follow wall time (rule 3)."""
     return choice == "auto"
+
+
+def repeats(doubt: WallTimeNeeded) -> bool:
+    """Return whether the first trial that stopped at this doubt is repeated in simulated time (rule 3)."""
+    return doubt.by_chance
 
 
 def after_doubt(doubt: WallTimeNeeded) -> Clock:

@@ -102,7 +102,7 @@ class Trials:
         """Run the trial with its clock, and repeat it in wall time if wall time must decide."""
         if clock.name == "simulated":
             try:
-                attempt = self._run(evidence, trial, clock, settled)
+                attempt = self._run_simulated(evidence, trial, clock, settled)
             except WallTimeNeeded as doubt:
                 wall = policy.after_doubt(doubt)
             else:
@@ -121,6 +121,20 @@ class Trials:
             with self._turns.alone(), self._trial(evidence, wall.name) as again:
                 attempts.append(self._run(evidence, again, wall, settled))
         return policy.that_counts(attempts)
+
+    def _run_simulated(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:
+        """Run the trial in simulated time, and once more if it stopped at a doubt by chance.
+
+        Raises:
+            WallTimeNeeded: wall time must decide.
+        """
+        try:
+            return self._run(evidence, trial, clock, settled)
+        except WallTimeNeeded as doubt:
+            if not policy.repeats(doubt):
+                raise
+        with self._trial(evidence, clock.name) as again:
+            return self._run(evidence, again, clock, settled)
 
     def _run(self, evidence: Evidence, trial: Runs, clock: Clock, settled: Mapping[str, Finding]) -> Attempt:
         duration_s = evidence.trial.scenario.duration_s

@@ -3,8 +3,9 @@
 The process runs in a room (grader.sandbox), and the student's node runs in a cell. The process exchanges JSON lines
 with the grader's own process over its standard streams. The first line of input describes the trial. The answer is
 {"ready": true} when the simulator and the launcher are ready. The second line of input says what to start, and the
-install tree follows it. The last line of output is {"recording": {...}}, {"doubt": "..."} if the other clock must
-decide, {"overwhelmed": "..."} if the node brought the simulator down, or {"fault": "..."} if the machine is at fault.
+install tree follows it. The last line of output is {"recording": {...}}, {"doubt": "...", "by_chance": false} if the
+other clock must decide, {"overwhelmed": "..."} if the node brought the simulator down, or {"fault": "..."} if the
+machine is at fault.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ def main() -> None:
     try:
         _conduct(order, answers)
     except DoubtError as doubt:
-        _say(answers, {"doubt": str(doubt)})
+        _say(answers, {"doubt": str(doubt), "by_chance": doubt.by_chance})
     except LaunchError as error:
         _say(answers, {"fault": f"The node's process could not be started: {error}"})
     except Overwhelmed as error:

@@ -16,6 +16,8 @@ HANDSHAKE_S = 100.0
 TICK_CPU_S = 1.0
 """If a node works longer than this on one frame, it counts as never idle (s of CPU time)."""
 TICK_S = 30.0
+SHARED = 0.1
+"""If a second thread did at least this share of the work, several threads kept the node from becoming idle."""
 REQUEST_EVERY_S = 0.02
 """The interval at which its CPU time is checked (s)."""
 
@@ -55,6 +57,7 @@ class TickPatience:
     def __init__(self, node: Threads, now_s: float) -> None:
         self._node = node
         self._cpu_s: float | None = None
+        self._before_s: dict[int, float] = {}
         self._deadline_s = now_s + TICK_S
         self._request_s = now_s + REQUEST_EVERY_S
 
@@ -65,4 +68,14 @@ class TickPatience:
         self._request_s = now_s + REQUEST_EVERY_S
         if self._cpu_s is None:
             self._cpu_s = self._node.run_time_s()
+            self._before_s = self._node.run_times_s()
         return now_s > self._deadline_s or self._node.run_time_s() - self._cpu_s > TICK_CPU_S
+
+    def several_worked(self) -> bool:
+        """Return whether several threads of the program shared the work, so that it was not one loop without a pause.
+
+        The threads of rclpy's MultiThreadedExecutor do so by chance: until a thread begins a callback, the executor
+        submits the same callback again and again, and each time wakes a thread.
+        """
+        worked_s = sorted(at_s - self._before_s.get(tid, 0.0) for tid, at_s in self._node.run_times_s().items())
+        return len(worked_s) > 1 and worked_s[-2] >= SHARED * sum(worked_s)

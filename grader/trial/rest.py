@@ -9,6 +9,7 @@ Otherwise, more looks are needed.
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,7 +43,14 @@ class GoneError(Exception):
 
 
 class DoubtError(Exception):
-    """The process may follow wall time, so the fact that it is idle means nothing. The message says why."""
+    """The process may follow wall time, so the fact that it is idle means nothing. The message says why.
+
+    `by_chance` is true if another run of the same program may not raise it.
+    """
+
+    def __init__(self, why: str, *, by_chance: bool = False) -> None:
+        super().__init__(why)
+        self.by_chance = by_chance
 
 
 @dataclass(frozen=True)
@@ -153,6 +161,16 @@ class Threads:
     def run_time_s(self) -> float:
         """Return the CPU time that all threads have used so far (s)."""
         return sum(int(run.split()[0]) for run in self.look().runs) / 1e9
+
+    def run_times_s(self) -> dict[int, float]:
+        """Return the CPU time that each thread except those of Fast DDS has used so far (s), by thread id."""
+        self._refresh()
+        found = {}
+        for tid, (_, schedstat) in self._files.items():
+            if tid == self.pid or not_of_dds(self._names[tid]):
+                with suppress(ProcessLookupError):
+                    found[tid] = int(os.pread(schedstat, 64, 0).split()[0]) / 1e9
+        return found
 
     def waits(self) -> list[Wait]:
         """Return what each thread is waiting for now, except the threads of Fast DDS.

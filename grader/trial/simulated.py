@@ -107,11 +107,11 @@ class SimulatedTrial(Simulation):
         self.lap("stop")
         return stopped_s
 
-    def _doubt(self, why: str) -> None:
+    def _doubt(self, why: str, *, by_chance: bool = False) -> None:
         if why not in self.doubts:
             self.doubts.append(why)
         if self._stop_at_doubt:
-            raise DoubtError(why)
+            raise DoubtError(why, by_chance=by_chance)
 
     def tick(self, now_s: float) -> None:
         """Run one frame and publish its time."""
@@ -169,7 +169,10 @@ class SimulatedTrial(Simulation):
         time.sleep(_POLL_S)  # the clock has just advanced, and a look is useless before the node wakes up
         while True:
             if not self._rest(patience):
-                self._doubt("the node never comes to rest: it works without waiting")
+                if patience.several_worked():
+                    self._doubt("the node never comes to rest: its threads keep waking each other up", by_chance=True)
+                else:
+                    self._doubt("the node never comes to rest: it works without waiting")
                 return
             # Our receiving threads have not run since the last time, so no new message has arrived.
             if self._received == self._handled:

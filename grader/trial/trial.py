@@ -64,7 +64,14 @@ def last_words(stderr: bytes) -> str:
 
 
 class WallTimeNeeded(Exception):  # noqa: N818 - not an error
-    """Simulated time may misjudge this node. The message says why."""
+    """Simulated time may misjudge this node. The message says why.
+
+    `by_chance` is true if another trial in simulated time may judge it.
+    """
+
+    def __init__(self, why: str, *, by_chance: bool = False) -> None:
+        super().__init__(why)
+        self.by_chance = by_chance
 
 
 class OverwhelmedError(Exception):
@@ -244,7 +251,7 @@ class Trial:
         line = self._process.stdout.readline(MOST_ANSWER)
         answer = json.loads(line) if line.endswith(b"\n") else {}
         if "doubt" in answer:
-            raise WallTimeNeeded(answer["doubt"])
+            raise WallTimeNeeded(answer["doubt"], by_chance=answer["by_chance"])
         if key in answer:
             return answer[key]
         if self._node_runs:

@@ -2,16 +2,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+import time
+from typing import cast
 
 import pytest
 
+from grader.tests.trial.program import python
+from grader.trial import patience
 from grader.trial.patience import TICK_S, HandshakePatience, TickPatience
-
-if TYPE_CHECKING:
-    from grader.trial.rest import Threads
+from grader.trial.rest import Threads
 
 LOOK_S = 0.5
+LOOPS = "print('ready', flush=True)\nwhile True: pass"
+PLAYS = """
+import threading
+one, other = threading.Event(), threading.Event()
+def play(mine, theirs):
+    while True:
+        mine.wait()
+        mine.clear()
+        theirs.set()
+threading.Thread(target=play, args=(one, other)).start()
+one.set()
+print("ready", flush=True)
+play(other, one)
+"""
 
 
 def waited(*, asleep: float, wrote: bool = False, share: float = 0.0) -> float:
@@ -53,6 +68,9 @@ class Worker:
     def run_time_s(self) -> float:
         return self._reported_s.pop(0)
 
+    def run_times_s(self) -> dict[int, float]:
+        return {}
+
 
 def test_a_node_that_works_on_at_one_instant_ends_patience() -> None:
     patience = TickPatience(cast("Threads", Worker(7.0, 7.0, 7.9, 8.1)), 0.0)
@@ -63,3 +81,15 @@ def test_a_node_that_works_on_at_one_instant_ends_patience() -> None:
 def test_whoever_only_wakes_and_sleeps_ends_it_by_time() -> None:
     patience = TickPatience(cast("Threads", Worker(7.0, 7.0, 7.0)), 0.0)
     assert [patience.ended(now_s) for now_s in (TICK_S - 1.0, TICK_S + 1.0)] == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("code", "several"), [(LOOPS, False), (PLAYS, True)], ids=["a loop", "threads wake each other"]
+)
+def test_threads_that_wake_each_other_are_no_loop(code: str, several: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(patience, "TICK_CPU_S", 0.1)
+    with python(code) as process:
+        node = TickPatience(Threads(process.pid), time.monotonic())
+        while not node.ended(time.monotonic()):
+            time.sleep(0.001)
+        assert node.several_worked() == several
