@@ -18,6 +18,7 @@ from grader.common.system_errors import refusal
 from grader.errors import GraderError
 from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
+from grader.open import cli as open_course
 from grader.setup import cli as setup
 from grader.view import cli as view
 
@@ -45,6 +46,7 @@ app = typer.Typer(
 LEARN, TEACH = learner.PANEL, classroom.PANEL
 # The learner's commands come first in --help.
 learner.add_to(app)
+open_course.add_to(app)
 
 
 class Clock(str, Enum):

@@ -43,7 +43,12 @@ def lesson_values(
 
 def contents_page(among: Sequence[Lesson], repository: str = "", policy: str = POLICY) -> str:
     """Return the page with all lessons."""
-    return fill("contents.html", _values(among, "", repository, policy), ASSETS)
+    return fill("contents.html", contents_values(among, repository, policy), ASSETS)
+
+
+def contents_values(among: Sequence[Lesson], repository: str = "", policy: str = POLICY) -> Mapping[str, object]:
+    """Return what the template of the page with all lessons needs."""
+    return _values(among, "", repository, policy)
 
 
 def _values(among: Sequence[Lesson], root: str, repository: str, policy: str) -> dict[str, object]:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from grader.book.lesson import Lesson
 
+VIEW_ASSETS = Path(__file__).parents[1] / "view/assets"
 FOLDER = "assets"
 """The folder of the style sheets and scripts in the book."""
 
@@ -44,7 +45,7 @@ def write_book(out: Path, repository: str = "") -> int:
 
 def assets() -> dict[str, Path]:
     """Return the style sheets, scripts and pictures that the pages load, by name; templates are left out."""
-    files = [REPORT_ASSETS / "page.css", *sorted(ASSETS.iterdir())]
+    files = [REPORT_ASSETS / "page.css", VIEW_ASSETS / "turtle.svg", *sorted(ASSETS.iterdir())]
     return {file.name: file for file in files if file.suffix in (".css", ".js", ".svg")}
 
 

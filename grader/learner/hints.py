@@ -40,10 +40,21 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     read = (*(each for each in known.read if each != index), index)
     progress.update(root, lambda before: before.with_step(exercise.id, replace(before.step(exercise.id), read=read)))
     place = f"{sum(each in read for each in wanted)} of {len(wanted)}"
-    return f"Hint {place}{_about(exercise, index, known)}: {_flowing(exercise.hints[index].text)}"
+    return f"Hint {place}{_about(exercise, index, known)}: {flowing(exercise.hints[index].text)}"
 
 
-def _flowing(text: str) -> str:
+def read_hints(exercise: Exercise, known: StepProgress) -> list[str]:
+    """Return the texts of the hints that were read, in the order in which they were read."""
+    return [flowing(exercise.hints[index].text) for index in known.read if index < len(exercise.hints)]
+
+
+def has_next(exercise: Exercise, known: StepProgress) -> bool:
+    """Return whether there is a hint that was not read and that is about something that is not done."""
+    index = _next(exercise, list(range(len(exercise.hints))), known)
+    return index is not None and index not in known.read
+
+
+def flowing(text: str) -> str:
     """Return the text without the line breaks of its file, because the width of the terminal may differ."""
     return "\n\n".join(" ".join(paragraph.split()) for paragraph in text.split("\n\n"))
 

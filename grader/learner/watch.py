@@ -20,9 +20,10 @@ from grader.submission.package import open_answers, open_submission
 from grader.trial.trial import Plan, Trial
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
+    from grader.checks.outcome import Outcome
     from grader.exercise.model import Exercise
     from grader.grading.options import Options
     from grader.ros.installation import Ros
@@ -82,6 +83,10 @@ class Events:
             if happened.kind == "saved":
                 self._saved.clear()
             yield happened
+
+    def press(self, key: str) -> None:
+        """Add a key press, as if it came from the keyboard. Any thread may call this."""
+        self._queue.put(Happened("key", key))
 
     def close(self) -> None:
         """Stop watching."""
@@ -146,8 +151,12 @@ class Watched:
         except UsageError as error:
             return str(error) != self._judged
 
-    def grade(self, tell: Callable[[str], None] = lambda _: None) -> Graded:
-        """Grade the current content of the folder.
+    def grade(
+        self,
+        tell: Callable[[str], None] = lambda _: None,
+        early: Callable[[Sequence[Outcome]], object] = lambda _: None,
+    ) -> Graded:
+        """Grade the current content of the folder. See `grader.grading.grade.grade` for `tell` and `early`.
 
         Raises:
             UsageError: there is no package in the folder.
@@ -160,7 +169,15 @@ class Watched:
         self._judged = submission.digest
         self._wanted = None
         try:
-            return grade(self.exercise, submission, self._options, tell, build=self.rebuild, trial=self._next_trial)
+            return grade(
+                self.exercise,
+                submission,
+                self._options,
+                tell,
+                early=early,
+                build=self.rebuild,
+                trial=self._next_trial,
+            )
         finally:
             self._warm_up()
 

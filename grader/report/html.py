@@ -22,7 +22,6 @@ from grader.report.verdict import UNCONFINED, tone, verdict
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
     from grader.checks.outcome import Outcome
@@ -95,7 +94,7 @@ def without_content(evidence: Evidence) -> Evidence:
 def _page(evidence: Evidence, report: Report) -> str:
     evidences = evidence.views()
     runs = runs_of(evidences)
-    shown = list(_shown(evidence, report))
+    shown = shown_checks(evidence, report)
     fault = evidence.fault.message if evidence.fault and not evidence.fault.unreadable else ""
     # A fault of the machine is shown only once, instead of with every check that could not be judged because of it.
     unmade = [check for check in shown if check.kind == "error" and check.outcome.finding.observed == fault]
@@ -114,11 +113,11 @@ def _page(evidence: Evidence, report: Report) -> str:
         "again": _again(report),
         "fault": fault,
     }
-    return make_page(TEMPLATE, "report.js", [run.data for run in runs], values)
+    return make_page(TEMPLATE, ("player.js", "report.js"), [run.data for run in runs], values)
 
 
-def _shown(evidence: Evidence, report: Report) -> Iterator[ShownCheck]:
-    """Yield every check. The same lines of code are shown only once."""
+def shown_checks(evidence: Evidence, report: Report) -> list[ShownCheck]:
+    """Return every check. The same lines of code are shown only once."""
     shown: list[ShownCheck] = []
     room = CODE_BYTES
     for number, outcome in enumerate(report.outcomes, 1):
@@ -129,7 +128,7 @@ def _shown(evidence: Evidence, report: Report) -> Iterator[ShownCheck]:
         if room < 0:
             code = None
         shown.append(ShownCheck(number, outcome, code, above))
-        yield shown[-1]
+    return shown
 
 
 def _again(report: Report) -> str:

@@ -212,7 +212,7 @@ def class_page(reports: ClassReports) -> str:
         "distribution": Markup(distribution(shares)) if shares else "",
         "caption": _in_words(shares),
     }
-    return make_page("class.html", "class.js", {}, values)
+    return make_page("class.html", ("class.js",), {}, values)
 
 
 def save_class_page(folder: Path, file: Path) -> None:

@@ -17,18 +17,18 @@ from grader.report.escaped_template import ASSETS, fill
 from grader.report.output_file import not_written
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
 
-def make_page(template: str, script: str, data: object, values: Mapping[str, object]) -> str:
-    """Return a page with the style sheet, a script and its data; `template` and `script` name files in assets/."""
-    style, code = _text("page.css"), _text(script)
+def make_page(template: str, scripts: Sequence[str], data: object, values: Mapping[str, object]) -> str:
+    """Return a page with the style sheet, scripts and their data; `template` and `scripts` name files in assets/."""
+    style, code = _text("page.css"), "".join(map(_text, scripts))
     policy = (
         f"default-src 'none'; style-src {_hash(style)}; script-src {_hash(code)}; img-src data:; base-uri 'none'; "
         "form-action 'none'; require-trusted-types-for 'script'; trusted-types 'none'"
     )
-    parts = {"policy": policy, "style": Markup(style), "script": Markup(code), "data": _json(data)}
+    parts = {"policy": policy, "style": Markup(style), "script": Markup(code), "data": script_json(data)}
     return fill(template, {**values, **parts})
 
 
@@ -48,7 +48,7 @@ def _hash(text: str) -> str:
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
-def _json(data: object) -> Markup:
+def script_json(data: object) -> Markup:
     """Return JSON in which no HTML parser can find the end of the script element."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     return Markup(text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"))

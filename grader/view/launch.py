@@ -61,13 +61,13 @@ class View:
             )
 
 
-def see_that_it_can_be_served() -> None:
-    """Raise MachineError if a library that serves the page is not installed."""
+def see_that_it_can_be_served(instead: str = "--view terminal works without it") -> None:
+    """Raise MachineError if a library that serves the page is not installed. `instead` says what else works."""
     missing = [name for name in _SERVED_WITH if find_spec(name) is None]
     if missing:
         message = (
             f"the page needs {', '.join(missing)}, which this Python does not have. `make demo` in the "
-            "course's folder installs it; --view terminal works without it."
+            f"course's folder installs it; {instead}."
         )
         raise MachineError(message)
 

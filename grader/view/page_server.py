@@ -67,16 +67,17 @@ def application(hub: Hub, controls: Controls, door: Door, index: str = "index.ht
         await _Page(socket, hub, controls).run()
 
     routes = [Route("/", file), Route("/{name}", file), WebSocketRoute("/live", live)]
-    return _Guard(Starlette(routes=routes))
+    return Guard(Starlette(routes=routes))
 
 
-class _Guard:
-    """Rejects forbidden requests, and adds the policy headers to every response."""
+class Guard:
+    """An application around another one: it rejects forbidden requests, and adds the policy to every response."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Handle a request as ASGI defines it."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return

@@ -33,6 +33,8 @@ _SETTINGS: dict[str, Any] = {
     "ws_max_size": 65536,
     "lifespan": "off",
     "timeout_graceful_shutdown": 1,
+    # More are refused, so that clients that never finish cannot use up the files of the process.
+    "limit_concurrency": 200,
 }
 
 
@@ -50,15 +52,17 @@ def in_loop(loop: asyncio.AbstractEventLoop, call: Callable[..., object], *argum
         loop.call_soon_threadsafe(call, *arguments)
 
 
-async def serve(place: Place, app: ASGIApp, door: Door, hub: Hub, ended: asyncio.Event, *, stays: bool) -> bool:
-    """Serve until `ended` is set; return whether the page could be opened in a browser.
+async def serve(
+    place: Place, app: ASGIApp, door: Door, hub: Hub, ended: asyncio.Event, *, stays: bool, opens: bool = True
+) -> bool:
+    """Serve until `ended` is set; return whether the page could be opened in a browser. It is opened if it `opens`.
 
     If it cannot be opened, return immediately, unless it `stays`: then the user opens its address elsewhere.
     """
     server = _Server(uvicorn.Config(app, **_SETTINGS))
     serving = asyncio.create_task(server.serve([place.listening]))
     ending = asyncio.create_task(ended.wait())
-    opening = asyncio.create_task(_open(place, door, hub))
+    opening = asyncio.create_task(_open(place, door, hub, opens=opens))
     try:
         opened = True
         if not stays:
@@ -72,8 +76,10 @@ async def serve(place: Place, app: ASGIApp, door: Door, hub: Hub, ended: asyncio
     return opened
 
 
-async def _open(place: Place, door: Door, hub: Hub) -> bool:
-    """Open the page if there is a browser, unless a tab from an earlier view reconnects."""
+async def _open(place: Place, door: Door, hub: Hub, *, opens: bool) -> bool:
+    """Open the page if there is a browser and it `opens`, unless a tab from an earlier view reconnects."""
+    if not opens:
+        return True
     for _ in range(_TIMES if place.before else 0):
         if hub.pages:
             return True

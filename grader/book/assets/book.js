@@ -6,11 +6,13 @@ import { addSearch } from "./search.js";
 
 const WIDE = "(min-width: 62rem)";
 
-// A wide screen has room for the lists of steps and sections; on a narrow one, the reader opens them.
+// A wide screen has room for the lists of steps and sections; on a narrow one, the reader opens them. Beside other
+// panes, there is room for the steps only.
 function unfold() {
+  const beside = document.body.classList.contains("desk");
   const wide = window.matchMedia(WIDE);
   const set = () => {
-    for (const each of document.querySelectorAll("details.fold")) each.open = wide.matches;
+    for (const each of document.querySelectorAll(beside ? ".steps details" : "details.fold")) each.open = wide.matches;
   };
   wide.addEventListener("change", set);
   set();

@@ -2,11 +2,22 @@
 
 const AGAIN_MS = 700;
 
+// The address of a page ends with # and the token.
+const inAddress = {
+  read: () => location.hash.slice(1),
+  keep: (token) => history.replaceState(null, "", `#${token}`),
+};
+
+// `path` is the connection's place on the server; `probe` is a file that the server has if it is the right one.
 export class Link {
-  constructor({ news, up, down }) {
+  constructor({ news, up, down, path = "/live", token = inAddress, probe = "/turtle.svg" }) {
     this.news = news;
     this.up = up;
     this.down = down;
+    this.path = path;
+    this.token = token;
+    this.probe = probe;
+    this.closed = false;
     this.socket = null;
     document.addEventListener("visibilitychange", () => this.wake());
     window.addEventListener("pageshow", () => this.wake());
@@ -17,8 +28,8 @@ export class Link {
   }
 
   open() {
-    const token = encodeURIComponent(location.hash.slice(1));
-    const socket = new WebSocket(`ws://${location.host}/live?token=${token}`);
+    const token = encodeURIComponent(this.token.read());
+    const socket = new WebSocket(`ws://${location.host}${this.path}?token=${token}`);
     this.socket = socket;
     let opened = false;
     socket.addEventListener("open", () => {
@@ -30,13 +41,20 @@ export class Link {
     socket.addEventListener("message", (event) => {
       const news = JSON.parse(event.data);
       // The page was opened with a code, which works only once: put the token into the address for the next time.
-      if (news.kind === "token") history.replaceState(null, "", `#${news.token}`);
+      if (news.kind === "token") this.token.keep(news.token);
       else this.news(news);
     });
     socket.addEventListener("close", async () => {
-      this.down(!opened && await refused());
-      setTimeout(() => this.open(), AGAIN_MS);
+      if (this.closed) return;
+      this.down(!opened && await refused(this.probe));
+      setTimeout(() => this.closed || this.open(), AGAIN_MS);
     });
+  }
+
+  // Close the connection for good.
+  close() {
+    this.closed = true;
+    this.socket.close();
   }
 
   // A hidden page gets no news, and everything at once when it is shown again.
@@ -53,9 +71,9 @@ export class Link {
 }
 
 // Whether the server is running, so that the address is wrong.
-async function refused() {
+async function refused(probe) {
   try {
-    return (await fetch("/turtle.svg", { cache: "no-store" })).ok;
+    return (await fetch(probe, { cache: "no-store" })).ok;
   } catch {
     return false;
   }

@@ -1,0 +1,81 @@
+// The state of the lesson's step: started or not, graded or not, and the buttons to start it.
+
+import { act } from "./requests.js";
+
+function paragraph(text, name = "") {
+  const made = document.createElement("p");
+  made.className = name;
+  made.textContent = text;
+  return made;
+}
+
+function button(text, click) {
+  const made = document.createElement("button");
+  made.type = "button";
+  made.className = "main-button";
+  made.textContent = text;
+  made.addEventListener("click", async () => {
+    made.disabled = true;
+    await click();
+    made.disabled = false;
+  });
+  return made;
+}
+
+// The lines that a package file needs for this step, which the learner has to add.
+function lacking({ file, lines }) {
+  const code = document.createElement("code");
+  code.textContent = lines.join("\n");
+  const block = document.createElement("pre");
+  block.tabIndex = 0;
+  block.append(code);
+  const box = document.createElement("div");
+  box.className = "box";
+  box.append(paragraph(`This step needs more lines in ${file}. Add to yours:`), block);
+  return box;
+}
+
+export class Task {
+  constructor(place, step) {
+    this.place = place;
+    this.step = step;
+    this.told = null;
+    this.more = [];
+  }
+
+  show(state) {
+    const step = state.steps.find((each) => each.id === this.step);
+    const here = state.exercise === this.step;
+    const text = JSON.stringify([step, here, here && state.folder, this.more]);
+    if (!step || text === this.told) return;
+    this.told = text;
+    const parts = [];
+    if (here) {
+      parts.push(paragraph("Edit these files in your own editor. Each save is graded:"), this.folder(state.folder));
+    } else if (step.state === "new") {
+      parts.push(paragraph("You can read the lesson first. When you start the step, its files are added to your workspace."),
+        button("Start this step", () => this.start()));
+    } else {
+      parts.push(paragraph(step.state === "passed" ? "You have passed this step." : "You have started this step."),
+        button("Grade this step", () => this.start()));
+    }
+    parts.push(...this.more);
+    this.place.replaceChildren(...parts);
+  }
+
+  folder(path) {
+    const link = document.createElement("a");
+    link.href = `vscode://file${path.split("/").map(encodeURIComponent).join("/")}`;
+    link.textContent = path;
+    const made = paragraph("", "folder");
+    made.append(link);
+    return made;
+  }
+
+  async start() {
+    const answer = await act("start", { step: this.step });
+    this.told = null;
+    this.more = answer.problem ? [paragraph(answer.problem, "box failed")] : (answer.lacking ?? []).map(lacking);
+    this.place.append(...this.more);
+  }
+}

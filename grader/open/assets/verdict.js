@@ -1,0 +1,47 @@
+// The verdict: its line, the checks that did not pass, and the trajectory with its player.
+
+import { update } from "./keyed.js";
+import { fragment } from "./requests.js";
+
+function adopted(element) {
+  return document.importNode(element, true);
+}
+
+export class Verdict {
+  constructor({ line, doing, details }) {
+    this.line = line;
+    this.doing = doing;
+    this.details = details;
+    this.number = null;
+    this.loading = null;
+  }
+
+  show(state) {
+    const text = state.problem || state.line;
+    const tone = state.problem ? "failed" : state.tone;
+    if (this.line.textContent !== text) this.line.textContent = text;
+    this.line.className = `verdict ${tone}`;
+    const doing = state.doing ? `${state.doing.replace(/\.$/, "")} …` : "";
+    if (this.doing.textContent !== doing) this.doing.textContent = doing;
+    if (state.number !== this.number) this.load(state);
+  }
+
+  async load(state) {
+    this.number = state.number;
+    const made = state.line && !state.problem ? await fragment("/verdict") : null;
+    // Another verdict may have come in the meantime.
+    if (this.number !== state.number) return;
+    const parts = made ? [...made.body.querySelectorAll("[data-key]")] : [];
+    const runs = made ? JSON.parse(made.getElementById("data").textContent) : [];
+    const data = (part) => part.dataset.key.startsWith("run-") ? runs[Number(part.dataset.key.slice(4)) - 1] : null;
+    update(this.details, parts.map((part) => ({
+      key: part.dataset.key,
+      text: part.outerHTML + JSON.stringify(data(part)),
+      make: () => {
+        const element = adopted(part);
+        if (data(part)) globalThis.replay(data(part), element.querySelector(".run"));
+        return element;
+      },
+    })));
+  }
+}

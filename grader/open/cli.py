@@ -1,0 +1,30 @@
+"""The command `grader open`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+PANEL = "Learn"
+Workspace = Annotated[
+    Optional[Path],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
+    typer.Option(help="Your colcon workspace. Default: $ROS2_WORKSPACE or ~/ros2_ws.", metavar="DIR"),
+]
+
+
+def add_to(app: typer.Typer) -> None:
+    """Add this command to `app`."""
+    app.command("open", rich_help_panel=PANEL, epilog="Example: grader open")(open_page)
+
+
+def open_page(
+    workspace: Workspace = None,
+    port: Annotated[Optional[int], typer.Option(help="Port of the page. Default: the same as the last time.")] = None,  # noqa: UP045
+    show: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in your browser.")] = True,
+) -> None:
+    """Learn on one page in the browser: the lesson, the verdict after each save, and a live turtle. Ctrl-C ends it."""
+    from grader.open.course_page import run
+
+    run(workspace, port, opens=show)

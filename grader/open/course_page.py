@@ -1,0 +1,134 @@
+"""`grader open` from start to end: the address, the process that serves the page, and the grading in this process."""
+
+from __future__ import annotations
+
+import getpass
+import json
+import os
+import signal
+import socket
+import subprocess
+from contextlib import closing, contextmanager, suppress
+from threading import Thread
+from typing import TYPE_CHECKING
+
+from grader.common.interpreter import interpreter
+from grader.errors import MachineError
+from grader.learner import progress
+from grader.learner.watch import Events
+from grader.open import grading
+from grader.open.desk import Content, Desk, page_data, to_json
+from grader.view.address import listen
+from grader.view.launch import see_that_it_can_be_served
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+    from types import FrameType
+
+    from grader.view.address import Place
+
+_ENDS_S = 5.0
+"""How long the server may take to end (s). Then it is killed."""
+
+
+def run(workspace: Path | None, port: int | None, *, opens: bool) -> None:
+    """Serve the page and grade, until Ctrl-C, SIGTERM, or the terminal is closed.
+
+    Raises:
+        UsageError: the port is not available.
+        MachineError: a library that the page needs is not installed, or the server has ended.
+    """
+    see_that_it_can_be_served("`grader watch` works without it")
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _interrupt)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    # A progress that cannot be read is reported here, not in the page.
+    page_data(Content(), progress.workspace_of(workspace))
+    place = listen("open", port)
+    try:
+        with (
+            place.listening,
+            closing(Events(None)) as events,
+            _page(place, workspace, opens=opens) as connection,
+        ):
+            print(f"Learn here: {place.address.url}", flush=True)
+            for line in elsewhere(place.address.port, os.environ):
+                print(line, flush=True)
+            print("It ends with Ctrl-C.", flush=True)
+            Thread(target=_pass_on, args=(connection, events), daemon=True).start()
+            with suppress(ConnectionError):
+                grading.run(Desk(lambda content: _send(connection, content)), events, workspace)
+            message = "The process that serves the page has ended. Type the command again."
+            raise MachineError(message)
+    except KeyboardInterrupt:
+        print()
+
+
+@contextmanager
+def _page(place: Place, workspace: Path | None, *, opens: bool) -> Iterator[socket.socket]:
+    """Start the process that serves the page; yields the connection to it. It ends when the connection is closed."""
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        given = {
+            "connection": theirs.fileno(),
+            "listening": place.listening.fileno(),
+            "before": place.before,
+            "workspace": str(workspace.absolute()) if workspace else None,
+            "opens": opens,
+        }
+        start = interpreter(
+            "-m",
+            "grader.open",
+            json.dumps(given),
+            env={**os.environ, "GRADER_VIEW_TOKEN": place.address.token},
+            searches=True,
+        )
+        process = subprocess.Popen(
+            start.argv,
+            env=start.env,
+            pass_fds=[theirs.fileno(), place.listening.fileno()],
+            stdin=subprocess.DEVNULL,
+            # Ctrl-C is meant for this process.
+            start_new_session=True,
+        )
+        theirs.close()
+        place.listening.close()
+        try:
+            yield ours
+        finally:
+            with suppress(OSError):
+                ours.shutdown(socket.SHUT_RDWR)
+            try:
+                process.wait(_ENDS_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+def _send(connection: socket.socket, content: Content) -> None:
+    connection.sendall(f"{to_json(content)}\n".encode())
+
+
+def _pass_on(connection: socket.socket, events: Events) -> None:
+    """Put each word from the page into the events, and end them when the server has ended."""
+    with suppress(OSError), connection.makefile("r", encoding="utf-8") as lines:
+        for line in lines:
+            events.press(line.strip())
+    events.close()
+
+
+def elsewhere(port: int, env: Mapping[str, str]) -> list[str]:
+    """Return the line that leads to the page from another machine, if this is a Codespace or an ssh session."""
+    if env.get("CODESPACES") == "true":
+        name = env.get("CODESPACE_NAME", "NAME")
+        return [f"On your own computer, type first: gh codespace ports forward {port}:{port} --codespace {name}"]
+    if "SSH_CONNECTION" in env:
+        server = (env["SSH_CONNECTION"].split()[2:3] or ["HOST"])[0]
+        forward = f"{port}:127.0.0.1:{port}"
+        return [f"On your own computer, type first: ssh -N -L {forward} {getpass.getuser()}@{server}"]
+    return []
+
+
+def _interrupt(_number: int, _frame: FrameType | None) -> None:
+    raise KeyboardInterrupt

@@ -1,0 +1,156 @@
+"""What the page shows beside the lesson, as data: the steps, the checks of the current step, the verdict, the hints."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING
+
+from grader.checks.exercises import find_exercise
+from grader.checks.outcome import Status
+from grader.exercise.model import catalogue
+from grader.learner import hints, progress
+from grader.report.html import ShownCheck
+from grader.report.verdict import tone, verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from grader.checks.outcome import Outcome
+    from grader.exercise.model import Exercise
+    from grader.report.report import Report
+
+OPEN = "open"
+"""The kind of a check that was not judged yet."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The last verdict: its checks by id, the line that sums it up, and the HTML of its details."""
+
+    checks: dict[str, dict[str, object]]
+    line: str
+    tone: str
+    html: str
+
+
+@dataclass(frozen=True)
+class Content:
+    """The changing content of the desk. `number` counts the verdicts. `doing` is what the grader does now, or empty."""
+
+    exercise: str = ""
+    folder: str = ""
+    doing: str = ""
+    problem: str = ""
+    number: int = 0
+    verdict: Verdict | None = None
+    early: dict[str, dict[str, object]] | None = None
+    """Checks that are already certain to fail, from the files alone, until the verdict comes."""
+
+
+class Desk:
+    """The content, which is passed to `show` after each change."""
+
+    def __init__(self, show: Callable[[Content], object]) -> None:
+        self._show = show
+        self._content = Content()
+
+    def begin(self, exercise: Exercise | None, folder: Path | None) -> None:
+        """Show another step, without a verdict yet; None if no step was started."""
+        name = exercise.id if exercise else ""
+        self._set(Content(exercise=name, folder=str(folder or ""), number=self._content.number + 1))
+
+    def tell(self, doing: str) -> None:
+        """Show what the grader does."""
+        self._set(replace(self._content, doing=doing))
+
+    def early(self, outcomes: Sequence[Outcome]) -> None:
+        """Show what is certain to fail, from the files alone."""
+        self._set(replace(self._content, early={each.id: _check(each) for each in outcomes}, problem=""))
+
+    def judged(self, report: Report, html: str) -> None:
+        """Show a verdict."""
+        checks = {outcome.id: _check(outcome) for outcome in report.outcomes}
+        self._set(self._final(verdict=Verdict(checks, verdict(report), tone(report), html)))
+
+    def failed(self, problem: str) -> None:
+        """Show why there is no verdict."""
+        self._set(self._final(problem=problem))
+
+    def _final(self, *, verdict: Verdict | None = None, problem: str = "") -> Content:
+        now = self._content
+        return Content(now.exercise, now.folder, "", problem, now.number + 1, verdict)
+
+    def _set(self, content: Content) -> None:
+        self._content = content
+        self._show(content)
+
+
+def to_json(content: Content) -> str:
+    """Return the content as one line of JSON."""
+    return json.dumps(asdict(content))
+
+
+def from_json(text: str | bytes) -> Content:
+    """Return the content that `to_json` has written."""
+    data = json.loads(text)
+    made = data["verdict"]
+    return Content(**{**data, "verdict": made and Verdict(**made)})
+
+
+def page_data(now: Content, workspace: Path) -> dict[str, object]:
+    """Return everything for a page: the content, and the learner's progress in the workspace."""
+    known = progress.load(workspace)
+    exercise = find_exercise(now.exercise) if now.exercise else None
+    step = known.step(now.exercise)
+    return {
+        "exercise": now.exercise,
+        "title": exercise.title if exercise else "",
+        "folder": now.folder,
+        "doing": now.doing,
+        "problem": now.problem,
+        "number": now.number,
+        "line": now.verdict.line if now.verdict else "",
+        "tone": now.verdict.tone if now.verdict else "",
+        "passed": now.verdict is not None and now.verdict.tone == "passed",
+        "checks": _checks(exercise, now) if exercise else [],
+        "hints": hints.read_hints(exercise, step) if exercise else [],
+        "more_hints": exercise is not None and hints.has_next(exercise, step),
+        "steps": [_step(name, known) for name in catalogue()],
+    }
+
+
+def _check(outcome: Outcome) -> dict[str, object]:
+    shown = ShownCheck(0, outcome)
+    return {
+        "id": outcome.id,
+        "title": shown.title,
+        "points": outcome.points,
+        "max": outcome.max,
+        "kind": shown.kind,
+        "text": shown.observed if outcome.status is not Status.PASSED else "",
+    }
+
+
+def _checks(exercise: Exercise, now: Content) -> list[dict[str, object]]:
+    """Return all checks of the exercise in order: failed from the files, or judged before, or not judged yet."""
+    judged = {**(now.verdict.checks if now.verdict else {}), **(now.early or {})}
+    return [
+        judged.get(spec.id)
+        or {
+            "id": spec.id,
+            "title": "Hidden check" if spec.hidden else spec.title,
+            "points": 0.0,
+            "max": spec.points,
+            "kind": OPEN,
+            "text": "",
+        }
+        for spec in exercise.checks
+    ]
+
+
+def _step(name: str, known: progress.Progress) -> dict[str, object]:
+    step = known.step(name)
+    state = "passed" if step.passed else "begun" if name in known.steps else "new"
+    return {"id": name, "state": state, "points": step.points, "max": step.max, "current": name == known.current}

@@ -1,0 +1,163 @@
+"""The server of the page: the lessons, the verdict, the news, and the actions, behind the guard of the view.
+
+Lessons are public text. Everything of the learner's needs the token: in a header, which no other site can send, or in
+the address of the connection for news, whose Origin the guard checks.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, RedirectResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocketDisconnect
+
+from grader.errors import GraderError
+from grader.view.guard import admitted
+from grader.view.page_server import Guard
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from starlette.requests import Request
+    from starlette.routing import BaseRoute
+    from starlette.types import ASGIApp
+    from starlette.websockets import WebSocket
+
+    from grader.open.desk import Content
+    from grader.open.lesson_pages import LessonPages
+    from grader.view.guard import Door
+    from grader.view.hub import Hub
+
+TOKEN = "x-course-token"
+"""The header with the token."""
+LARGEST = 4096
+"""The maximum size of the body of a request (bytes)."""
+PATIENCE_S = 5.0
+"""How long a page may take to send the body of a request (s)."""
+
+
+@dataclass(frozen=True)
+class DeskServer:
+    """What answers the requests.
+
+    `content` returns what the page shows now. `actions` are what a page can request; `more` are further routes.
+    """
+
+    content: Callable[[], Content]
+    hub: Hub
+    door: Door
+    pages: LessonPages
+    actions: Mapping[str, Callable[[Mapping[str, Any]], object]]
+    more: tuple[BaseRoute, ...] = ()
+
+    def application(self) -> ASGIApp:
+        """Return the application, protected by the guard."""
+        routes = [
+            Route("/", self._home),
+            Route("/verdict", self._verdict),
+            Route("/do/{name}", self._act, methods=["POST"]),
+            WebSocketRoute("/live", self._live),
+            *self.more,
+            Route("/{path:path}", self._page),
+        ]
+        return Guard(Starlette(routes=routes))
+
+    async def _home(self, _: Request) -> Response:
+        name = self.content().exercise
+        return RedirectResponse(f"/{name}/index.html" if name else "/index.html", 307)
+
+    async def _page(self, request: Request) -> Response:
+        found = await run_in_threadpool(self.pages.find, request.path_params["path"])
+        if found is None:
+            return PlainTextResponse("There is no such page.", 404)
+        return FileResponse(found) if isinstance(found, Path) else Response(found, media_type="text/html")
+
+    async def _verdict(self, request: Request) -> Response:
+        if not self._admits(request):
+            return _refused()
+        made = self.content().verdict
+        return Response(made.html if made else "", media_type="text/html")
+
+    async def _act(self, request: Request) -> Response:
+        if not self._admits(request):
+            return _refused()
+        action = self.actions.get(request.path_params["name"])
+        if action is None:
+            return JSONResponse({"problem": "There is no such action."}, 404)
+        try:
+            wanted = await asyncio.wait_for(_wanted(request), PATIENCE_S)
+            return JSONResponse(await run_in_threadpool(action, wanted))
+        except asyncio.TimeoutError:
+            return JSONResponse({"problem": "The request took too long."}, 408)
+        except OverflowError:
+            return JSONResponse({"problem": "The request is too large."}, 413)
+        except (ValueError, RecursionError):
+            return JSONResponse({"problem": "The request is not a JSON object."}, 400)
+        except GraderError as error:
+            return JSONResponse({"problem": str(error)}, 409)
+
+    async def _live(self, socket: WebSocket) -> None:
+        shown = socket.query_params.get("token", "")
+        if not self.door.opens(shown):
+            await socket.close(4403)
+            return
+        await socket.accept()
+        if shown != self.door.token:
+            await socket.send_text(json.dumps({"kind": "token", "token": self.door.token}))
+        await _follow(socket, self.hub)
+
+    def _admits(self, request: Request) -> bool:
+        return admitted(self.door.token, request.headers.get(TOKEN, ""))
+
+
+def _refused() -> Response:
+    return JSONResponse({"problem": "Open the address that grader open has printed."}, 403)
+
+
+async def _wanted(request: Request) -> dict[str, Any]:
+    """Return the JSON object in the body. Raises OverflowError if it is too large, ValueError if it is not one."""
+    body = b""
+    async for chunk in request.stream():
+        body += chunk
+        if len(body) > LARGEST:
+            raise OverflowError
+    wanted = json.loads(body or b"{}")
+    if not isinstance(wanted, dict):
+        raise ValueError  # noqa: TRY004 - answered like text that is not JSON
+    return wanted
+
+
+async def _follow(socket: WebSocket, hub: Hub) -> None:
+    """Send news to a page until it is closed. A hidden page gets no news."""
+    following: asyncio.Task[None] | None = asyncio.create_task(hub.follow(socket.send_text))
+    try:
+        while True:
+            text = await socket.receive_text()
+            awake = _awake(text)
+            if awake is True and following is None:
+                following = asyncio.create_task(hub.follow(socket.send_text))
+            elif awake is False and following is not None:
+                following.cancel()
+                following = None
+    except (WebSocketDisconnect, KeyError):
+        pass
+    finally:
+        if following is not None:
+            following.cancel()
+
+
+def _awake(text: str) -> bool | None:
+    """Return whether a page says that it is shown or hidden; None if it says something else."""
+    try:
+        said = json.loads(text) if len(text) <= LARGEST else {}
+    except (ValueError, RecursionError):
+        return None
+    awake = said.get("awake") if isinstance(said, dict) else None
+    return awake if isinstance(awake, bool) else None

@@ -1,0 +1,67 @@
+"""Grade the current step after each save, and show the verdict on the desk."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from typing import TYPE_CHECKING
+
+from grader.errors import GraderError
+from grader.grading.options import Options
+from grader.learner import steps
+from grader.learner.watch import Watched
+from grader.open.verdict_html import verdict_html
+from grader.sandbox import bubblewrap
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from grader.learner.watch import Events
+    from grader.open.desk import Desk
+
+RERUN, STEP = "rerun", "step"
+"""What a page requests: grade again, or the current step may be another one."""
+
+
+def run(desk: Desk, events: Events, workspace: Path | None) -> None:
+    """Grade after every save and request, until the events end."""
+    options = Options(in_cell=bubblewrap.usable())
+    current = steps.current(workspace)
+    while True:
+        desk.begin(*(current or (None, None)))
+        if current is None:
+            if not _await_step(events):
+                return
+        else:
+            exercise, folder = current
+            events.watch(folder)
+            with closing(Watched(exercise, folder, options)) as watched:
+                if not _grade_until_another(desk, events, watched, workspace):
+                    return
+        current = steps.current(workspace)
+
+
+def _await_step(events: Events) -> bool:
+    """Wait until a step may have been started. Return False at the end of the events."""
+    return any(happened.key == STEP for happened in events)
+
+
+def _grade_until_another(desk: Desk, events: Events, watched: Watched, workspace: Path | None) -> bool:
+    """Grade one step until another one is the current step. Return False at the end of the events."""
+    for happened in events:
+        if happened.key == STEP:
+            current = steps.current(workspace)
+            if current is None or (current[0].id, current[1]) != (watched.exercise.id, watched.folder):
+                return True
+        elif happened.key == RERUN or (happened.kind == "saved" and watched.changed()):
+            _grade(desk, watched, workspace)
+    return False
+
+
+def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
+    desk.tell("Reading")
+    try:
+        graded = watched.grade(desk.tell, desk.early)
+        steps.note(watched.exercise, watched.folder, graded.report, workspace)
+        desk.judged(graded.report, verdict_html(graded.evidence, graded.report, watched.folder))
+    except GraderError as error:
+        desk.failed(str(error))

@@ -1,0 +1,55 @@
+"""The details of a verdict as HTML for the page: the checks that did not pass, and the trajectory with its player."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from grader.errors import UnreadableError
+from grader.report.escaped_template import compiled, fill
+from grader.report.html import shown_checks, without_content
+from grader.report.html_page import script_json
+from grader.report.html_run import runs_of
+from grader.submission.reader import read
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from grader.evidence.evidence import Evidence
+    from grader.report.report import Report
+    from grader.submission.where import Where
+
+TEMPLATE = "verdict.html"
+
+
+def verdict_html(evidence: Evidence, report: Report, folder: Path) -> str:
+    """Return the HTML. `folder` is the package's folder: links open its files in VS Code.
+
+    If the output of the submission cannot be drawn, the HTML has no drawings.
+    """
+    compiled(TEMPLATE)
+    try:
+        return read(_html, evidence, report, folder)
+    except UnreadableError:
+        return _html(without_content(evidence), report, folder)
+
+
+def _html(evidence: Evidence, report: Report, folder: Path) -> str:
+    def opens(where: Where) -> str:
+        """Return the URL that opens the place in VS Code, or an empty string for a path out of the folder."""
+        file = folder / where.file
+        if not file.resolve().is_relative_to(folder.resolve()):
+            return ""
+        return f"vscode://file{quote(str(file))}" + (f":{where.line}" if where.line else "")
+
+    checks = shown_checks(evidence, report)
+    runs = runs_of(evidence.views())
+    fault = evidence.fault.message if evidence.fault and not evidence.fault.unreadable else ""
+    values = {
+        "to_fix": [each for each in checks if each.kind in ("failed", "error", "advice")],
+        "runs": runs,
+        "fault": fault,
+        "opens": opens,
+        "data": script_json([run.data for run in runs]),
+    }
+    return fill(TEMPLATE, values)

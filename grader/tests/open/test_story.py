@@ -1,0 +1,124 @@
+"""The story of step 03 in the page: from start to 100 points, with two mistakes on the way."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.tests.browser import violations
+from grader.tests.open.course import CIRCLE
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+    from grader.tests.open.course import Course
+
+
+def verdict(page: Page, text: str) -> None:
+    page.locator("#verdict-line").get_by_text(text).wait_for()
+
+
+def stays(page: Page, key: str) -> None:
+    """Mark an element, so that `stayed` can tell whether it was replaced."""
+    page.locator(f'[data-key="{key}"]').first.evaluate("each => { each.marked = true; }")
+
+
+def stayed(page: Page, key: str) -> bool:
+    return bool(page.locator(f'[data-key="{key}"]').first.evaluate("each => each.marked === true"))
+
+
+def test_the_story_of_step_03(learner: Course, browser: Browser) -> None:
+    page = learner.opened(browser)
+    problems: list[str] = []
+    page.on("console", lambda message: problems.append(message.text))
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    page.get_by_role("main").get_by_role("link", name="03 A node that draws a circle").click()
+
+    # A lesson can be read before its step is begun.
+    page.get_by_role("heading", name="Why programs talk through topics").wait_for()
+    page.get_by_role("button", name="Start this step").click()
+    verdict(page, "Not passed yet: 15 of 100 points")
+    assert learner.node.is_file()
+    page.get_by_role("article").filter(has_text="The node has no publisher.").wait_for()
+    assert page.locator("#checks li").count() > 10
+    assert page.locator("#checks li.passed").count() > 5
+
+    page.get_by_role("button", name="Hint").click()
+    page.locator("#hints li").get_by_text("Three things are missing").wait_for()
+
+    stays(page, "package-xml")
+    learner.save("2.0", "2")
+    verdict(page, "Not passed yet")
+    page.get_by_role("article").get_by_text("must be of type 'float'").first.wait_for()
+    link = page.get_by_role("article").get_by_role("link", name="draw_circle.py:").first
+    assert (link.get_attribute("href") or "").startswith(f"vscode://file{learner.workspace}")
+
+    learner.save("2.0", "3.0")
+    verdict(page, "50 of 100 points")
+    page.get_by_role("article").filter(has_text="The turtle drives a circle").get_by_text("radius").first.wait_for()
+    assert page.locator("#hints li").count() == 1
+    stays(page, "run-1")
+    # A save that changes nothing leaves the verdict in place, and so does a comment for what it does not touch.
+    learner.save("2.0", "3.0  # fast")
+    page.locator(".line.marked").get_by_text("# fast").first.wait_for()
+    assert stayed(page, "run-1")
+    assert stayed(page, "package-xml")
+
+    learner.save()
+    verdict(page, "Passed: 100 of 100 points.")
+    page.locator("#checks li.failed").first.wait_for(state="detached")
+    assert page.locator("#details article").count() == 0
+    page.get_by_role("button", name="Play").click()
+    page.get_by_role("button", name="Pause").wait_for()
+    assert page.locator(f'.steps [data-step="{CIRCLE}"]').get_by_text("100/100").is_visible()
+    assert violations(page) == []
+
+    page.get_by_role("button", name="Next step").click()
+    page.get_by_role("heading", level=1, name="What makes a folder a package").wait_for()
+    page.get_by_text("Verdict on step 04").wait_for()
+    assert problems == []
+    page.close()
+
+
+def test_the_files_are_judged_before_the_trial(begun: Course, browser: Browser) -> None:
+    page = begun.opened(browser)
+    verdict(page, "Not passed yet")
+    # The list shows what is certain from the files while the package is still being built and run.
+    page.evaluate(
+        """() => {
+            globalThis.early = false;
+            new MutationObserver(() => {
+                const failed = document.querySelector('#checks li.failed')?.textContent ?? "";
+                const doing = document.getElementById("doing").textContent;
+                if (/never closed/.test(failed) && doing) globalThis.early = true;
+            }).observe(document.body, { subtree: true, childList: true, characterData: true });
+        }"""
+    )
+    begun.save("rclpy.init(args=args)", "rclpy.init(args=args")
+    page.get_by_role("article").get_by_text("never closed").first.wait_for()
+    assert page.evaluate("globalThis.early")
+    page.close()
+
+
+@pytest.mark.parametrize(("scheme", "width"), [("dark", 1400), ("light", 360)])
+def test_axe_finds_nothing_and_nothing_is_cut(begun: Course, browser: Browser, scheme: str, width: int) -> None:
+    page = begun.opened(browser, width=width)
+    page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+    for name in ("Lesson", "Verdict"):
+        button = page.get_by_role("button", name=name, exact=True)
+        if button.is_visible():
+            button.click()
+        assert violations(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page.close()
+
+
+def test_every_pane_is_reached_by_keyboard(begun: Course, browser: Browser) -> None:
+    page = begun.opened(browser, width=360)
+    page.get_by_role("button", name="Verdict", exact=True).focus()
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Hint").focus()
+    page.keyboard.press("Enter")
+    page.locator("#hints li").first.wait_for()
+    page.close()

@@ -1,0 +1,104 @@
+"""What people do to a page: reload, two tabs, a folder that is renamed, a server that is killed and started again."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.open.course_page import elsewhere
+from grader.tests.open.course import CIRCLE, Course, course
+from grader.tests.waiting import until, until_gone
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from playwright.sync_api import Browser, Page
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Iterator[Course]:
+    """A learner of one test, with step 03 begun."""
+    for made in course(tmp_path):
+        made.run("start", CIRCLE)
+        made.start()
+        yield made
+
+
+def verdict(page: Page, text: str) -> None:
+    page.locator("#verdict-line").get_by_text(text).wait_for()
+
+
+def children(pid: int) -> list[int]:
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def test_the_page_survives_what_people_do(own: Course, browser: Browser) -> None:
+    page = own.opened(browser)
+    verdict(page, "15 of 100")
+    assert own.token not in page.url
+
+    page.reload()
+    verdict(page, "15 of 100")
+
+    # A second tab of the same browser gets the token from the first one.
+    with page.context.expect_page() as second:
+        page.evaluate(f"window.open('/{CIRCLE}/index.html', '_blank', 'noopener')")
+    verdict(second.value, "15 of 100")
+
+    # The folder is renamed by `start --fresh`, and another one takes its place.
+    own.save()
+    verdict(page, "Passed: 100")
+    own.run("start", CIRCLE, "--fresh")
+    verdict(page, "15 of 100")
+    verdict(second.value, "15 of 100")
+    own.save("2.0", "3.0")
+    verdict(page, "50 of 100 points")
+    second.value.close()
+
+    # Killed and started again: the same address and token, and the open page goes on.
+    before = own.url
+    assert own.end(signal.SIGKILL) == -signal.SIGKILL
+    page.get_by_text("Not running: type grader open").wait_for()
+    assert own.start() == before
+    page.get_by_text("Live", exact=True).wait_for()
+    own.save()
+    verdict(page, "Passed: 100")
+
+    # Another step is started in a terminal.
+    own.run("start", "04")
+    page.get_by_text("Verdict on step 04").wait_for()
+
+    pid = own.processes[-1].pid
+    waiting = children(pid)
+    assert own.end() == 0
+    for child in waiting:
+        until_gone(child)
+    page.close()
+
+
+def test_a_wrong_address_says_so(own: Course, browser: Browser) -> None:
+    tab = browser.new_page()
+    tab.goto(f"http://{own.host}/{CIRCLE}/index.html#{'x' * 22}")
+    tab.get_by_text("Open the address that grader open has printed").wait_for()
+    tab.close()
+
+
+def test_ctrl_c_during_a_grading_leaves_nothing(own: Course) -> None:
+    pid = own.processes[-1].pid
+    until(lambda: bool(children(pid)))
+    started = children(pid)
+    assert own.end() == 0
+    for child in started:
+        until_gone(child)
+
+
+def test_the_way_from_another_machine_is_one_line() -> None:
+    assert elsewhere(4711, {}) == []
+    (line,) = elsewhere(4711, {"SSH_CONNECTION": "10.0.0.2 50000 10.0.0.9 22"})
+    assert "ssh -N -L 4711:127.0.0.1:4711 " in line
+    assert line.endswith("@10.0.0.9")
+    (line,) = elsewhere(4711, {"CODESPACES": "true", "CODESPACE_NAME": "fluffy-robot"})
+    assert line.endswith("gh codespace ports forward 4711:4711 --codespace fluffy-robot")
