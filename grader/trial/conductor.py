@@ -45,6 +45,10 @@ REQUESTS_HZ = 500
 On a crowded machine, CPU time alone does not show this, because neither process gets much of it. For comparison, a node
 that makes three requests per pose makes 190 per second.
 """
+MESSAGES_HZ = 1000
+"""The same for the messages that arrive from other nodes than the simulator (Hz)."""
+SIMULATORS = ("/pose", "/color_sensor")
+"""The simulator publishes on topics with these last parts, for each turtle and in each frame."""
 
 
 class Overwhelmed(Exception):  # noqa: N818 - the node is at fault, not the grader
@@ -148,12 +152,18 @@ def _own_doing(stall: tuple[float, float], node: NodeProcess, trial: SimulatedTr
     now_s = trial.now()
     offset = time.monotonic() - now_s
     begin, end = stall
-    if trial.requests >= REQUESTS_HZ * now_s:
+    if trial.requests >= REQUESTS_HZ * now_s or _arrived(trial) >= MESSAGES_HZ * now_s:
         return True
     if node.worked_s(offset, time.monotonic()) + trial.worked_for_node_s(0.0, now_s) >= BUSY * now_s:
         return True
     worked_s = node.worked_s(begin + offset, end + offset) + trial.worked_for_node_s(begin, end)
     return worked_s >= max(BUSY_S, BUSY * (end - begin))
+
+
+def _arrived(trial: SimulatedTrial | WallTrial) -> int:
+    """Return how many messages arrived on other topics than the simulator's."""
+    recorder = trial.recorder
+    return recorder.dropped + sum(not message.topic.endswith(SIMULATORS) for message in recorder.messages)
 
 
 def _command(ros: installation.Ros, order: dict[str, Any], info_fd: int, filter_fd: int | None) -> Sequence[str]:

@@ -16,7 +16,7 @@ from grader.sandbox.limits import MIB, MOST_SIGNALS, NODE_LIMITS, Limits
 from grader.sandbox.user import FEW_USERS, FIRST_USER, USERS
 from grader.submission import answers_toml, code, package_xml, reader, tree
 from grader.tests.docs.pages import ROOT, text_of
-from grader.trial.conductor import REQUESTS_HZ
+from grader.trial.conductor import MESSAGES_HZ, REQUESTS_HZ
 
 COLUMNS = (runner.LIMITS, NODE_LIMITS, Limits())
 """Build, node and kernel, in the order of the table."""
@@ -82,7 +82,7 @@ def test_the_limits_of_the_processes_of_the_grader_are_those_of_the_code() -> No
     read_s, memory, answer = reader.TIMEOUT_S, reader.MEMORY // MIB // 1024, reader.MOST_ANSWER // MIB
     assert f"{reader.CPU_S} s of CPU, {read_s:g} s, {memory} GiB of memory, {answer} MiB of answer" in text
     assert f"at most {MOST_SIGNALS} per cell" in text
-    assert f"{REQUESTS_HZ} requests per second" in text
+    assert f"{REQUESTS_HZ} requests or {MESSAGES_HZ} messages per second" in text
 
 
 def test_the_users_of_the_cells_are_named() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -11,10 +12,11 @@ import pytest
 from grader.tests.trial.program import python
 from grader.trial import conductor, crowd
 from grader.trial.crowd import Others, Stalls, is_crowded
+from grader.trial.recording import Message
 
 if TYPE_CHECKING:
     import subprocess
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
 WORK_S = 0.5
 """CPU time that a program works when it is told to; the kernel counts in steps of 0.01 s or finer."""
@@ -137,8 +139,10 @@ def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch:
 class Busy:
     """A node whose processes have worked so long, and a stage whose simulator has, whenever one asks."""
 
-    def __init__(self, node_s: float, simulator_s: float, requests: int = 0) -> None:
+    def __init__(self, node_s: float, simulator_s: float, requests: int = 0, messages: Iterable[str] = ()) -> None:
         self._node_s, self._simulator_s, self.requests = node_s, simulator_s, requests
+        made = [Message(topic, "std_msgs/msg/String", b"", 0.0, 0.0) for topic in messages]
+        self.recorder = SimpleNamespace(messages=made, dropped=0)
 
     def worked_s(self, *_: float) -> float:
         return self._node_s
@@ -165,4 +169,14 @@ def test_stalls_beside_thousands_of_requests_are_the_nodes_however_little_time_b
     requests: int, *, own: bool
 ) -> None:
     of: Any = Busy(0.0, 0.0, requests)
+    assert conductor._own_doing((1.0, 1.1), of, of) == own
+
+
+@pytest.mark.parametrize(
+    ("topic", "count", "own"), [("/noise", 5000, False), ("/noise", 10_000, True), ("/leo/pose", 10_000, False)]
+)
+def test_stalls_beside_a_flood_of_messages_are_the_nodes_however_little_time_both_got(
+    topic: str, count: int, *, own: bool
+) -> None:
+    of: Any = Busy(0.0, 0.0, messages=[topic] * count)
     assert conductor._own_doing((1.0, 1.1), of, of) == own
