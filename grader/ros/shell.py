@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
 HIGHEST_DOMAIN = 101
-COMMANDS = ("ros2", "rqt_graph")
+COMMANDS = ("ros2", "rqt", "rqt_console", "rqt_graph", "rqt_plot")
 """The commands that have completion in the shell."""
 
 

@@ -21,6 +21,24 @@ def _screen() -> bool:
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
+def over_ssh() -> bool:
+    """Return whether this terminal belongs to a login over ssh."""
+    return bool(os.environ.get("SSH_CONNECTION"))
+
+
+def from_elsewhere(port: int) -> str:
+    """Return how to open a page of this machine from another machine, for a terminal without a browser."""
+    if over_ssh():
+        user = os.environ.get("USER") or "USER"
+        server = os.environ["SSH_CONNECTION"].split()[2:3] or ["THIS_MACHINE"]
+        login = f"{user}@{server[0]}"
+        return (
+            "There is no browser here. On the machine in front of you, type this in a new terminal, and then open the "
+            f"address: ssh -N -L {port}:127.0.0.1:{port} {login}"
+        )
+    return "There is no browser here. Open the address in a browser on this machine."
+
+
 def open_page(url: str) -> bool:
     """Open a page; return whether this was successful. Browsers that draw in the terminal are never used."""
     if not there_is_one():

@@ -69,7 +69,8 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="rqt_graph",
         description="Show which nodes are running, and which topics they publish and subscribe to.",
-        epilog="Without --output, it is shown live in a browser until Ctrl-C, or printed as text without a browser. "
+        epilog="Without --output, it is shown live in a browser until Ctrl-C. Without a browser, it is printed as text "
+        "or served for a browser on another machine: over ssh, and with --port. "
         "Example: rqt_graph --output graph.svg",
     )
     parser.add_argument(
@@ -140,10 +141,14 @@ def _write(file: Path, drawn: Picture) -> None:
 
 
 def _shown_live(show: Show, port: int | None) -> bool:
-    """Serve the graph on a page until Ctrl-C. Return False immediately if there is no browser to show it in."""
+    """Serve the graph on a page until Ctrl-C. Return False immediately if there is no browser to show it in.
+
+    With --port, or in a terminal over ssh, the user opens the page in a browser on another machine.
+    """
     from grader.view import browser
 
-    if not browser.there_is_one():
+    elsewhere = not browser.there_is_one() and (port is not None or (browser.over_ssh() and sys.stdout.isatty()))
+    if not browser.there_is_one() and not elsewhere:
         return False
     import asyncio
 
@@ -160,9 +165,11 @@ def _shown_live(show: Show, port: int | None) -> bool:
     place = listen("graph", port)
 
     async def serve() -> bool:
-        return await Page(None, show).serve(place)
+        return await Page(None, show, stays=elsewhere).serve(place)
 
     print(f"The graph, live until Ctrl-C: {place.address.url}", flush=True)
+    if elsewhere:
+        print(browser.from_elsewhere(place.address.port), file=sys.stderr, flush=True)
     shown = asyncio.run(serve())
     # From here on, Python handles Ctrl-C again.
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -73,7 +73,7 @@ def test_what_leads_to_the_current_folder_goes_and_the_rest_stays() -> None:
     assert clean(env) == {"PATH": "/usr/bin", "LD_LIBRARY_PATH": "/a:/b", "LANG": "C"}
 
 
-COMMANDS = ("grader", "ros2", "rqt_graph")
+COMMANDS = ("grader", "ros2", "rqt", "rqt_console", "rqt_graph", "rqt_plot")
 
 
 @pytest.mark.parametrize("name", COMMANDS)

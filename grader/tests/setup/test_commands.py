@@ -27,7 +27,10 @@ sys.meta_path.insert(0, Interrupting())
 """
 
 
-@pytest.mark.parametrize(("name", "code"), [("grader", 130), ("ros2", 2), ("rqt_graph", 130)])
+@pytest.mark.parametrize(
+    ("name", "code"),
+    [("grader", 130), ("ros2", 2), ("rqt", 130), ("rqt_console", 130), ("rqt_graph", 130), ("rqt_plot", 130)],
+)
 def test_ctrl_c_during_the_import_prints_no_traceback(tmp_path: Path, name: str, code: int) -> None:
     (tmp_path / "sitecustomize.py").write_text(INTERRUPTED)
     command = Path(shutil.copy(COMMANDS / name, tmp_path))

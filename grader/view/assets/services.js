@@ -1,0 +1,39 @@
+// The service caller: choose a service, edit its request, and see the response.
+
+export class Services {
+  constructor({ form, service, type, request, response, status, call }) {
+    Object.assign(this, { service, type, request, response, status });
+    this.known = new Map();
+    this.waits = null;
+    service.addEventListener("change", () => this.choose());
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      const chosen = this.known.get(service.value);
+      if (!chosen) return;
+      this.waits = { id: crypto.getRandomValues(new Uint32Array(2)).join("-"), name: chosen.name };
+      this.status.textContent = `Waiting for ${chosen.name}`;
+      call({ ...this.waits, type: chosen.type, request: request.value });
+    });
+  }
+
+  show(services) {
+    const before = this.service.value;
+    this.known = new Map(services.map((each) => [each.name, each]));
+    this.service.replaceChildren(...services.map(({ name }) => new Option(name, name, false, name === before)));
+    if (this.service.value !== before) this.choose();
+  }
+
+  choose() {
+    const chosen = this.known.get(this.service.value);
+    this.type.textContent = chosen?.type ?? "";
+    this.request.value = chosen?.request ?? "";
+  }
+
+  answer({ id, text, ok }) {
+    if (id !== this.waits?.id) return;
+    this.response.textContent = text;
+    this.response.className = ok ? "" : "failed";
+    this.status.textContent = ok ? `${this.waits.name} has responded.` : `${this.waits.name} was not called.`;
+    this.waits = null;
+  }
+}

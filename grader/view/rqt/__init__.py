@@ -1,0 +1,1 @@
+"""`rqt`, `rqt_console` and `rqt_plot` for machines without Qt: pages in the browser."""

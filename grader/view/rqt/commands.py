@@ -1,0 +1,89 @@
+"""The commands `rqt`, `rqt_console` and `rqt_plot`: show parts of a page in the browser until Ctrl-C."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+from typing import TYPE_CHECKING
+
+from grader.errors import GraderError
+from grader.ros.startup import hand_over, see_to_environment
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from grader.view.rqt.rqt_page import Part
+
+
+def rqt() -> int:
+    """Run `rqt`: the graph, the log, a plot and a service caller on one page."""
+    parser = _parser(
+        "rqt",
+        "Show the graph, the log messages, a plot and a service caller on one page in the browser.",
+        "Example: rqt",
+    )
+    return _main("rqt_gui", parser, ("graph", "console", "plot", "services"))
+
+
+def rqt_console() -> int:
+    """Run `rqt_console`: the log messages of all nodes."""
+    parser = _parser(
+        "rqt_console",
+        "Show the log messages of all nodes on a page in the browser. They can be filtered.",
+        "Example: rqt_console",
+    )
+    return _main("rqt_console", parser, ("console",))
+
+
+def rqt_plot() -> int:
+    """Run `rqt_plot`: numeric fields over time."""
+    parser = _parser(
+        "rqt_plot",
+        "Plot numeric fields of messages over time on a page in the browser.",
+        "Examples: rqt_plot /turtle1/pose/x; rqt_plot /turtle1/pose/x:y:theta",
+    )
+    parser.add_argument("fields", nargs="*", metavar="FIELD", help="the topic and the field, as in /turtle1/pose/x")
+    return _main("rqt_plot", parser, ("plot",))
+
+
+def _parser(command: str, description: str, epilog: str) -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog=command, description=description, epilog=epilog)
+    parser.add_argument("--port", type=int, help="port of the page (default: the same as the last time, or a free one)")
+    return parser
+
+
+def _main(package: str, parser: argparse.ArgumentParser, parts: Sequence[Part]) -> int:
+    """Run a command; `package` is the ROS package of the real one. Exit codes: decision 9 in docs/design.md."""
+    try:
+        hand_over(parser.prog, package)
+        options = parser.parse_args()
+        see_to_environment({"rclpy"})
+        _serve(parser.prog, parts, getattr(options, "fields", []), options.port)
+    except GraderError as error:
+        print(f"{parser.prog}: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+def _serve(command: str, parts: Sequence[Part], fields: Sequence[str], port: int | None) -> None:
+    """Serve the page until Ctrl-C. Without a browser on this machine, print how to open the page from another one."""
+    import asyncio
+
+    from grader.view import browser
+    from grader.view.address import listen
+    from grader.view.launch import see_that_it_can_be_served
+
+    see_that_it_can_be_served()
+    # Import rclpy only when it is known that the page can be served, since this takes the longest.
+    from grader.view.rqt.rqt_page import RqtPage
+
+    place = listen(command, port)
+    print(f"{command} is at {place.address.url} until Ctrl-C.", flush=True)
+    if not browser.there_is_one():
+        print(browser.from_elsewhere(place.address.port), file=sys.stderr, flush=True)
+    asyncio.run(RqtPage(parts, fields).serve(place, stays=True))
+    # From here on, Python handles Ctrl-C again.
+    signal.signal(signal.SIGINT, signal.default_int_handler)

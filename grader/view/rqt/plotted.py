@@ -1,0 +1,108 @@
+"""The values of numeric fields over time, for the page of rqt_plot. A field is named as in `/turtle1/pose/x`."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+
+from grader.ros import message_values
+from grader.ros.failure import Ros2Error
+from grader.view.rqt.plot_fields import expand, numeric, topic_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rclpy.node import Node
+
+    from grader.graph.endpoints import Observed
+
+MOST_FIELDS = 20
+"""How many fields can be plotted at once."""
+_QOS = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.BEST_EFFORT)
+
+Sample = tuple[float, float | None]
+"""A time (s, from an arbitrary start) and a value. The value is None if it is infinite or not a number."""
+
+
+@dataclass
+class _Topic:
+    """A subscription to a topic and the fields that are plotted: name -> path in the message."""
+
+    subscription: Any
+    type: str
+    paths: dict[str, str] = field(default_factory=dict)
+
+
+class Plotted:
+    """Subscribes to the topics of the wanted fields. All methods run in the thread of the node.
+
+    `flush` passes the new samples of each series on, and the problem of each wanted field ("" if there is none).
+    """
+
+    def __init__(self, node: Node, tell: Callable[[dict[str, list[Sample]], dict[str, str]], object]) -> None:
+        self._node = node
+        self._tell = tell
+        self._begun = time.monotonic()
+        self._wanted: dict[str, str] = {}
+        self._topics: dict[str, _Topic] = {}
+        self._new: dict[str, list[Sample]] = {}
+        self._told: dict[str, str] = {}
+
+    def add(self, typed: str) -> None:
+        """Plot one more field, or all numbers of a message."""
+        for name in expand(typed):
+            if len(self._wanted) < MOST_FIELDS:
+                self._wanted.setdefault(name, "Waiting for this topic.")
+
+    def remove(self, name: str) -> None:
+        """Plot a field no longer."""
+        self._wanted.pop(name, None)
+        for topic in list(self._topics):
+            paths = self._topics[topic].paths
+            for series in [series for series in paths if f"{series}/".startswith(f"{name}/")]:
+                del paths[series]
+                self._new.pop(series, None)
+            if not paths:
+                self._node.destroy_subscription(self._topics.pop(topic).subscription)
+
+    def look(self, observed: Observed) -> None:
+        """Subscribe to the topics of wanted fields that have appeared."""
+        types = {end.topic: end.type for end in observed.ends if end.kind == "publisher"}
+        for name, problem in list(self._wanted.items()):
+            if problem:
+                self._wanted[name] = self._begin(name, types)
+
+    def flush(self) -> None:
+        """Pass on the samples that have arrived since the last call."""
+        if any(self._new.values()) or self._wanted != self._told:
+            self._tell(self._new, dict(self._wanted))
+            self._told = dict(self._wanted)
+            self._new = {}
+
+    def _begin(self, name: str, types: Mapping[str, str]) -> str:
+        """Subscribe for this field. Return what is in the way, or ""."""
+        topic = topic_of(name, types)
+        if topic is None:
+            return "Waiting for this topic."
+        try:
+            made = message_values.load_type(types[topic], "msg")
+            paths = numeric(made(), name[len(topic) :].strip("/").replace("/", "."))
+        except Ros2Error as error:
+            return str(error).splitlines()[0]
+        if topic not in self._topics:
+            subscription = self._node.create_subscription(made, topic, lambda m: self._arrived(topic, m), _QOS)
+            self._topics[topic] = _Topic(subscription, types[topic])
+        self._topics[topic].paths.update({f"{topic}/{path.replace('.', '/')}": path for path in paths[:MOST_FIELDS]})
+        return ""
+
+    def _arrived(self, topic: str, message: Any) -> None:  # noqa: ANN401
+        now = round(time.monotonic() - self._begun, 4)
+        for name, path in self._topics[topic].paths.items():
+            value = message_values.field(message, path, complete=False)
+            if value is not None:
+                number = float(value)
+                self._new.setdefault(name, []).append((now, number if math.isfinite(number) else None))
