@@ -124,6 +124,8 @@ class Exercise:
     """The values that differ from student to student."""
     unsolved: tuple[str, ...] = ()
     """The checks that the starting point must fail (for `grader validate`). Checks that depend on them are skipped."""
+    apart: bool = False
+    """Whether the package is in a workspace of its own, because it is not the one that grows from step to step."""
 
     def trial(self, id_: str) -> TrialSpec:
         """Return the trial with this id. Raises KeyError if there is none."""

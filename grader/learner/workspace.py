@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise
 
 
+APART = "apart"
+"""The folder in a workspace that holds other workspaces, which colcon must not build with it."""
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
 """Package files that need new lines from step to step, although the steps are about something else."""
 
@@ -65,8 +67,13 @@ def solution(exercise: Exercise) -> Path:
 
 
 def work_folder(exercise: Exercise, workspace: Path) -> Path:
-    """Return the folder with the learner's work on a step: the package in src/, or a folder for answers."""
-    return workspace / "src" / exercise.package if exercise.package else workspace / "answers" / exercise.id
+    """Return the folder with the learner's work on a step: the package in src/, or a folder for answers.
+
+    A package that is not the learner's own has a workspace of its own: apart/ID/src/PACKAGE.
+    """
+    if not exercise.package:
+        return workspace / "answers" / exercise.id
+    return (workspace / APART / exercise.id if exercise.apart else workspace) / "src" / exercise.package
 
 
 def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = False) -> Started:
@@ -83,6 +90,8 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
         source = source / exercise.package
     folder = work_folder(exercise, workspace)
     try:
+        if exercise.apart:
+            _ignored(workspace / APART)
         kept = _put_aside(folder, workspace) if fresh and folder.exists() else None
         own = exercise.numbers
         numbers = {own.file: to_toml(draw_numbers(own, student)).encode()} if own is not None else {}
@@ -137,11 +146,15 @@ def _lacking(theirs: Path, mine: Path) -> tuple[str, ...]:
     return tuple(line for line in lines if not line.startswith(("#", "<!--")) and plain(line) not in known)
 
 
+def _ignored(folder: Path) -> Path:
+    """Create a folder in the workspace whose packages colcon must not build next to the learner's own."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / IGNORE_MARKER).touch()
+    return folder
+
+
 def _put_aside(folder: Path, workspace: Path) -> Path:
-    aside = workspace / "before"
-    aside.mkdir(parents=True, exist_ok=True)
-    # If colcon runs in the workspace, it must not build old packages next to the new one.
-    (aside / IGNORE_MARKER).touch()
+    aside = _ignored(workspace / "before")
     for number in itertools.count(1):
         target = aside / f"{folder.name}-{number}"
         if not target.exists():

@@ -3,7 +3,7 @@ from setuptools import find_packages, setup
 package_name = "my_robot_controller"
 
 setup(
-    name=package_name,
+    name=pakage_name,
     version="0.1.0",
     packages=find_packages(exclude=["test"]),
     data_files=[
@@ -19,7 +19,7 @@ setup(
     entry_points={
         "console_scripts": [
             "test_node = my_robot_controller.my_first_node:main",
-            # TODO 2: add the entry point draw_circle after the one above.
+            "draw_circle = my_robot_controller.circle:main",
         ],
     },
 )

@@ -94,12 +94,9 @@ def _broken(evidence: Evidence) -> Finding:
     bad = next((point for point in setup.entry_points or () if point.target is None), None)
     if bad is not None:
         return bad_entry_point(bad)
-    log = SETUP_PY_FRAME.sub(r'\g<before>"setup.py"', build.log)
-    crashes = [crash for _, crash in read_tracebacks(log, evidence.submission.files) if crash.where is not None]
-    if crashes:
-        crash = crashes[0]
-        why = why_crashed(evidence, crash).at(crash.where)
-        return failed(f"setup.py failed: {crash.observed}.", EXPECTED, Cause("setup-py-raises", why.text, why.where))
+    raised = _raised(evidence)
+    if raised is not None:
+        return raised
     where = Where("setup.py", _setup_line(evidence))
     if UNREAD_SETUP in build.log:
         observed = "colcon could not read the arguments of setup() in setup.py."
@@ -128,6 +125,16 @@ def _line_of(evidence: Evidence, *patterns: str) -> Where | None:
     return None if line is None else Where("setup.py", line)
 
 
+def _raised(evidence: Evidence) -> Finding | None:
+    """Return a failed finding if setup.py raised an exception in the build, else None."""
+    log = SETUP_PY_FRAME.sub(r'\g<before>"setup.py"', evidence.built.log)
+    crashes = [crash for _, crash in read_tracebacks(log, evidence.submission.files) if crash.where is not None]
+    if not crashes:
+        return None
+    why = why_crashed(evidence, crashes[0]).at(crashes[0].where)
+    return failed(f"setup.py failed: {crashes[0].observed}.", EXPECTED, Cause("setup-py-raises", why.text, why.where))
+
+
 def _other_type(evidence: Evidence) -> str:
     """Return a cause if package.xml gives the package another build type, else an empty string."""
     manifest = evidence.manifest
@@ -151,6 +158,10 @@ def _modules(evidence: Evidence) -> Finding:
         expected = "Each folder with Python files has a file __init__.py, which may be empty."
         cause = "find_packages in setup.py finds only folders with an __init__.py." if finds else ""
         return failed(observed, expected, Cause("missing-init", cause, Where("setup.py", _setup_line(evidence))))
+    # Without a package.xml that it can read, colcon reports what setup.py raised, and goes on.
+    raised = _raised(evidence) if missing else None
+    if raised is not None:
+        return raised
     if missing:
         observed = "`colcon build` finished but installed none of the Python files."
         cause = _other_type(evidence) or "The packages argument of setup() lists the folders to install."

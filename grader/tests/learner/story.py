@@ -20,7 +20,6 @@ ROOT = Path(__file__).resolve().parents[3]
 GRADER = str(Path(sys.executable).with_name("grader"))
 LAST = list(catalogue())[-1]
 FIRST_TO_COPY = "03-circle-publisher"
-BY_HEART = "04-package-files"
 PATIENCE_S = 300
 """The time for one verdict on a busy machine (s). A screen that takes longer hangs."""
 
@@ -125,17 +124,11 @@ def walk(learner: Learner, steps: list[str]) -> None:
         await_verdict(screen, r"Passed: 100 of 100 points")
         if following:
             screen.send("n")
-            # Step 04 asks for the lines that were copied into the package files for step 03.
-            screen.expect("Passed" if following == BY_HEART else "Not passed")
+            screen.expect("Not passed")
             screen.expect(f"{following}: ")
             if following == FIRST_TO_COPY:
                 screen.expect("This step needs more lines in package.xml. Add to yours")
             screen.expect("Watching")
-        if following == BY_HEART:
-            leave(screen)
-            assert "Your work so far is in" in learner.reads("start", following, "--fresh")
-            screen = learner.types("watch")
-            await_verdict(screen, "Not passed")
     if steps[-1] == LAST:
         screen.send("n")
         screen.expect("You have finished the course")

@@ -171,6 +171,18 @@ def test_answers_are_in_a_folder_of_their_own(home: Path) -> None:
     assert workspace.work_folder(begun.exercise, home / "ros2_ws") == begun.started.folder
 
 
+def test_a_package_of_somebody_else_has_a_workspace_of_its_own(home: Path) -> None:
+    steps.start("03", None)
+    own = home / "ros2_ws/src/my_robot_controller"
+    before = {path: path.read_bytes() for path in own.rglob("*") if path.is_file()}
+    begun = steps.start("04", None)
+    assert begun.started.folder == home / "ros2_ws/apart/04-package-files/src/my_robot_controller"
+    assert (home / "ros2_ws/apart/COLCON_IGNORE").is_file(), "colcon must not build it with the learner's own package"
+    assert begun.started.lacking == {}
+    assert {path: path.read_bytes() for path in own.rglob("*") if path.is_file()} == before
+    assert steps.current(None) == (begun.exercise, begun.started.folder)
+
+
 def test_a_step_with_own_numbers_begins_with_the_students_own_numbers(home: Path) -> None:
     steps.start("07", None, student="4711")
     file = home / "ros2_ws/src/my_robot_controller/my_numbers.toml"

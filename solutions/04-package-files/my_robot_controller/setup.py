@@ -3,7 +3,12 @@ from setuptools import find_packages, setup
 package_name = "my_robot_controller"
 
 setup(
+    # BEGIN SOLUTION
     name=package_name,
+    # END SOLUTION
+    # BEGIN STARTER
+    # name=pakage_name,
+    # END STARTER
     version="0.1.0",
     packages=find_packages(exclude=["test"]),
     data_files=[
@@ -18,12 +23,13 @@ setup(
     license="MIT",
     entry_points={
         "console_scripts": [
-            "test_node = my_robot_controller.my_first_node:main",
             # BEGIN SOLUTION
+            "test_node = my_robot_controller.my_first_node:main",
             "draw_circle = my_robot_controller.draw_circle:main",
             # END SOLUTION
             # BEGIN STARTER
-            # # TODO 2: add the entry point draw_circle after the one above.
+            # "test_node = my_robot_controller.my_first_node:main",
+            # "draw_circle = my_robot_controller.circle:main",
             # END STARTER
         ],
     },
