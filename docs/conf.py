@@ -12,7 +12,7 @@ project = "ROS 2 topics, graded by doing"
 extensions = ["myst_parser"]
 root_doc = "README"
 PAGES = {
-    "Learn": ["docs/learner", "course/*/lesson", "docs/ros2-differences"],
+    "Learn": ["docs/learner", "course/*/lesson", "docs/commands", "docs/glossary", "docs/ros2-differences"],
     "Teach": ["docs/instructor", "grader/classroom/templates/README", "docs/security"],
     "Write exercises": ["docs/authors", "docs/kinds", "grader/checks/README"],
     "Project": ["docs/design", "docs/development", "CONTRIBUTING", "SECURITY", "CHANGELOG"],

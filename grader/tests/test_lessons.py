@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -19,6 +18,7 @@ from grader.submission.answers_toml import read_answers
 from grader.submission.package_xml import read_manifest
 from grader.tests.console import Block, blocks, differs, run
 from grader.tests.domains import own_domain
+from grader.tests.learner.story import Learner
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -80,12 +80,15 @@ def home_of_a_reader(folder: Path) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("block", [*blocks_of("console", ""), *blocks_of("console", "solved")])
-def test_commands_print_what_the_lesson_shows(block: Block, tmp_path: Path) -> None:
-    for name in ("course", "exercises", "solutions"):
-        shutil.copytree(ROOT / name, tmp_path / name)
-    if block.about == "solved":  # the reader has written it by now
-        shutil.copytree(ROOT / "solutions", tmp_path / "exercises", dirs_exist_ok=True)
+def test_commands_print_what_the_lesson_shows(block: Block, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    """A reader has started the step in a workspace, and, where the lesson says so, solved it."""
+    step = request.node.callspec.id.rpartition("-")[0]
     env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", **home_of_a_reader(tmp_path)}
+    env.pop("XDG_STATE_HOME", None)
+    reader = Learner(tmp_path / "home")
+    reader.reads("start", step)
+    if block.about == "solved":
+        reader.solves(step)
     for step, printed, _ in run(block, tmp_path, env, 300.0):
         assert differs(step.printed, printed) is None, printed
 
@@ -106,13 +109,13 @@ def test_no_command_stands_outside_of_a_block(lesson: Path) -> None:
 
 def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
     """Build, run, Ctrl-C; another speed without another build; the graph of what runs."""
-    shutil.copytree(ROOT / "exercises", tmp_path / "exercises")
     shown = blocks((ROOT / "course/05-build-and-run/lesson.md").read_text("utf-8"))
     build = next(block for block in shown if block.language == "console")
     start, said = next((s.command, s.printed[0]) for b in shown if b.about == "running" for s in b.steps())
     path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
     ours = {"PATH": path, "ROS_DOMAIN_ID": str(own_domain()), "PS1": "", "TERM": "dumb"}
     env = {**os.environ, **ours, **home_of_a_reader(tmp_path)}
+    Learner(tmp_path / "home").reads("start", "05")
     shell = pexpect.spawn(
         "bash", ["--norc", "--noprofile"], env=env, cwd=tmp_path, encoding="utf-8", timeout=120, echo=False
     )
@@ -125,7 +128,7 @@ def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
     shell.sendline("echo stopped''here")
     shell.expect_exact("stoppedhere")
 
-    node = tmp_path / "ros2_ws/src/my_robot_controller/my_robot_controller/draw_circle.py"
+    node = tmp_path / "home/ros2_ws/src/my_robot_controller/my_robot_controller/draw_circle.py"
     text = node.read_text()
     assert "linear.x = 2.0" in text
     node.write_text(text.replace("linear.x = 2.0", "linear.x = 1.5"))
