@@ -93,7 +93,8 @@ def grade(
         bool,
         typer.Option(
             "--explain/--no-explain",
-            help="Prove the causes of failed checks: change them in a copy, and run it again.",
+            help="Prove the causes of failed checks: change them in a copy, and run it again. A failed submission "
+            "then takes up to 1.5 times a build and a run longer.",
         ),
     ] = True,
     trusted: Annotated[

@@ -3,7 +3,8 @@
 The keys of the format with `schema = 2`:
 
 - `[exercise]` has id, title, package (without a package, students submit only answers.toml), apart (the package is not
-  the learner's own) and starting_point_fails (the ids of the checks that exercises/ must fail).
+  the learner's own), show_fix (students see the change that was tried) and starting_point_fails (the ids of the checks
+  that exercises/ must fail).
 - `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one of
   each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
 - `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every and pose_from_s. `[[trial.drive]]` has
@@ -100,6 +101,7 @@ def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) 
         trials=trials,
         checks=checks,
         hints=tuple(_hint(table, checks) for table in top.tables("hint")),
+        show_fix=head.flag("show_fix"),
         unsolved=head.strings("starting_point_fails"),
         apart=head.flag("apart"),
         numbers=numbers,

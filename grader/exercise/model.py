@@ -122,6 +122,8 @@ class Exercise:
     """The SHA-256 hash of exercise.toml, which contains everything that the exercise requires."""
     numbers: NumbersSpec | None = None
     """The values that differ from student to student."""
+    show_fix: bool = False
+    """Whether a student's report shows the change that was tried in a copy and made the check pass."""
     unsolved: tuple[str, ...] = ()
     """The checks that the starting point must fail (for `grader validate`). Checks that depend on them are skipped."""
     apart: bool = False

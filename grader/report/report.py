@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 import grader
 from grader.checks.outcome import Status
-from grader.common.words import count
+from grader.common.words import count, shorten
 
 if TYPE_CHECKING:
     from grader.checks.outcome import Outcome
     from grader.evidence.evidence import Evidence
-    from grader.evidence.tries import Tries
 
 
 @dataclass(frozen=True)
@@ -88,7 +87,7 @@ def report_of(
         clock_why=_why_this_clock(evidence),
         seed=recording.seed if recording else None,
         confined=confined,
-        outcomes=tuple(_with_try(outcome, evidence.tries) for outcome in outcomes),
+        outcomes=tuple(_with_try(outcome, evidence) for outcome in outcomes),
         seconds=seconds,
         exercise_digest=evidence.exercise.digest,
     )
@@ -99,18 +98,30 @@ FURTHER = "After this was changed in a copy, the node gets further."
 REFUTED = "The supposed cause was changed in a copy, but the check still failed."
 
 
-def _with_try(outcome: Outcome, tries: Tries) -> Outcome:
+def _with_try(outcome: Outcome, evidence: Evidence) -> Outcome:
     """Return the outcome with the result of changing its cause in a copy. A refuted cause is left out."""
-    finding = outcome.finding
-    made = tries.of(outcome.id, finding.diagnosis) if outcome.status is Status.FAILED else None
-    if made is None:
+    finding, tries = outcome.finding, evidence.tries
+    if outcome.status is not Status.FAILED:
         return outcome
+    made = tries.of(outcome.id, finding.diagnosis)
+    if made is None:
+        untried = f"No try proves this: {tries.stopped}." if tries.stopped and finding.fix else ""
+        return replace(outcome, finding=replace(finding, tried=untried))
     if made.result == "refuted":
         return replace(outcome, finding=replace(finding, cause="", tried=REFUTED))
     tried = PASSES if made.result == "passes" else FURTHER
     if tries.behind and made is next(each for each in tries.made if each.result != "refuted"):
         tried += f" Then {count(tries.behind, 'more mistake')} appeared."
+    if evidence.exercise.show_fix:
+        tried += f" The change: {shorten(_in_one_line(made.difference), 200)}"
     return replace(outcome, finding=replace(finding, tried=tried))
+
+
+def _in_one_line(difference: str) -> str:
+    """Return the removed and added lines of a unified diff as one line of text."""
+    lines = [line for line in difference.splitlines() if not line.startswith(("---", "+++", "@@"))]
+    signs = {"-": "remove", "+": "write"}
+    return "; ".join(f"{signs[line[0]]} {line[1:].strip()}" for line in lines if line[:1] in signs)
 
 
 def _why_this_clock(evidence: Evidence) -> str:

@@ -35,6 +35,15 @@ def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
     return waited_s >= WAITED * of_s and others_s >= OTHERS * of_s
 
 
+def is_machines(stalled_s: float, others_s: float) -> bool:
+    """Return whether stalls of this total length (s) can be the machine's fault.
+
+    A thread waits for a processor only while something else uses it. If the other programs worked for a shorter time
+    than the stalls lasted, the node and its threads kept each other waiting, as a node that floods a topic does.
+    """
+    return others_s >= stalled_s
+
+
 class Stalls:
     """Finds stalls. The kernel counts how long threads were ready to run but did not run."""
 

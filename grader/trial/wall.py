@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from grader.trial.crowd import Others, Stalls, is_crowded
+from grader.trial.crowd import Others, Stalls, is_crowded, is_machines
 from grader.trial.simulation import Simulation
 from grader.turtlesim.turtle import FRAME_S
 
@@ -47,7 +47,10 @@ class WallTrial(Simulation):
                 self.recorder.snapshot()
         stopped_s = self.now()
         worked_s = self.node.worked_s(self._begun, time.monotonic())
-        self._crowded = is_crowded(watch.waited_s, others.worked_s(but_s=worked_s), of_s=stopped_s)
+        others_s = others.worked_s(but_s=worked_s)
+        self._crowded = is_crowded(watch.waited_s, others_s, of_s=stopped_s)
+        if not is_machines(sum(end - begin for begin, end in self.stalls), others_s):
+            self.stalls.clear()
         self.recorder.snapshot()
         self.lap("run")
         self.wind_down()

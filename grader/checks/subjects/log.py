@@ -72,7 +72,7 @@ def _silent(evidence: Evidence, expected: str) -> Finding:
     why = why_nothing(evidence, LEVELS)
     if why is not None:
         return failed(observed, expected, why)
-    cause = "create_timer is never called." if not code.calls("create_timer") else "The line is never reached."
+    cause = "create_timer is never called." if not code.calls("create_timer") else "The line may never be reached."
     return failed(observed, expected, Cause("never-logs", cause, evidence.place(*LEVELS)))
 
 

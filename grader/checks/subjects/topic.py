@@ -123,7 +123,7 @@ def _why_silent(evidence: Evidence) -> Cause:
     why = why_qos(evidence) or why_nothing(evidence, ("publish",))
     if why is not None:
         return why.at(code.start)
-    text = "The line that publishes is never reached, or it runs only at the start, before a subscription is connected."
+    text = "The line that publishes may never be reached, or it may run only at the start, before anything subscribes."
     if not any(code.calls(name) for name in WAKES) and not loops(evidence):
         text = "create_timer is never called, and there is no loop, so nothing publishes again and again."
     return hidden_error(evidence, "publish") or Cause("never-publishes", text, evidence.place("publish"))

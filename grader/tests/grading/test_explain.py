@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
@@ -65,6 +66,15 @@ def test_a_cause_that_makes_the_check_pass_is_proved() -> None:
     assert "+right" in found.made[0].difference
 
 
+def test_a_student_sees_the_change_only_where_the_exercise_shows_it() -> None:
+    found, _ = tries("a\n", lambda text: [right("values") if RIGHT in text else wrong("values")])
+    shown = replace(exercise(), show_fix=True)
+    for given, expected in ((exercise(), PASSES), (shown, f"{PASSES} The change: remove a; write {RIGHT}")):
+        evidence = Evidence(given, submission({NODE_FILE: "a\n"}), tries=found)
+        reported = report_of(evidence, (wrong("values"),), "", {}).outcomes[0]
+        assert reported.finding.tried == expected
+
+
 def test_a_cause_that_changes_nothing_is_refuted_and_not_reported() -> None:
     found, reported = tries("a\n", lambda _: [wrong("values")])
     assert [each.result for each in found.made] == ["refuted"]
@@ -108,7 +118,8 @@ def test_a_try_that_could_not_be_judged_says_nothing() -> None:
     broken = Outcome("values", "values", "values", 0.0, 5.0, Finding(Status.ERROR, "The machine."))
     found, reported = tries("a\n", lambda text: [broken if RIGHT in text else wrong("values")])
     assert found == Tries(stopped=NOT_SIMULATED)
-    assert (reported["values"].finding.cause, reported["values"].finding.tried) == ("It is so.", "")
+    said = f"No try proves this: {NOT_SIMULATED}."
+    assert (reported["values"].finding.cause, reported["values"].finding.tried) == ("It is so.", said)
 
 
 def test_no_more_than_some_changes_are_tried() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from grader.tests.trial.program import python
 from grader.trial import conductor, crowd
-from grader.trial.crowd import Others, Stalls, is_crowded
+from grader.trial.crowd import Others, Stalls, is_crowded, is_machines
 from grader.trial.recording import Message
 
 if TYPE_CHECKING:
@@ -84,6 +84,11 @@ def test_a_machine_is_crowded_where_others_work_and_ours_wait(
     waited_s: float, others_s: float, *, crowded: bool
 ) -> None:
     assert is_crowded(waited_s, others_s, of_s=10.0) == crowded
+
+
+def test_stalls_without_other_programs_are_the_nodes_own() -> None:
+    assert is_machines(0.5, others_s=0.5)
+    assert not is_machines(0.5, others_s=0.1)
 
 
 Counts = tuple[tuple[float, float], tuple[float, float], float]
