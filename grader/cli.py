@@ -16,6 +16,7 @@ from grader.classroom import cli as classroom
 from grader.common.interpreter import clean_own
 from grader.common.system_errors import refusal
 from grader.errors import GraderError
+from grader.exercise.completion import steps as known_steps
 from grader.gradebook import cli as gradebook
 from grader.learner import cli as learner
 from grader.open import cli as open_course
@@ -66,7 +67,9 @@ Html = Annotated[
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Also print which clock was used, and why.")]
 ExerciseId = Annotated[
     Optional[str],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
-    typer.Option("--exercise", help="The exercise. Not needed in exercises/ and solutions/."),
+    typer.Option(
+        "--exercise", help="The exercise. Not needed in exercises/ and solutions/.", autocompletion=known_steps
+    ),
 ]
 
 
@@ -131,7 +134,10 @@ def regrade(
     recording: Annotated[Path, typer.Argument(help="A folder from `grader check --recording`.", metavar="RECORDING")],
     exercise: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option(help="Judge with the current version of this exercise, not with the recorded one."),
+        typer.Option(
+            help="Judge with the current version of this exercise, not with the recorded one.",
+            autocompletion=known_steps,
+        ),
     ] = None,
     json: Json = None,
     image: Image = None,

@@ -9,6 +9,7 @@ from typing import Annotated, Optional
 import typer
 
 from grader.errors import UsageError
+from grader.exercise.completion import steps as known_steps
 
 PANEL = "Teach"
 """The heading in --help."""
@@ -47,7 +48,9 @@ def grade(
     ],
     exercise: Annotated[
         Optional[str],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
-        typer.Option(help="The exercise. Not needed for nbgrader's submitted/.", metavar="ID"),
+        typer.Option(
+            help="The exercise. Not needed for nbgrader's submitted/.", metavar="ID", autocompletion=known_steps
+        ),
     ] = None,
     jobs: Annotated[
         Optional[int],  # noqa: UP045
@@ -135,7 +138,7 @@ def grade(
 
 
 def build(
-    exercise: Annotated[str, typer.Argument(help="The exercise.", metavar="ID")],
+    exercise: Annotated[str, typer.Argument(help="The exercise.", metavar="ID", autocompletion=known_steps)],
     file: Annotated[Path, typer.Argument(help="Archive to write.", metavar="FILE.zip")] = Path("autograder.zip"),
     checks: Annotated[
         Optional[Path],  # noqa: UP045

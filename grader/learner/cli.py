@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Optional
 
 import typer
 
+from grader.exercise.completion import steps as known_steps
+from grader.exercise.completion import steps_or_next
+
 PANEL = "Learn"
 """The heading in --help."""
 
@@ -17,7 +20,10 @@ Workspace = Annotated[
     Optional[Path],  # noqa: UP045 - typer reads the annotation, and Python 3.10 has to
     typer.Option(help="Your colcon workspace. Default: $ROS2_WORKSPACE or ~/ros2_ws.", metavar="DIR"),
 ]
-Step = Annotated[Optional[str], typer.Argument(help="A step such as 03-circle-publisher or 03.", metavar="STEP")]  # noqa: UP045
+Step = Annotated[
+    Optional[str],  # noqa: UP045
+    typer.Argument(help="A step such as 03-circle-publisher or 03.", metavar="STEP", autocompletion=known_steps),
+]
 
 
 def add_to(app: typer.Typer) -> None:
@@ -32,7 +38,10 @@ def add_to(app: typer.Typer) -> None:
 
 def start(
     step: Annotated[
-        str, typer.Argument(help="A step such as 03-circle-publisher or 03, or next.", metavar="STEP|next")
+        str,
+        typer.Argument(
+            help="A step such as 03-circle-publisher or 03, or next.", metavar="STEP|next", autocompletion=steps_or_next
+        ),
     ],
     workspace: Workspace = None,
     student: Annotated[Optional[str], typer.Option(help="Your student id. Your own numbers depend on it.")] = None,  # noqa: UP045
@@ -86,7 +95,9 @@ def status(workspace: Workspace = None) -> None:
 
 
 def solution(
-    step: Annotated[str, typer.Argument(help="A step that you have passed, such as 03.", metavar="STEP")],
+    step: Annotated[
+        str, typer.Argument(help="A step that you have passed, such as 03.", metavar="STEP", autocompletion=known_steps)
+    ],
     workspace: Workspace = None,
 ) -> None:
     """Show the solution of a step next to yours, after yours has passed."""
@@ -99,7 +110,10 @@ def solution(
 
 def watch(
     path: Annotated[Path | None, typer.Argument(help="Folder of a package. Default: your current step.")] = None,
-    exercise: Annotated[Optional[str], typer.Option(help="The exercise, if the folder does not determine it.")] = None,  # noqa: UP045
+    exercise: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option(help="The exercise, if the folder does not determine it.", autocompletion=known_steps),
+    ] = None,
     workspace: Workspace = None,
 ) -> None:
     """Grade again after every save. Keys: h hint, l list, n next, r rerun, q quit."""

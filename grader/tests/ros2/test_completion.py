@@ -60,7 +60,16 @@ def shell(beside: World) -> Iterator[pexpect.spawn]:
         ("ros2 topic info /turtle1/cm", "ros2 topic info /turtle1/cmd_vel "),
         ("ros2 topic pub /pose turtlesim/msg/Po", "ros2 topic pub /pose turtlesim/msg/Pose "),
         ("ros2 node info /turt", "ros2 node info /turtlesim "),
+        ("ros2 service call /spa", "ros2 service call /spawn "),
+        ("ros2 service call /spawn turtlesim/srv/Sp", "ros2 service call /spawn turtlesim/srv/Spawn "),
+        ("ros2 action send_goal /turtle1/rot", "ros2 action send_goal /turtle1/rotate_absolute "),
+        ("ros2 param get /turtlesim holo", "ros2 param get /turtlesim holonomic "),
+        ("ros2 pkg executables turtles", "ros2 pkg executables turtlesim "),
+        ("grader hin", "grader hint "),
+        ("grader start 03", "grader start 03-circle-publisher "),
         ("rqt_graph --out", "rqt_graph --output "),
+        ("rqt_console --po", "rqt_console --port "),
+        ("rqt_plot /turtle1/pose/the", "rqt_plot /turtle1/pose/theta "),
     ],
 )
 def test_tab_completes(shell: pexpect.spawn, typed: str, completed: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import signal
 import sys
 from typing import TYPE_CHECKING
@@ -43,7 +44,8 @@ def rqt_plot() -> int:
         "Plot numeric fields of messages over time on a page in the browser.",
         "Examples: rqt_plot /turtle1/pose/x; rqt_plot /turtle1/pose/x:y:theta",
     )
-    parser.add_argument("fields", nargs="*", metavar="FIELD", help="the topic and the field, as in /turtle1/pose/x")
+    wanted = parser.add_argument("fields", nargs="*", metavar="FIELD", help="the topic and the field: /turtle1/pose/x")
+    wanted.completer = _fields  # type: ignore[attr-defined]
     return _main("rqt_plot", parser, ("plot",))
 
 
@@ -56,6 +58,10 @@ def _parser(command: str, description: str, epilog: str) -> argparse.ArgumentPar
 def _main(package: str, parser: argparse.ArgumentParser, parts: Sequence[Part]) -> int:
     """Run a command; `package` is the ROS package of the real one. Exit codes: decision 9 in docs/design.md."""
     try:
+        if "_ARGCOMPLETE" in os.environ:
+            from argcomplete import autocomplete
+
+            autocomplete(parser)
         hand_over(parser.prog, package)
         options = parser.parse_args()
         see_to_environment({"rclpy"})
@@ -66,6 +72,17 @@ def _main(package: str, parser: argparse.ArgumentParser, parts: Sequence[Part]) 
     except KeyboardInterrupt:
         return 130
     return 0
+
+
+def _fields(**_: object) -> list[str]:
+    """Return all fields with numbers in the running graph, for the Tab key."""
+    from grader.graph.discovery import cli_node, settle
+    from grader.graph.endpoints import observe
+    from grader.view.rqt.plot_fields import fields_of
+
+    with cli_node() as node:
+        settle(node)
+        return fields_of(observe(node))
 
 
 def _serve(command: str, parts: Sequence[Part], fields: Sequence[str], port: int | None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from grader.ros import message_values
@@ -10,6 +11,8 @@ from grader.ros.rendering import is_message
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from grader.graph.endpoints import Observed
 
 
 def expand(typed: str) -> list[str]:
@@ -36,6 +39,17 @@ def numeric(message: Any, path: str) -> list[str]:  # noqa: ANN401 - a message o
     if not found:
         message = f"'{path}' is not a number. Of an array, name one element, as in data[0]"
         raise Ros2Error(message)
+    return found
+
+
+def fields_of(observed: Observed) -> list[str]:
+    """Return the names of all fields with numbers that are published, without those of unknown types."""
+    types = {end.topic: end.type for end in observed.ends if end.kind == "publisher"}
+    found = []
+    for topic, type_name in types.items():
+        with suppress(Ros2Error):
+            paths = numeric(message_values.load_type(type_name, "msg")(), "")
+            found += [f"{topic}/{path.replace('.', '/')}" for path in paths]
     return found
 
 

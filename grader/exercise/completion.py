@@ -1,0 +1,16 @@
+"""What the Tab key offers where a command takes a step. It is read from the folders of the course, without parsing."""
+
+from __future__ import annotations
+
+
+def steps(incomplete: str) -> list[str]:
+    """Return the steps that begin with what was typed. "3" and "03" are the same step."""
+    from grader.exercise.model import catalogue
+
+    known = list(catalogue())
+    return [name for name in known if name.startswith(incomplete) or name.lstrip("0").startswith(incomplete)]
+
+
+def steps_or_next(incomplete: str) -> list[str]:
+    """Return the same with "next", which `grader start` takes, too."""
+    return [*steps(incomplete), *(["next"] if "next".startswith(incomplete) else [])]
