@@ -45,7 +45,7 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
         UsageError: the step has no node, was not started, or does not run this executable.
     """
     exercise, place = meant(Path(step) if step else None, None, workspace)
-    names = _executables(exercise)
+    names = executables(exercise)
     if not names:
         message = f"{exercise.id} has no node to run. `grader sim --view` starts the turtle alone."
         raise UsageError(message)
@@ -59,7 +59,8 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
     return Program(folder.resolve(), exercise.package, name)
 
 
-def _executables(exercise: Exercise) -> list[str]:
+def executables(exercise: Exercise) -> list[str]:
+    """Return the executables that the exercise runs, without repetition."""
     return list(dict.fromkeys(trial.executable for trial in exercise.trials if trial.executable))
 
 

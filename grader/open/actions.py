@@ -1,45 +1,88 @@
-"""What a page can request, each a function of its JSON; nothing else can be started or changed from a page."""
+"""What a page can request, each a method with the JSON of the request; nothing else can be started or changed."""
 
 from __future__ import annotations
 
+import os
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from grader.errors import UsageError
 from grader.exercise.model import catalogue
 from grader.learner import hints, steps
+from grader.learner.run_node import executables
 from grader.open.grading import RERUN, STEP
+from grader.open.question import answer, arguments
+from grader.ros.shell import users_environment
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
+    from grader.open.programs import Programs
 
-def actions(
-    tell: Callable[[str], object], workspace: Path | None
-) -> Mapping[str, Callable[[Mapping[str, Any]], object]]:
-    """Return the actions by name. Each returns data for JSON, and raises GraderError with a sentence for the page.
+    Request = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Actions:
+    """The actions of a page. Each returns data for JSON, and raises GraderError with a sentence for the page.
 
     `tell` passes a word of grading.py on to the process that grades.
     """
 
-    def start(request: Mapping[str, Any]) -> object:
+    tell: Callable[[str], object]
+    workspace: Path | None
+    programs: Programs
+
+    def all(self) -> Mapping[str, Callable[[Request], Any]]:
+        """Return the actions by name; some are coroutines."""
+        threaded = {"start": self.start, "hint": self.hint, "rerun": self.rerun, "ask": self.ask}
+        return {**threaded, "turtlesim": self.turtlesim, "node": self.node}
+
+    def start(self, request: Request) -> object:
         """Start a step, or the next one. Files of the learner are not overwritten."""
         step = request.get("step")
         if not isinstance(step, str) or (step != "next" and step not in catalogue()):
             message = "There is no such step."
             raise UsageError(message)
-        begun = steps.start(step, workspace)
-        tell(STEP)
+        begun = steps.start(step, self.workspace)
+        self.tell(STEP)
         lacking = [{"file": path, "lines": list(lines)} for path, lines in begun.started.lacking.items()]
         return {"step": begun.exercise.id, "folder": str(begun.started.folder), "lacking": lacking}
 
-    def hint(_: Mapping[str, Any]) -> object:
+    def hint(self, _: Request) -> object:
         """Read the next hint of the current step."""
-        return {"text": hints.hint(None, workspace)}
+        return {"text": hints.hint(None, self.workspace)}
 
-    def rerun(_: Mapping[str, Any]) -> object:
+    def rerun(self, _: Request) -> object:
         """Grade again."""
-        tell(RERUN)
+        self.tell(RERUN)
         return {}
 
-    return {"start": start, "hint": hint, "rerun": rerun}
+    def ask(self, request: Request) -> object:
+        """Ask ROS 2 a question that changes nothing."""
+        words = arguments(str(request.get("text", "")))
+        env = users_environment(None, lambda _: None, {**os.environ, "GRADER_ROS2_DAEMON": "0"})
+        found = answer(words, env)
+        return {"command": " ".join(["ros2", *words]), "output": found.output, "stopped": found.stopped}
+
+    async def turtlesim(self, request: Request) -> object:
+        """Start or stop turtlesim."""
+        if request.get("on") is True:
+            await self.programs.start_turtlesim()
+        else:
+            await self.programs.turtlesim.stop()
+        return {}
+
+    async def node(self, request: Request) -> object:
+        """Start a node of the current step, or stop it."""
+        if request.get("on") is not True:
+            await self.programs.node.stop()
+            return {}
+        current = steps.current(self.workspace)
+        name = request.get("executable")
+        if current is None or name not in executables(current[0]):
+            message = "This step has no such program."
+            raise UsageError(message)
+        await self.programs.start_node(current[0].id, str(name))
+        return {}

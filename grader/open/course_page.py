@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from grader.view.address import Place
 
-_ENDS_S = 5.0
+_ENDS_S = 15.0
 """How long the server may take to end (s). Then it is killed."""
 
 

@@ -10,6 +10,7 @@ from grader.checks.exercises import find_exercise
 from grader.checks.outcome import Status
 from grader.exercise.model import catalogue
 from grader.learner import hints, progress
+from grader.learner.run_node import executables
 from grader.report.html import ShownCheck
 from grader.report.verdict import tone, verdict
 
@@ -117,6 +118,7 @@ def page_data(now: Content, workspace: Path) -> dict[str, object]:
         "checks": _checks(exercise, now) if exercise else [],
         "hints": hints.read_hints(exercise, step) if exercise else [],
         "more_hints": exercise is not None and hints.has_next(exercise, step),
+        "executables": executables(exercise) if exercise else [],
         "steps": [_step(name, known) for name in catalogue()],
     }
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import json
 from dataclasses import dataclass
+from inspect import iscoroutinefunction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocketDisconnect
 
 from grader.errors import GraderError
+from grader.open.turtle_relay import relay
 from grader.view.guard import admitted
 from grader.view.page_server import Guard
 
@@ -26,12 +28,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from starlette.requests import Request
-    from starlette.routing import BaseRoute
     from starlette.types import ASGIApp
     from starlette.websockets import WebSocket
 
     from grader.open.desk import Content
     from grader.open.lesson_pages import LessonPages
+    from grader.view.address import Address
     from grader.view.guard import Door
     from grader.view.hub import Hub
 
@@ -47,7 +49,8 @@ PATIENCE_S = 5.0
 class DeskServer:
     """What answers the requests.
 
-    `content` returns what the page shows now. `actions` are what a page can request; `more` are further routes.
+    `content` returns what the page shows now. `actions` are what a page can request. `turtle`
+    returns the address of turtlesim's view.
     """
 
     content: Callable[[], Content]
@@ -55,7 +58,7 @@ class DeskServer:
     door: Door
     pages: LessonPages
     actions: Mapping[str, Callable[[Mapping[str, Any]], object]]
-    more: tuple[BaseRoute, ...] = ()
+    turtle: Callable[[], Address | None]
 
     def application(self) -> ASGIApp:
         """Return the application, protected by the guard."""
@@ -64,7 +67,7 @@ class DeskServer:
             Route("/verdict", self._verdict),
             Route("/do/{name}", self._act, methods=["POST"]),
             WebSocketRoute("/live", self._live),
-            *self.more,
+            WebSocketRoute("/turtle", self._turtle),
             Route("/{path:path}", self._page),
         ]
         return Guard(Starlette(routes=routes))
@@ -93,6 +96,8 @@ class DeskServer:
             return JSONResponse({"problem": "There is no such action."}, 404)
         try:
             wanted = await asyncio.wait_for(_wanted(request), PATIENCE_S)
+            if iscoroutinefunction(action):
+                return JSONResponse(await action(wanted))
             return JSONResponse(await run_in_threadpool(action, wanted))
         except asyncio.TimeoutError:
             return JSONResponse({"problem": "The request took too long."}, 408)
@@ -112,6 +117,17 @@ class DeskServer:
         if shown != self.door.token:
             await socket.send_text(json.dumps({"kind": "token", "token": self.door.token}))
         await _follow(socket, self.hub)
+
+    async def _turtle(self, socket: WebSocket) -> None:
+        if not admitted(self.door.token, socket.query_params.get("token", "")):
+            await socket.close(4403)
+            return
+        await socket.accept()
+        address = self.turtle()
+        if address is None:
+            await socket.close(1001)
+        else:
+            await relay(socket, address)
 
     def _admits(self, request: Request) -> bool:
         return admitted(self.door.token, request.headers.get(TOKEN, ""))

@@ -27,7 +27,7 @@ class LessonPages:
 
     def __init__(self) -> None:
         self._read: tuple[object, list[Lesson]] = (None, [])
-        shared = [*VIEW.glob("*.js"), VIEW / "view.css", REPORT / "player.js"]
+        shared = [*VIEW.glob("*.js"), VIEW / "simulator.css", REPORT / "player.js"]
         own = [file for file in OWN.iterdir() if file.suffix in (".js", ".css")]
         self._assets = {f"{FOLDER}/{name}": file for name, file in assets().items()}
         self._assets |= {f"{FOLDER}/{file.name}": file for file in [*shared, *own]}

@@ -14,11 +14,12 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from grader.learner import progress
-from grader.open.actions import actions
+from grader.open.actions import Actions
 from grader.open.desk import Content, from_json, page_data
 from grader.open.desk_server import DeskServer
 from grader.open.grading import STEP
 from grader.open.lesson_pages import LessonPages
+from grader.open.programs import Programs
 from grader.view.guard import Door
 from grader.view.hub import Hub
 from grader.view.serving import in_loop, serve
@@ -47,6 +48,7 @@ class PageProcess:
         self._opens = opens
         self._content = Content()
         self._hub = Hub(self._data)
+        self._programs = Programs(self._tell, workspace)
 
     async def serve(self) -> None:
         """Serve until the other process has ended."""
@@ -60,7 +62,9 @@ class PageProcess:
             in_loop(loop, writer.write, f"{word}\n".encode())
 
         door = Door(self._place.address.token)
-        app = DeskServer(lambda: self._content, self._hub, door, LessonPages(), actions(tell, self._workspace))
+        requests = Actions(tell, self._workspace, self._programs).all()
+        pages, address = LessonPages(), self._programs.address
+        app = DeskServer(lambda: self._content, self._hub, door, pages, requests, address)
         ended = asyncio.Event()
         beside = [asyncio.create_task(self._look(tell)), asyncio.create_task(self._follow(reader, ended))]
         try:
@@ -68,6 +72,7 @@ class PageProcess:
         finally:
             for each in beside:
                 each.cancel()
+            await self._programs.stop()
 
     async def _follow(self, reader: asyncio.StreamReader, ended: asyncio.Event) -> None:
         """Show each content that comes, until the other process has ended."""
@@ -91,7 +96,7 @@ class PageProcess:
                 tell(STEP)
 
     def _data(self) -> dict[str, object]:
-        return page_data(self._content, self._root)
+        return {**page_data(self._content, self._root), "programs": self._programs.data()}
 
     def _tell(self) -> None:
         if self._hub.pages:

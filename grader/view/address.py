@@ -54,7 +54,7 @@ def listen(kind: str, port: int | None = None) -> Place:
     Raises:
         UsageError: the port is not available.
     """
-    kept = _remembered(kind)
+    kept = remembered(kind)
     token = kept.token if kept else secrets.token_urlsafe(_TOKEN_BYTES)
     listening = _bound(port) if port is not None else _free(kept.port if kept else 0)
     address = Address(listening.getsockname()[1], token)
@@ -95,7 +95,8 @@ def _file(kind: str) -> Path:
     return xdg.state() / f"view-{kind}.json"
 
 
-def _remembered(kind: str) -> Address | None:
+def remembered(kind: str) -> Address | None:
+    """Return the last address of this kind of view, or None. Whether it is still served is not known."""
     file = _file(kind)
     try:
         stat = file.stat()

@@ -7,6 +7,7 @@ import { act } from "./requests.js";
 import { ask, session } from "./session.js";
 import { showSteps } from "./steps.js";
 import { Task } from "./task.js";
+import { TurtlePane } from "./turtle_pane.js";
 import { Verdict } from "./verdict.js";
 
 const find = (id) => document.getElementById(id);
@@ -14,6 +15,7 @@ const step = document.body.dataset.step;
 const connection = find("connection");
 const desk = step !== undefined;
 const verdict = desk && new Verdict({ line: find("verdict-line"), doing: find("doing"), details: find("details") });
+const turtle = desk && new TurtlePane(find("turtle-pane"));
 const task = desk && new Task(find("task-state"), step);
 
 function say(text, kind) {
@@ -57,6 +59,7 @@ function show(state) {
   showChecks(find("checks"), here ? state.checks : []);
   verdict.show(state);
   showHints(state);
+  turtle.show(state);
 }
 
 async function next() {

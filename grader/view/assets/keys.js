@@ -6,12 +6,13 @@ const ARROWS = { ArrowUp: "up", ArrowDown: "down", ArrowLeft: "left", ArrowRight
 const LETTERS = new Set("gtredcvbf");
 
 export class Keys {
-  constructor({ held, press }) {
+  // Keys count if they are pressed inside of `within`.
+  constructor({ held, press, within = document }) {
     this.said = held;
     this.press = press;
     this.down = new Set();
     this.timer = null;
-    document.addEventListener("keydown", (event) => this.key(event, true));
+    within.addEventListener("keydown", (event) => this.key(event, true));
     document.addEventListener("keyup", (event) => this.key(event, false));
     window.addEventListener("blur", () => this.release());
     document.addEventListener("visibilitychange", () => this.release());

@@ -9,8 +9,15 @@ function cell(name, ...parts) {
   return made;
 }
 
-function names(all) {
-  return cell("td", ...(all.length ? all.flatMap((name) => [cell("span", name), " "]) : [cell("span", "nobody")]));
+// On a narrow page, the label stands before the content, since there is no room for columns.
+function labelled(label, ...parts) {
+  const made = cell("td", ...parts);
+  made.dataset.label = label;
+  return made;
+}
+
+function names(label, all) {
+  return labelled(label, ...(all.length ? all.flatMap((name) => [cell("span", name), " "]) : [cell("span", "nobody")]));
 }
 
 export class Topics {
@@ -26,9 +33,9 @@ export class Topics {
     this.body.replaceChildren(...topics.map(({ name, types, publishers, subscribers, hertz }) => {
       const title = cell("th", cell("span", name), " ", cell("small", types.join(", ")));
       title.scope = "row";
-      const rate = cell("td", hertz === null ? "–" : hertz < MOST_HZ ? `${hertz} Hz` : `over ${MOST_HZ} Hz`);
+      const rate = labelled("Rate", hertz === null ? "–" : hertz < MOST_HZ ? `${hertz} Hz` : `over ${MOST_HZ} Hz`);
       rate.className = "rate";
-      const row = cell("tr", title, rate, names(publishers), names(subscribers));
+      const row = cell("tr", title, rate, names("From", publishers), names("To", subscribers));
       row.dataset.topic = name;
       return row;
     }));

@@ -1,0 +1,93 @@
+// The turtle: start and stop turtlesim and one's own node, drive, and ask ROS 2.
+
+import { Link } from "./link.js";
+import { act } from "./requests.js";
+import { session } from "./session.js";
+import { Simulator } from "./simulator.js";
+
+const find = (id) => document.getElementById(id);
+
+function setText(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+export class TurtlePane {
+  constructor(pane) {
+    this.link = null;
+    this.running = { turtlesim: false, node: false };
+    this.simulator = new Simulator({ send: (said) => this.link?.send(said), within: pane });
+    this.status = find("sim-status");
+    find("sim-switch").addEventListener("click", () => this.change("turtlesim", { on: !this.running.turtlesim }));
+    find("node-switch").addEventListener("click", () => this.change("node",
+      { on: !this.running.node, executable: find("executable").value }));
+    find("ask").addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.ask(find("question").value);
+    });
+  }
+
+  async change(name, wanted) {
+    const { problem } = await act(name, wanted);
+    if (problem) setText(this.status, problem);
+  }
+
+  show({ programs, executables }) {
+    this.running = programs;
+    setText(find("sim-switch"), programs.turtlesim ? "Stop turtlesim" : "Start turtlesim");
+    setText(find("node-switch"), programs.node ? "Stop it" : "Run it");
+    find("node-switch").disabled = executables.length === 0;
+    this.choose(executables);
+    find("node-part").hidden = programs.lines.length === 0;
+    this.lines(programs.lines.join("\n"));
+    if (programs.turtlesim && !this.link) this.connect();
+    if (!programs.turtlesim && this.link) this.disconnect();
+    if (!this.link) setText(this.status, programs.problem || "turtlesim is not running.");
+  }
+
+  choose(names) {
+    const select = find("executable");
+    const shown = [...select.options].map((option) => option.value);
+    if (JSON.stringify(shown) === JSON.stringify(names)) return;
+    const before = select.value;
+    select.replaceChildren(...names.map((name) => new Option(name, name, false, name === before)));
+  }
+
+  // The last line stays in sight, unless the reader has scrolled up.
+  lines(text) {
+    const place = find("node-lines");
+    if (place.textContent === text) return;
+    const below = place.scrollTop + place.clientHeight >= place.scrollHeight - 4;
+    place.textContent = text;
+    if (below) place.scrollTop = place.scrollHeight;
+  }
+
+  connect() {
+    setText(this.status, "turtlesim is starting.");
+    this.link = new Link({
+      news: (news) => {
+        find("live").hidden = false;
+        setText(this.status, "turtlesim is running.");
+        this.simulator.show(news);
+      },
+      up: () => {},
+      down: () => {},
+      path: "/turtle",
+      token: session,
+      probe: "/assets/book.js",
+    });
+  }
+
+  disconnect() {
+    this.link.close();
+    this.link = null;
+    find("live").hidden = true;
+  }
+
+  async ask(text) {
+    const place = find("asked");
+    place.hidden = false;
+    place.textContent = "Asking …";
+    const { problem, command, output, stopped } = await act("ask", { text });
+    place.textContent = problem ?? `$ ${command}\n${output}${stopped ? "\n(It was stopped: no answer came.)" : ""}`;
+  }
+}

@@ -1,0 +1,140 @@
+"""The programs that a page can start: turtlesim, and a node of the current step. They are the same as in a terminal."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import signal
+from collections import deque
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from grader.common.interpreter import interpreter
+from grader.view.address import Address, remembered
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from pathlib import Path
+
+KEPT = 200
+"""The number of lines that are kept of a program's output."""
+LONGEST = 500
+"""The maximum length of a line that is kept (characters)."""
+ENDS_S = 8.0
+"""How long a program may take to end after Ctrl-C (s). Then it is killed."""
+READY_S = 30.0
+"""How long turtlesim may take until it is there (s)."""
+_LOOK_S = 0.05
+_ADDRESS = re.compile(r"See it move: http://127\.0\.0\.1:(\d+)/#(\S+)")
+_SCREENS = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+
+
+class Program:
+    """A program that runs or not, with its last lines. `changed` is called when there is something new."""
+
+    def __init__(self, changed: Callable[[], object]) -> None:
+        self.lines: deque[str] = deque(maxlen=KEPT)
+        self._changed = changed
+        self._process: asyncio.subprocess.Process | None = None
+        self._reading: asyncio.Task[None] | None = None
+
+    @property
+    def running(self) -> bool:
+        """Whether the program runs."""
+        return self._process is not None
+
+    async def start(self, *arguments: str) -> None:
+        """Start `python ARGUMENTS`, unless the program runs already."""
+        if self.running:
+            return
+        # The page shows the turtle, so no other page is opened.
+        env = {name: value for name, value in os.environ.items() if name not in _SCREENS}
+        # No daemon of ros2, which would stay.
+        own = {"PYTHONUNBUFFERED": "1", "GRADER_ROS2_DAEMON": "0"}
+        start = interpreter(*arguments, env={**env, **own}, searches=True)
+        self.lines.clear()
+        self._process = await asyncio.create_subprocess_exec(
+            *start.argv,
+            env=start.env,
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.STDOUT,
+            start_new_session=True,
+        )
+        self._reading = asyncio.create_task(self._read(self._process))
+        self._changed()
+
+    async def stop(self) -> None:
+        """Stop the program as Ctrl-C does in a terminal, and wait for its end."""
+        process, reading = self._process, self._reading
+        if process is None or reading is None:
+            return
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGINT)
+        try:
+            await asyncio.wait_for(asyncio.shield(reading), ENDS_S)
+        except asyncio.TimeoutError:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            await reading
+
+    async def _read(self, process: asyncio.subprocess.Process) -> None:
+        assert process.stdout is not None
+        while chunk := await process.stdout.read(65536):
+            # A line that comes in two pieces is joined again; a very long one is cut.
+            first, *rest = chunk.decode("utf-8", "replace").split("\n")
+            if self.lines:
+                self.lines[-1] = (self.lines[-1] + first)[:LONGEST]
+            else:
+                self.lines.append(first[:LONGEST])
+            self.lines.extend(line[:LONGEST] for line in rest)
+            self._changed()
+        await process.wait()
+        self._process = None
+        self._changed()
+
+
+class Programs:
+    """Turtlesim and the node of a step."""
+
+    def __init__(self, changed: Callable[[], object], workspace: Path | None) -> None:
+        self.turtlesim = Program(changed)
+        self.node = Program(changed)
+        self._workspace = workspace
+
+    def address(self) -> Address | None:
+        """Return the address of the view of turtlesim: of the one that was started here, or in a terminal."""
+        for line in self.turtlesim.lines:
+            found = _ADDRESS.search(line)
+            if found:
+                return Address(int(found[1]), found[2])
+        return remembered("turtlesim")
+
+    async def start_turtlesim(self) -> None:
+        """Start `grader sim --view`."""
+        await self.turtlesim.start("-m", "grader.cli", "sim", "--view")
+        # A node that started before would start a turtlesim of its own.
+        for _ in range(round(READY_S / _LOOK_S)):
+            if not self.turtlesim.running or any("Spawning turtle" in line for line in self.turtlesim.lines):
+                return
+            await asyncio.sleep(_LOOK_S)
+
+    async def start_node(self, step: str, executable: str) -> None:
+        """Start `grader run` with this executable of the step, beside a turtlesim without another page."""
+        await self.start_turtlesim()
+        given = ["--workspace", str(self._workspace)] if self._workspace else []
+        await self.node.start("-m", "grader.cli", "run", *given, "--no-view", step, executable)
+
+    async def stop(self) -> None:
+        """Stop both."""
+        await asyncio.gather(self.node.stop(), self.turtlesim.stop())
+
+    def data(self) -> Mapping[str, object]:
+        """Return what a page shows, ready for JSON."""
+        return {
+            "turtlesim": self.turtlesim.running,
+            "problem": "" if self.turtlesim.running else "\n".join(self.turtlesim.lines).strip()[-LONGEST:],
+            "node": self.node.running,
+            "lines": list(self.node.lines),
+        }

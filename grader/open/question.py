@@ -1,0 +1,98 @@
+"""Questions to ROS 2 that a page may ask: a fixed list of verbs of `ros2` that change nothing. Never a shell."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import signal
+import subprocess
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.common.interpreter import interpreter
+from grader.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+VERBS: Mapping[str, tuple[str, ...]] = {
+    "topic": ("list", "info", "echo", "hz", "type", "find"),
+    "interface": ("show", "list", "package", "packages"),
+    "node": ("list", "info"),
+    "service": ("list", "info", "type", "find"),
+    "param": ("list", "get", "describe"),
+    "action": ("list", "info", "type"),
+}
+"""What may be asked."""
+_OPTIONS = frozenset(
+    {*("-t", "-v", "-c", "-a"), *("--show-types", "--verbose", "--count-topics", "--no-comments", "--all", "--once")}
+)
+_WORD = re.compile(r"[A-Za-z0-9_/~.][A-Za-z0-9_/~.\-]*")
+_MOST_WORDS = 8
+LONGEST = 20_000
+"""The maximum length of an answer (characters)."""
+HZ_S = 5.0
+"""How long `ros2 topic hz` measures (s)."""
+PATIENCE_S = 15.0
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What the command has printed, and whether it was stopped because it does not end by itself."""
+
+    output: str
+    stopped: bool
+
+
+def arguments(text: str) -> list[str]:
+    """Return the arguments of `ros2` for a question.
+
+        arguments("ros2 topic echo /turtle1/pose")  # ["topic", "echo", "/turtle1/pose", "--once"]
+
+    Raises:
+        UsageError: the text is not one of the questions.
+    """
+    try:
+        words = shlex.split(text)
+    except ValueError as error:
+        message = f"A quote is not closed: {text}."
+        raise UsageError(message) from error
+    words = words[1:] if words[:1] == ["ros2"] else words
+    if len(words) < 2 or words[1] not in VERBS.get(words[0], ()):
+        allowed = "; ".join(f"{group} {', '.join(verbs)}" for group, verbs in VERBS.items())
+        message = f"Only questions that change nothing can be asked here. These are: {allowed}."
+        raise UsageError(message)
+    wrong = [each for each in words[2:] if each not in _OPTIONS and not _WORD.fullmatch(each)]
+    if wrong or len(words) > _MOST_WORDS:
+        message = f"{(wrong or words[_MOST_WORDS:])[0]!r} cannot be part of a question here. Use a terminal for it."
+        raise UsageError(message)
+    if words[:2] == ["topic", "echo"] and "--once" not in words:
+        words.append("--once")
+    return words
+
+
+def answer(words: list[str], env: Mapping[str, str]) -> Answer:
+    """Run `ros2` with these arguments, from `arguments`, and return what it prints."""
+    start = interpreter("-m", "grader.ros2.main", *words, env=env, searches=True)
+    endless = words[:2] == ["topic", "hz"]
+    process = subprocess.Popen(
+        start.argv,
+        env=start.env,
+        cwd="/",
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,
+    )
+    stopped = False
+    try:
+        output, _ = process.communicate(timeout=HZ_S if endless else PATIENCE_S)
+    except subprocess.TimeoutExpired:
+        stopped = True
+        process.send_signal(signal.SIGINT)
+        try:
+            output, _ = process.communicate(timeout=HZ_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            output, _ = process.communicate()
+    return Answer(output[:LONGEST].decode("utf-8", "replace"), stopped and not endless)

@@ -1,0 +1,60 @@
+"""The questions to ROS 2 that a page may ask."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.errors import UsageError
+from grader.open.question import arguments
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("topic list", ["topic", "list"]),
+        ("ros2 topic list -t", ["topic", "list", "-t"]),
+        ("ros2 topic echo /turtle1/pose", ["topic", "echo", "/turtle1/pose", "--once"]),
+        ("topic hz /turtle1/cmd_vel", ["topic", "hz", "/turtle1/cmd_vel"]),
+        ("interface show geometry_msgs/msg/Twist", ["interface", "show", "geometry_msgs/msg/Twist"]),
+        ("param get /turtlesim background_r", ["param", "get", "/turtlesim", "background_r"]),
+        ("'action' list", ["action", "list"]),
+    ],
+)
+def test_a_question(text: str, words: list[str]) -> None:
+    assert arguments(text) == words
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "topic",
+        "topic pub /turtle1/cmd_vel geometry_msgs/msg/Twist",
+        "service call /clear std_srvs/srv/Empty",
+        "param set /turtlesim background_r 0",
+        "action send_goal /a b {}",
+        "run turtlesim turtlesim_node",
+        "bag record -a",
+        "daemon start",
+        "param dump /turtlesim",
+        "topic list; rm -rf x",
+        "topic list && x",
+        "topic list $(x)",
+        "topic list `x`",
+        "topic list > x",
+        "topic echo /a --qos-profile x",
+        "topic list --spin-time 9999",
+        "topic list -",
+        "topic echo /a --filter '__import__(\"os\")'",
+        "topic list 'a",
+        "topic info " + "a " * 20,
+        "bash -c x",
+        "ros2 ros2 topic list",
+        "topic list a\x00b",
+        "topic echo /a\n/b --field x",
+    ],
+)
+def test_anything_else_is_refused_with_a_sentence(text: str) -> None:
+    with pytest.raises(UsageError) as refused:
+        arguments(text)
+    assert str(refused.value).endswith(".")

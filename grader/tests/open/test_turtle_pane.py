@@ -1,0 +1,88 @@
+"""The live turtle in the page: turtlesim, the learner's node, the keys, and questions to ROS 2."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from websockets.sync.client import connect
+from websockets.typing import Origin
+
+from grader.tests.browser import violations
+from grader.tests.domains import own_domain
+from grader.tests.open.course import CIRCLE, Course, course
+from grader.tests.waiting import until_gone
+
+if TYPE_CHECKING:
+    import pytest
+    from playwright.sync_api import Browser
+
+
+def of_home(home: Path) -> list[int]:
+    """The processes with this HOME."""
+    found = []
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            env = (place / "environ").read_bytes()
+        except OSError:
+            continue
+        if f"HOME={home}\0".encode() in env:
+            found.append(int(place.name))
+    return found
+
+
+def test_the_turtle_in_the_page(browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(own_domain()))
+    for learner in course(tmp_path):
+        learner.run("start", CIRCLE)
+        learner.start()
+        learner.save()
+        drive(learner, browser)
+        started = of_home(tmp_path)
+        assert started
+        assert learner.end() == 0
+        for pid in started:
+            until_gone(pid)
+
+
+def drive(learner: Course, browser: Browser) -> None:
+    page = learner.opened(browser)
+    problems: list[str] = []
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    page.get_by_role("button", name="Turtle", exact=True).click()
+    page.get_by_role("button", name="Start turtlesim").click()
+    page.get_by_text("turtle1: x 5.54 m, y 5.54 m, heading 0.00 rad").wait_for()
+
+    # The arrow keys drive while the canvas is focused, and scroll the lesson while it is not.
+    page.locator("#sea").focus()
+    page.keyboard.down("ArrowUp")
+    page.locator("#where").get_by_text("x 6.").wait_for()
+    page.keyboard.up("ArrowUp")
+    page.get_by_role("button", name="Reset").click()
+    page.get_by_text("turtle1: x 5.54 m, y 5.54 m, heading 0.00 rad").wait_for()
+    page.get_by_role("heading", level=1).click()
+    page.keyboard.press("ArrowUp")
+
+    page.get_by_role("button", name="Run it").click()
+    page.locator("#node-lines").get_by_text("[draw_circle]").wait_for()
+    page.locator('#graph [data-name="/draw_circle"]').wait_for()
+    page.locator("#where").get_by_text("x 7.").wait_for()
+
+    page.get_by_label("ros2").fill("topic info /turtle1/cmd_vel")
+    page.keyboard.press("Enter")
+    page.locator("#asked").get_by_text("Type: geometry_msgs/msg/Twist").wait_for()
+    page.get_by_label("ros2").fill("topic pub /turtle1/cmd_vel")
+    page.keyboard.press("Enter")
+    page.locator("#asked").get_by_text("Only questions that change nothing").wait_for()
+    assert violations(page) == []
+
+    page.get_by_role("button", name="Stop it").click()
+    page.get_by_role("button", name="Run it").wait_for()
+    with connect(f"ws://{learner.host}/turtle?token={learner.token}", origin=Origin(f"http://{learner.host}")) as link:
+        assert '"kind":"all"' in str(link.recv())
+    page.get_by_role("button", name="Stop turtlesim").click()
+    page.get_by_role("button", name="Start turtlesim").wait_for()
+    page.get_by_role("button", name="Run it").click()
+    page.locator("#node-lines").get_by_text("[draw_circle]").wait_for()
+    assert problems == []
+    page.close()
