@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.evidence import activity
 from grader.evidence.arrivals import Measured, measure_arrivals
+from grader.evidence.late_exit import with_crash_first
 from grader.evidence.trajectory import Trajectory, trajectory_of
 from grader.evidence.tries import Tries
 from grader.submission.answers_toml import Answers, read_answers
@@ -92,6 +93,8 @@ class Evidence:
 
     def with_run(self, run: Run) -> Evidence:
         """Return the evidence with the result of this trial."""
+        if run.recording is not None:
+            run = replace(run, recording=with_crash_first(run.recording))
         return replace(self, runs={**self.runs, self.trial.id: run})
 
     @cached_property

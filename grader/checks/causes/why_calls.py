@@ -120,9 +120,18 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
             "string-and-number", "A string and a number cannot be added. Use an f-string to put a number into a string."
         )
     if "'NoneType' object does not support the context manager" in text:
-        return _after_shutdown(scene)
+        return _with_init(scene) or _after_shutdown(scene)
     if "Expected QoSProfile or int" in text:
         return Cause("queue-size", "The last argument is the queue size, a whole number.")
+    return None
+
+
+def _with_init(scene: CrashScene) -> Cause | None:
+    """Return the cause if a with statement on the line calls rclpy.init, else None."""
+    for call in scene.calls_on_line("init"):
+        if dotted(call.func) == "rclpy.init":
+            text = "rclpy.init can stand in a with statement in newer distributions only. In Jazzy it returns nothing."
+            return Cause("crash", text, scene.at(call))
     return None
 
 

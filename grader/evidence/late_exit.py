@@ -1,0 +1,32 @@
+"""A node that crashed, but whose process took so long to exit that Ctrl-C came first.
+
+On a busy machine, a process may need longer to exit after an uncaught exception than a trial in simulated time lasts.
+The same submission must get the same outcomes each time, so the exception decides, and not who was faster.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from grader.trial.recording import Recording
+
+START = "Traceback (most recent call last):"
+TOP = re.compile(r'\s*File ".*", line \d+, in <module>')
+"""The outermost frame of a program. Only the traceback of an exception that nobody caught contains it."""
+
+
+def with_crash_first(recording: Recording) -> Recording:
+    """Return the recording; if an uncaught exception came before Ctrl-C, the node has ended by itself."""
+    end, stderr = recording.end, recording.stderr
+    if end.by == "itself" or end.out_of is not None:
+        return recording
+    lines = stderr.text.splitlines()
+    for index, line in enumerate(lines[:-1]):
+        if line == START and TOP.match(lines[index + 1]) and index < len(stderr.times):
+            at_s = stderr.times[index]
+            if at_s < recording.sigint_t_s:
+                return replace(recording, end=replace(end, by="itself", exit_code=1, t_s=at_s, stop_s=None))
+    return recording
