@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
+from grader.book.figures import FIGURES
 from grader.book.markdown import rendered
 from grader.errors import MachineError
 from grader.exercise.model import catalogue
@@ -49,7 +50,7 @@ def lesson_of(folder: Path) -> Lesson:
     except (OSError, ValueError) as error:
         message = f"The lesson {file} cannot be read: {error}."
         raise MachineError(message) from error
-    made = rendered(text)
+    made = rendered(text, FIGURES.get(folder.name))
     title = re.sub(r"^Step \d+: ", "", made.title)
     title = title[:1].upper() + title[1:]
     return Lesson(folder.name, title, Markup(made.html), made.sections, made.pictures, folder)

@@ -8,16 +8,19 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from markdown_it import MarkdownIt
+from markdown_it.token import Token
 from markupsafe import escape
 
 from grader.book.code import code_html
+from grader.book.figures import figure_html
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from markdown_it.renderer import RendererHTML
-    from markdown_it.token import Token
     from markdown_it.utils import EnvType, OptionsDict
+
+    from grader.book.figures import Figure
 
 PAGE = "index.html"
 """The name of a lesson's page in the folder of its step."""
@@ -45,14 +48,16 @@ class Rendered:
     pictures: tuple[str, ...]
 
 
-def rendered(text: str) -> Rendered:
-    """Return the HTML of a lesson. HTML in the Markdown is shown as text."""
+def rendered(text: str, figure: Figure | None = None) -> Rendered:
+    """Return the HTML of a lesson, with the place for a figure. HTML in the Markdown is shown as text."""
     markdown = _parser()
     tokens = _without_neighbours(markdown.parse(text))
     title, tokens = _title(tokens)
     _add_anchors(tokens)
     _link(tokens)
     pictures = tuple(str(token.attrs["src"]) for token in _inner(tokens) if token.type == "image")
+    if figure is not None:
+        tokens = _with_figure(tokens, figure)
     html = markdown.renderer.render(tokens, markdown.options, {})
     return Rendered(title, html, tuple(_sections(tokens, title)), pictures)
 
@@ -141,6 +146,14 @@ def _link(tokens: list[Token]) -> None:
         only = inline.children or []
         if opening.type == "paragraph_open" and len(only) == 1 and only[0].type == "image":
             opening.tag = closing.tag = "figure"
+
+
+def _with_figure(tokens: list[Token], figure: Figure) -> list[Token]:
+    """Add the figure at the end of its section, or else at the end of the lesson."""
+    begin = next((at for at, token in enumerate(tokens) if token.attrs.get("id") == figure.anchor), len(tokens))
+    heads = (at for at, token in enumerate(tokens) if at > begin and token.type == "heading_open")
+    end = next(heads, len(tokens))
+    return [*tokens[:end], Token("html_block", "", 0, content=figure_html(figure)), *tokens[end:]]
 
 
 def _inner(tokens: list[Token]) -> Iterator[Token]:

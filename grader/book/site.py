@@ -45,7 +45,7 @@ def write_book(out: Path, repository: str = "") -> int:
 
 def assets() -> dict[str, Path]:
     """Return the style sheets, scripts and pictures that the pages load, by name; templates are left out."""
-    files = [REPORT_ASSETS / "page.css", VIEW_ASSETS / "turtle.svg", *sorted(ASSETS.iterdir())]
+    files = [REPORT_ASSETS / "page.css", VIEW_ASSETS / "turtle.svg", VIEW_ASSETS / "svg.js", *sorted(ASSETS.iterdir())]
     return {file.name: file for file in files if file.suffix in (".css", ".js", ".svg")}
 
 

@@ -2,6 +2,7 @@
 // Without the script, the page can still be read.
 
 import { addCopyButtons } from "./copy.js";
+import { addFigures } from "./figures.js";
 import { addSearch } from "./search.js";
 
 const WIDE = "(min-width: 62rem)";
@@ -20,4 +21,5 @@ function unfold() {
 
 unfold();
 addCopyButtons(document);
+addFigures(document);
 addSearch(document.querySelector(".search"), document.body.dataset.root);

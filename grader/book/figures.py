@@ -1,0 +1,26 @@
+"""Where the figures that a reader can change stand in the lessons. figures.js draws them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of figures.js, at the end of the section with this anchor."""
+
+    name: str
+    anchor: str
+
+
+FIGURES = {
+    "03-circle-publisher": Figure("circle", "how-fast-how-often"),
+    "06-pose-subscriber": Figure("frames", "where-it-is-and-how-far-it-has-come"),
+    "07-challenges": Figure("goal", "d-a-drive-to-a-goal"),
+}
+"""The figures by step. A figure whose section is gone stands at the end of the lesson."""
+
+
+def figure_html(figure: Figure) -> str:
+    """Return the place for the figure. It is empty until the script draws in it."""
+    return f'<figure class="explore" data-figure="{figure.name}" hidden></figure>\n'
