@@ -55,6 +55,11 @@ class Trajectory:
         """The sum of all turns to the left and to the right (rad)."""
         return float(np.abs(self.turn).sum())
 
+    @property
+    def wall_s(self) -> float:
+        """The time at which the turtle first touched a wall (s). The turtle must have touched one."""
+        return float(self.t_s[int(self.wall.argmax())])
+
     @cached_property
     def points(self) -> tuple[Floats, Floats]:
         """The points of the trajectory, x and y (m), without the frames in which the turtle is at rest."""

@@ -125,7 +125,7 @@ def _no_circle(evidence: Evidence, trajectory: Trajectory, expected: str) -> Fin
         why = _replaced(evidence) or Cause("not-moving", _all_zero(evidence), _line(evidence))
         return failed("The turtle did not move.", expected, why)
     if trajectory.wall.any():
-        observed = f"The turtle ran into a wall after {_wall_s(trajectory):.1f} s."
+        observed = f"The turtle ran into a wall after {trajectory.wall_s:.1f} s."
         return failed(observed, expected, Cause("wall", _size(evidence), _line(evidence)))
     fitted = trajectory.circle
     if fitted is None or fitted.radius > STRAIGHT_RADIUS_M:
@@ -260,11 +260,6 @@ def _line(evidence: Evidence) -> Where | None:
     return next(filter(None, turns), None) or code.assigned("linear", "x") or evidence.place("Twist", "publish")
 
 
-def _wall_s(trajectory: Trajectory) -> float:
-    """Return when the turtle first touched a wall (s)."""
-    return float(trajectory.t_s[int(trajectory.wall.argmax())])
-
-
 def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     """No frame was clamped to the canvas. The check is skipped for a turtle that never moved."""
     trajectory = evidence.trajectory
@@ -273,7 +268,7 @@ def no_wall(evidence: Evidence, _: NoParams) -> Finding:
     if moved is not None:
         return moved
     if trajectory.wall.any():
-        observed = f"The turtle ran into a wall after {_wall_s(trajectory):.1f} s."
+        observed = f"The turtle ran into a wall after {trajectory.wall_s:.1f} s."
         expected = "The turtle never touches a wall."
         return failed(observed, expected, Cause("wall", _size(evidence), _line(evidence)))
     if not (trajectory.finite and trajectory.length_m > MOVED_M):

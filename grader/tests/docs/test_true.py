@@ -29,7 +29,7 @@ KEYS = {
 }
 """Table -> a file with a wrong key in it: the message lists the right ones."""
 
-TABLES = {"drive"}
+TABLES = {"call", "drive", "parameters", "params_file", "set"}
 """Keys that are tables of their own."""
 
 

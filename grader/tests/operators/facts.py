@@ -34,16 +34,14 @@ SIGNS = {
     ",": "comma",
     **dict.fromkeys("()[]{}", "parenthes|bracket|call"),
     '"': "quot|string|special|typographic",
+    **dict.fromkeys("\u201c\u201d", "character"),
+    **dict.fromkeys("<>", "tag|comment|Git"),
     "'": "quot|string",
-    "\u201c": "character",
-    "\u201d": "character",
     ".": "dot|module",
     "=": "=|value|compare",
     "#": "comment",
     "-": "negative|sign|backwards|Line|two under",
     "/": "slash|path|divided",
-    "<": "tag|comment|Git",
-    ">": "tag|comment|Git",
     "&": "&|and|read",
     "f": "f-string",
 }
@@ -227,10 +225,8 @@ def _timers(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
 
 
 def _attribute(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
-    word = match["word"]
-    return bool(re.search(rf"self\.{word}\b|def {word}\b", facts.source)) or word.startswith(
-        ("create_", "get_", "destroy_")
-    )
+    known = re.search(rf"self\.{match['word']}\b|def {match['word']}\b", facts.source)
+    return known is not None or match["word"].startswith(("create_", "get_", "destroy_"))
 
 
 def _commands(facts: Facts) -> list[float]:
@@ -248,10 +244,8 @@ def _rate(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
 
 
 def _all_commands(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
-    recording = facts.evidence.recording
-    until = activity.end_s(recording)
-    sent = [command for command in recording.commands if command.t_s < until]
-    return len(sent) == int(match["count"]) and len({tuple(map(str, each.values)) for each in sent}) >= 1
+    until = activity.end_s(facts.evidence.recording)
+    return sum(command.t_s < until for command in facts.evidence.recording.commands) == int(match["count"])
 
 
 def _turned(facts: Facts) -> float:
