@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     Grade = Callable[[Case, ClockChoice], Graded]
 
-EVERY = 8
+EVERY = 12
 """Each of so many cases is graded by `make test`, all of them by `make test-all`: a case takes one to three seconds."""
 CASES = tuple(replace(case, sample=number % EVERY == 0) for number, case in enumerate(read_cases(MISTAKES)))
 JUDGED = [case for case in CASES if case.result != "usage"]

@@ -10,7 +10,7 @@ from rclpy.node import Node
 from std_srvs.srv import Empty
 from turtlesim.msg import Pose
 
-from grader.turtlesim.programs.run_node import run
+from grader.turtlesim.programs.spin_node import run
 from grader.turtlesim.programs.square_velocity import Leg, first, follow
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from geometry_msgs.msg import Twist
 from rclpy.node import Node
 from turtlesim.msg import Pose
 
-from grader.turtlesim.programs.run_node import run
+from grader.turtlesim.programs.spin_node import run
 
 
 class Mimic(Node):
