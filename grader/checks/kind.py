@@ -144,6 +144,15 @@ def strings(*, about: str) -> Any:
     return _field(Allowed("a list of at least one string", accept, about))
 
 
+def table(*, about: str) -> Any:
+    """Create a field for a table with numbers, strings, true or false. Its value is a tuple of names and values."""
+
+    def accept(value: object) -> tuple[tuple[str, Any], ...] | None:
+        return tuple(value.items()) if isinstance(value, dict) and value else None
+
+    return _field(Allowed("a table with at least one value", accept, about))
+
+
 def choice(*options: str, about: str) -> Any:
     """Create a field for one of the options; the first option is the default."""
 

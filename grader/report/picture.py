@@ -158,6 +158,8 @@ def _sign(draw: ImageDraw.ImageDraw, role: Role, at: tuple[int, int]) -> None:
     color = LOOKS[role].color
     if role == "trajectory":
         draw.line([(x + 5, y), (x + 41, y)], fill=color, width=4)
+    elif role == "other":
+        draw.line([(x + 5, y), (x + 41, y)], fill=color, width=3)
     elif role in ("expected", "fitted"):
         for begin in (6, 19, 32):
             draw.line([(x + begin, y), (x + begin + 8, y)], fill=color, width=3)

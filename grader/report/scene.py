@@ -9,14 +9,21 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from grader.common.words import a_list, shorten
 from grader.evidence import activity
+from grader.evidence.pens import pen_spans
 from grader.report.expectations import requested_path, shapes_of
 from grader.report.shapes import SIDE_M, Arrow, Line, Point, Ring, Role
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from grader.evidence.evidence import Evidence
     from grader.evidence.trajectory import Trajectory
+    from grader.trial.recording import Recording
 
+MOST_OTHERS = 40
+"""The maximum number of other turtles that are drawn."""
 MOST_TICKS = 150
 TICK_M = 0.11
 """Half the length of a tick."""
@@ -47,8 +54,11 @@ def scene_of(evidence: Evidence) -> Scene:
     points = finite_points(trajectory)
     moved = trajectory.finite and len(trajectory.points[0]) > 1
     if len(points) > 1:
-        shapes.append(Line("trajectory", tuple(points)))
+        shapes += _drawn(evidence, points)
         legend.append(("trajectory", "the turtle's trajectory"))
+    for drawn, text in _others(recording):
+        shapes += drawn
+        legend.append(("other", text))
     path = requested_path(evidence)
     if path is not None:
         shapes += shapes_of(path)
@@ -77,6 +87,36 @@ def scene_of(evidence: Evidence) -> Scene:
     if not trajectory.finite:
         notice = "The turtle's position became NaN (not a number)."
     return Scene(tuple(shapes), tuple(legend), tuple(facts), notice)
+
+
+def _drawn(evidence: Evidence, points: list[Point]) -> list[Line]:
+    """Return the trajectory as one line per pen. Where the pen is up, it looks like another turtle's path."""
+    trajectory, spans = evidence.trajectory, pen_spans(evidence.recording)
+    if len(spans) == 1 or not trajectory.finite:
+        return [Line("trajectory", tuple(points))]
+    lines = []
+    for span in spans:
+        first, last = trajectory.t_s.searchsorted([span.from_s, span.until_s]).tolist()
+        part = list(zip(trajectory.x[first : last + 1].tolist(), trajectory.y[first : last + 1].tolist(), strict=True))
+        moved = [point for index, point in enumerate(part) if index == 0 or point != part[index - 1]]
+        if len(moved) > 1:
+            lines.append(
+                Line("trajectory", tuple(moved), span.pen.color) if span.pen.down else Line("other", tuple(moved))
+            )
+    return lines
+
+
+def _others(recording: Recording) -> Iterator[tuple[list[Line | Ring | Arrow], str]]:
+    """Yield the other turtles with their paths and the text for the legend, if there are any."""
+    tracks = [track for track in recording.tracks if track.rows]
+    shapes: list[Line | Ring | Arrow] = []
+    for track in tracks[:MOST_OTHERS]:
+        _, x, y, theta = track.rows[-1]
+        if len(track.rows) > 1:
+            shapes.append(Line("other", tuple((row[1], row[2]) for row in track.rows)))
+        shapes.append(Arrow("other", (x, y), theta))
+    if tracks:
+        yield shapes, f"also there: {a_list([shorten(track.turtle) for track in tracks], most=4)}"
 
 
 def finite_points(trajectory: Trajectory) -> list[Point]:

@@ -40,7 +40,7 @@ class _Canvas:
         self._scale = side / SIDE_M
 
     def paint(self, shape: Line | Ring | Arrow) -> None:
-        look = LOOKS[shape.role]
+        look = shape.look if isinstance(shape, Line) else LOOKS[shape.role]
         if isinstance(shape, Arrow):
             corners = [self._pixel(corner) for corner in shape.corners]
             self._draw.polygon(corners, fill=look.color, outline=DEEP, width=FINE)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 Point = tuple[float, float]
 Rgb = tuple[int, int, int]
-Role = Literal["trajectory", "expected", "fitted", "tick", "wall", "start"]
+Role = Literal["trajectory", "other", "expected", "fitted", "tick", "wall", "start"]
 
 SIDE_M = 499 / 45
 """The side of turtlesim's canvas (m): 500 pixels, 45 pixels per metre."""
@@ -27,6 +27,7 @@ class Look:
 
 LOOKS: dict[Role, Look] = {
     "trajectory": Look((179, 184, 255), 3 / 45),
+    "other": Look((150, 226, 255), 2 / 45),
     "expected": Look((255, 214, 92), 0.045, 0.28),
     "fitted": Look((255, 255, 255), 0.028, 0.14),
     "tick": Look(DEEP, 0.035),
@@ -37,10 +38,17 @@ LOOKS: dict[Role, Look] = {
 
 @dataclass(frozen=True)
 class Line:
-    """A line through points (m)."""
+    """A line through points (m), in the colour of its role or in another one."""
 
     role: Role
     points: tuple[Point, ...]
+    color: Rgb | None = None
+
+    @property
+    def look(self) -> Look:
+        """The look of the line."""
+        look = LOOKS[self.role]
+        return look if self.color is None else replace(look, color=self.color)
 
 
 @dataclass(frozen=True)

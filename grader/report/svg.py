@@ -120,7 +120,7 @@ def scene_svg(scene: Scene, *, turtle: bool = False, name: str = "canvas") -> st
 
 
 def _shape(shape: Line | Ring | Arrow, scale: float) -> str:
-    look = LOOKS[shape.role]
+    look = shape.look if isinstance(shape, Line) else LOOKS[shape.role]
     width, color = max(look.width_m * scale, 1.0), rgb(look.color)
     dash = look.dash_m * scale
     dashes = f"{coordinate(dash)} {coordinate(dash * 0.8)}" if dash else None
@@ -202,6 +202,7 @@ def sign(role: Role) -> str:
     drawn = {
         "trajectory": trajectory,
         "tick": trajectory + tag("path", d="M23 5V21", **{**stroke, "stroke_width": 2.5}),
+        "other": tag("path", d="M5 13H41", **{**stroke, "stroke_width": 3}),
         "start": tag("polygon", points="34,13 14,21 19,13 14,5", fill=color),
         "wall": tag("path", d="M16 6L30 20M16 20L30 6", **stroke),
     }.get(role, tag("path", d="M6 13h8m5 0h8m5 0h8", **{**stroke, "stroke_width": 3}))

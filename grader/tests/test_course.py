@@ -40,7 +40,7 @@ def test_a_solution_passes_in_wall_time(step: str) -> None:
 
 @pytest.mark.exhaustive
 @pytest.mark.parametrize("seed", [1, 2, 3, 5, 8])
-@pytest.mark.parametrize("step", ["05-build-and-run", "06-pose-subscriber", "07-challenges"])
+@pytest.mark.parametrize("step", ["05-build-and-run", "06-pose-subscriber", "07-challenges", "08-services"])
 def test_a_solution_passes_from_any_start(step: str, seed: int) -> None:
     done = grader("check", f"solutions/{step}", "--seed", seed)
     assert done.returncode == 0, done.stdout + done.stderr

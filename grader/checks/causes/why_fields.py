@@ -28,6 +28,11 @@ def why_field(scene: CrashScene) -> Cause | None:
             return Cause("message-arguments", "Create the message without arguments, then set its fields one by one.")
         return None
     field, wanted = match["field"], match["type"]
+    if wanted == "int":
+        return Cause("field-type", f"The field {field} is a whole number: write it without a decimal point.")
+    if wanted in ("str", "bool"):
+        kind = "a string" if wanted == "str" else "True or False"
+        return Cause("field-type", f"The field {field} must be {kind}.")
     if wanted not in FLOAT:
         return Cause("field-type", f"The field {field} is a {wanted} with its own fields. Set those.")
     value = _assigned(scene, field)

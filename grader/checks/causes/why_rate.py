@@ -119,11 +119,15 @@ def _made_in_callback(evidence: Evidence, maker: str) -> tuple[str, Where] | Non
     return None
 
 
+PLACES = {"create_timer": 1, "add_done_callback": 0}
+"""The position of the callback among the arguments; 2 for all others."""
+
+
 def callbacks_of(evidence: Evidence, *makers: str) -> Iterator[tuple[Module, str]]:
     """Yield the names of the functions that are passed to these makers as callbacks, with their modules."""
     for maker in makers or ("create_subscription",):
         for call in evidence.code.calls(maker):
-            name = dotted(call.argument(1 if maker == "create_timer" else 2, "callback") or ast.Constant(0))
+            name = dotted(call.argument(PLACES.get(maker, 2), "callback") or ast.Constant(0))
             if name is not None:
                 yield call.module, name.rpartition(".")[2]
 

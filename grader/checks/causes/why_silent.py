@@ -74,7 +74,7 @@ def _nothing_to_spin(evidence: Evidence) -> Cause | None:
 def _stuck(evidence: Evidence) -> Cause | None:
     """Return the cause if a loop or wait in __init__, or a wait in a callback, never returns. Otherwise return None."""
     callbacks = {name for _, name in callbacks_of(evidence, "create_timer", "create_subscription")}
-    for module, method in _methods(evidence):
+    for module, method in methods_of(evidence):
         for node in ast.walk(method):
             where = Where(module.file, getattr(node, "lineno", None))
             waiting = _waits(node, module)
@@ -88,7 +88,7 @@ def _stuck(evidence: Evidence) -> Cause | None:
                 return Cause("blocks-in-init", text, where)
             if method.name == "__init__" and isinstance(node, ast.While) and _only_waits(node):
                 return Cause("blocks-in-init", "This loop in __init__ may never end, so that nothing spins.", where)
-            if method.name in callbacks and _waits_inside(node):
+            if method.name in callbacks and waits_inside(node):
                 text = "This callback waits for a response, but rclpy.spin cannot receive it while the callback waits."
                 return Cause("waits-in-callback", text, where)
     return None
@@ -132,7 +132,8 @@ def _only_waits(loop: ast.While) -> bool:
     )
 
 
-def _waits_inside(node: ast.AST) -> bool:
+def waits_inside(node: ast.AST) -> bool:
+    """Return whether this is a call that waits for a response: spin_until_future_complete, or the call of a client."""
     if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
         return False
     owner = dotted(node.func.value) or ""
@@ -141,7 +142,7 @@ def _waits_inside(node: ast.AST) -> bool:
 
 def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
     """Return the cause if a method that sends something is never called and is not a callback, else None."""
-    for module, method in _methods(evidence):
+    for module, method in methods_of(evidence):
         called = [
             node for node in ast.walk(method) if isinstance(node, ast.Call) and getattr(node.func, "attr", "") in sends
         ]
@@ -156,7 +157,8 @@ def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:
     return None
 
 
-def _methods(evidence: Evidence) -> Iterator[tuple[Module, ast.FunctionDef]]:
+def methods_of(evidence: Evidence) -> Iterator[tuple[Module, ast.FunctionDef]]:
+    """Yield the methods of all classes with their modules."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.ClassDef):

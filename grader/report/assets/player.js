@@ -58,6 +58,8 @@ function replay(run, view) {
     } else {
       text += "; no command yet";
     }
+    var made = run.calls.filter(function (call) { return call[0] <= at; });
+    if (made.length) text += "; at " + made[made.length - 1][0].toFixed(2) + " s " + made[made.length - 1][1];
     now.textContent = text;
     time.value = String(at);
     time.setAttribute("aria-valuetext", at.toFixed(1) + " of " + run.end.toFixed(1) + " seconds");

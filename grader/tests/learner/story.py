@@ -66,24 +66,31 @@ class Learner:
             if file.is_file() and not (own is not None and place.name == own.file):
                 place.parent.mkdir(parents=True, exist_ok=True)
                 text = file.read_text(encoding="utf-8")
-                if place.name == "own_circle.py":
-                    assert own is not None
-                    text = with_numbers(text, from_toml(own, (mine / own.file).read_bytes()))
+                if own is not None:
+                    text = with_numbers(text, place.name, from_toml(own, (mine / own.file).read_bytes()))
                 fresh = place.with_name(f".{place.name}.new")
                 fresh.write_text(text, encoding="utf-8")
                 fresh.replace(place)
 
 
-def with_numbers(text: str, own: OwnNumbers) -> str:
-    """Return our circle with the learner's numbers, at 1 rad/s."""
-    turn = 1.0 if own.values["direction"] == "counter-clockwise" else -1.0
-    for old, new in (
-        ("1.0 / 4.0", f"1.0 / {own.values['rate_hz']}"),
-        ("0.8", str(own.values["radius_m"])),
-        ("-1.0", str(turn)),
-    ):
+OWN = {
+    "own_circle.py": {"1.0 / 4.0": "1.0 / {rate_hz}", "0.8": "{radius_m}", "-1.0": "{turn}"},
+    "two_pens.py": {
+        "RADIUS = 1.2": "RADIUS = {radius_m}",
+        "90, 180, 60": "{red}, {green}, {blue}",
+        "2.0, 9.0": "{x_m}, {y_m}",
+    },
+    "pausable_circle.py": {"RADIUS = 1.2": "RADIUS = {radius_m}"},
+}
+"""Where our solutions hold own numbers: file -> text -> the same text for a learner."""
+
+
+def with_numbers(text: str, name: str, own: OwnNumbers) -> str:
+    """Return the text of a solution's file with the learner's numbers."""
+    turn = 1.0 if own.values.get("direction") == "counter-clockwise" else -1.0
+    for old, new in OWN.get(name, {}).items():
         assert old in text
-        text = text.replace(old, new)
+        text = text.replace(old, new.format(**own.values, turn=turn))
     return text
 
 

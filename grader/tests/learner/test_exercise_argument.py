@@ -6,6 +6,7 @@ import pytest
 
 from grader.checks.exercises import find_exercise
 from grader.errors import UsageError
+from grader.exercise.model import catalogue
 from grader.learner import steps
 from grader.learner.exercise_argument import guessed, meant
 
@@ -45,7 +46,7 @@ def test_a_step_that_was_not_started_names_the_start_command(tmp_path: Path, mon
 
 
 def test_an_unknown_exercise_lists_all_of_them() -> None:
-    with pytest.raises(UsageError, match=r"01-first-node, .*, 07-challenges"):
+    with pytest.raises(UsageError, match=r"01-first-node, .*, 07-challenges\b"):
         meant(Path(), None)
 
 
@@ -55,5 +56,5 @@ def test_a_number_may_omit_the_zero(typed: str) -> None:
 
 
 def test_the_list_of_steps_is_complete() -> None:
-    with pytest.raises(UsageError, match=r"01-first-node, .*06-pose-subscriber and 07-challenges"):
+    with pytest.raises(UsageError, match=rf"01-first-node, .*07-challenges, .* and {list(catalogue())[-1]}"):
         find_exercise("99")

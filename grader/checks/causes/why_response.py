@@ -1,0 +1,35 @@
+"""Why the callback of a service raised an exception, or made rclpy raise one."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.why_rate import callbacks_of
+from grader.checks.causes.why_silent import methods_of
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from grader.checks.causes.crash_scene import CrashScene
+
+OF_A_RESPONSE = re.compile(r"'\w+_Response' object has no attribute")
+
+
+def why_response(scene: CrashScene) -> Cause | None:
+    """Return the cause if the callback of a service returns nothing, or mixes up its parameters, else None."""
+    servers = {name for _, name in callbacks_of(scene.evidence, "create_service")}
+    for module, method in methods_of(scene.evidence):
+        where = Where(module.file, method.lineno)
+        if method.name not in servers:
+            continue
+        first = method.args.args[1].arg if len(method.args.args) > 1 else ""
+        if OF_A_RESPONSE.search(scene.crash.message) and first.startswith("res"):
+            text = f"{method.name} gets the request first, and the response second."
+            return Cause("arguments-swapped", text, where)
+        returns = any(isinstance(node, ast.Return) and node.value is not None for node in ast.walk(method))
+        if scene.crash.error == "TypeError" and not scene.crash.message and not returns:
+            text = f"{method.name} returns nothing. The callback of a service must return its response."
+            return Cause("response-not-returned", text, where)
+    return None

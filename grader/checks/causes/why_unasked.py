@@ -1,0 +1,77 @@
+"""Why a service call does not arrive: it is never made, its name is wrong, or something waits in a callback."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes import ros_names
+from grader.checks.causes.why_rate import callbacks_of
+from grader.checks.causes.why_silent import methods_of, waits_inside, why_nothing
+from grader.common.words import nearest, shorten
+from grader.submission.constants import evaluate
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+CALLBACKS = ("create_timer", "create_subscription", "create_service", "add_done_callback")
+
+
+def why_unasked(evidence: Evidence, service: str) -> Cause:
+    """Return the most likely cause of a call that does not arrive at this service of the simulator."""
+    return (
+        waits_in_callback(evidence)
+        or _wrong_name(evidence, service)
+        or why_nothing(evidence, ("call_async", "call"))
+        or _never_called(evidence)
+    )
+
+
+def waits_in_callback(evidence: Evidence) -> Cause | None:
+    """Return the cause if a callback, or a method that it calls, waits for a response. Otherwise return None."""
+    methods = {method.name: (module, method) for module, method in methods_of(evidence)}
+    reached = {name for _, name in callbacks_of(evidence, *CALLBACKS)}
+    waiting = sorted(reached)
+    while waiting:
+        name = waiting.pop()
+        if name not in methods or name == "__init__":
+            continue
+        module, method = methods[name]
+        for node in ast.walk(method):
+            if waits_inside(node):
+                text = (
+                    "A callback waits for a response. While it waits, rclpy.spin can call nothing, "
+                    "so the response is never received. Use call_async, and add_done_callback for what comes next."
+                )
+                return Cause("waits-in-callback", text, Where(module.file, getattr(node, "lineno", None)))
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr not in reached:
+                reached.add(node.func.attr)
+                waiting.append(node.func.attr)
+    return None
+
+
+def _wrong_name(evidence: Evidence, wanted: str) -> Cause | None:
+    """Return the cause if a client is made for a service that the simulator does not have. Otherwise return None."""
+    clients = evidence.code.calls("create_client")
+    names = {call: evaluate(call.argument(1, "srv_name"), call.module.names) for call in clients}
+    if any(isinstance(name, str) and f"/{name.strip('/')}" == wanted for name in names.values()):
+        return None
+    for call, name in names.items():
+        if not isinstance(name, str) or f"/{name.strip('/')}" in ros_names.SERVICES:
+            continue
+        text = f"The client is made for {shorten(name)}. The name of the service is {wanted}."
+        near = nearest(f"/{name.strip('/')}", [wanted]) or wanted.endswith(name.rpartition("/")[2])
+        if near:
+            return Cause("service-name", text, call.where)
+    return None
+
+
+def _never_called(evidence: Evidence) -> Cause:
+    if not evidence.code.calls("create_client"):
+        return Cause("service-not-called", "The node has no client for it: see create_client.", evidence.code.start)
+    if not evidence.code.calls("call_async") and not evidence.code.calls("call"):
+        text = "A client alone sends nothing. Its method call_async sends a request."
+        return Cause("service-not-called", text, evidence.place("create_client"))
+    return Cause("service-not-called", "", evidence.place("call_async", "call"))

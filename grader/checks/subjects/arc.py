@@ -1,0 +1,166 @@
+"""Check of an arc: a part of the trajectory, drawn in a certain colour or driven at a certain time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.why_unasked import waits_in_callback
+from grader.checks.kind import Kind, choice, number
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.path import STRAIGHT_RADIUS_M, moved_otherwise
+from grader.checks.tolerance import Band
+from grader.common.lazy import np
+from grader.evidence.circle_fit import fit_circle, turns_about
+from grader.evidence.pens import pen_spans
+from grader.evidence.trajectory import RESTS_M
+from grader.turtlesim.turtle import FRAME_S
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from grader.evidence.evidence import Evidence
+
+    Steps = npt.NDArray[np.bool_]
+
+SHORT_M = 0.05
+"""A shorter piece than this is not an arc."""
+FEW = 5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arc:
+    """An arc of a circle. If `red` is not negative, only what was drawn with this colour counts."""
+
+    radius_m: float = number(above=0, at_most=5.5, about="The radius.")
+    radius_tolerance_m: float = number(0.06, above=0, about="How far the radius may be off.")
+    residual_m: float = number(0.03, above=0, about="How far the piece may deviate from the fitted circle (RMS).")
+    direction: str = choice("counter-clockwise", "clockwise", about="The direction of the turn.")
+    angle_deg: float = number(0.0, at_least=0, about="The angle of the arc; any angle if 0.")
+    angle_tolerance_deg: float = number(12.0, above=0, about="How far the angle may be off.")
+    speed_m_s: float = number(0.0, at_least=0, about="The speed; any speed if 0.")
+    speed_tolerance_m_s: float = number(0.05, above=0, about="How far the speed may be off.")
+    from_s: float = number(0.0, at_least=0, about="Only the movement after this time counts.")
+    until_s: float = number(600.0, above=0, about="Only the movement before this time counts.")
+    red: float = number(-1.0, at_least=-1, at_most=255, about="The colour of the pen; any colour if it is left out.")
+    green: float = number(-1.0, at_least=-1, at_most=255, about="Its green part.")
+    blue: float = number(-1.0, at_least=-1, at_most=255, about="Its blue part.")
+
+    @property
+    def color(self) -> tuple[int, int, int] | None:
+        """The colour of the pen, or None for any colour."""
+        return None if self.red < 0 else (round(self.red), round(self.green), round(self.blue))
+
+
+def arc(evidence: Evidence, params: Arc) -> Finding:
+    """The piece of the trajectory is an arc of the right radius, direction, angle and speed."""
+    expected = _expected(params)
+    moved = moved_otherwise(evidence, expected)
+    if moved is not None:
+        return moved
+    trajectory = evidence.trajectory
+    chosen = _chosen(evidence, params)
+    length = float(trajectory.steps[chosen].sum())
+    if not (trajectory.finite and length > SHORT_M and int(chosen.sum()) >= FEW):
+        return _nothing(evidence, params, expected)
+    return _measured(evidence, params, chosen, expected)
+
+
+def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> Finding:
+    trajectory = evidence.trajectory
+    where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
+    points = np.append(np.flatnonzero(chosen)[0], np.flatnonzero(chosen) + 1)
+    x, y = trajectory.x[points], trajectory.y[points]
+    fitted = fit_circle(x, y)
+    if fitted is None or fitted.radius > STRAIGHT_RADIUS_M:
+        return failed("The turtle drove in a straight line.", expected, Cause("straight-line", where=where))
+    round_, size = Band.at_most(params.residual_m), Band.around(params.radius_m, params.radius_tolerance_m)
+    if not round_.holds(fitted.rms):
+        off = f"it deviates by {max(fitted.rms, 0.01):.2f} m (RMS) from the best circle"
+        text = "The command changes while this piece is driven, or it is driven with two pens."
+        cause = Cause("not-round", text, where)
+        return failed(f"This piece is not one arc: {off}.", expected, cause, near_edge=round_.near(fitted.rms))
+    near = round_.near(fitted.rms) or size.near(fitted.radius)
+    if not size.holds(fitted.radius):
+        text = "The radius is linear.x divided by angular.z."
+        cause = Cause("wrong-radius", text, where)
+        return failed(f"The radius of this arc is {fitted.radius:.2f} m.", expected, cause, near_edge=near)
+    turns = turns_about(x, y, fitted.x, fitted.y)
+    if (turns > 0.0) != (params.direction == "counter-clockwise"):
+        observed = f"The turtle drove this arc {'counter-clockwise' if turns > 0.0 else 'clockwise'}."
+        text = "The sign of angular.z sets the direction: a positive value turns left, which is counter-clockwise."
+        return failed(observed, expected, Cause("wrong-direction", text, where))
+    angle, speed = abs(turns) * 360.0, _speed(evidence, chosen)
+    wide, pace = (
+        Band.around(params.angle_deg, params.angle_tolerance_deg) if params.angle_deg else Band(None, None),
+        Band.around(params.speed_m_s, params.speed_tolerance_m_s) if params.speed_m_s else Band(None, None),
+    )
+    near = near or wide.near(angle) or pace.near(speed)
+    if not wide.holds(angle) and params.color is not None and _goes_on(evidence, chosen):
+        text = "The pen must have this colour before the turtle moves: drive when the response has arrived."
+        cause = Cause("not-in-colour", text, evidence.place("publish"))
+        return failed("A part of this arc was drawn in another colour.", expected, cause, near_edge=near)
+    if not wide.holds(angle):
+        text = "The angle is angular.z times the time: the number of calls of the timer times its period."
+        cause = Cause("wrong-angle", text, where)
+        return failed(f"This arc has an angle of {angle:.0f} degrees.", expected, cause, near_edge=near)
+    if not pace.holds(speed):
+        cause = Cause("wrong-speed", where=where)
+        return failed(f"The turtle drove this arc at {speed:.2f} m/s.", expected, cause, near_edge=near)
+    return passed(f"The turtle drove an arc of radius {fitted.radius:.2f} m.", near_edge=near)
+
+
+def _expected(params: Arc) -> str:
+    angle = f" of {params.angle_deg:g} degrees" if params.angle_deg else ""
+    speed = f" at {params.speed_m_s:g} m/s" if params.speed_m_s else ""
+    color = f", drawn in the colour {', '.join(map(str, params.color))}" if params.color else ""
+    return f"An arc{angle} with a radius of {params.radius_m:g} m, {params.direction}{speed}{color}."
+
+
+def _chosen(evidence: Evidence, params: Arc) -> Steps:
+    """Return for each step of the trajectory whether it belongs to the arc."""
+    trajectory = evidence.trajectory
+    chosen = (trajectory.steps > RESTS_M) & (trajectory.t_s > params.from_s) & (trajectory.t_s <= params.until_s)
+    if params.color is None:
+        return chosen
+    drawn = np.zeros(len(trajectory.t_s), dtype=np.bool_)
+    for span in pen_spans(evidence.recording):
+        if span.pen.down and span.pen.color == params.color:
+            drawn |= (trajectory.t_s >= span.from_s) & (trajectory.t_s < span.until_s)
+    return chosen & drawn
+
+
+def _goes_on(evidence: Evidence, chosen: Steps) -> bool:
+    """Return whether the turtle moved in the frame before this piece, or in the one after it."""
+    moves, ends = evidence.trajectory.steps > RESTS_M, np.flatnonzero(chosen)
+    before, after = int(ends[0]) - 1, int(ends[-1]) + 1
+    return (before >= 0 and bool(moves[before])) or (after < len(moves) and bool(moves[after]))
+
+
+def _nothing(evidence: Evidence, params: Arc, expected: str) -> Finding:
+    where = evidence.place("publish")
+    if params.color is not None and evidence.trajectory.length_m > SHORT_M:
+        text = "The pen must have this colour before the turtle moves: drive when the response has arrived."
+        color = ", ".join(map(str, params.color))
+        return failed(f"Nothing was drawn in the colour {color}.", expected, Cause("not-in-colour", text, where))
+    cause = waits_in_callback(evidence) or Cause("not-moving", where=where)
+    return failed("The turtle did not drive in that time.", expected, cause)
+
+
+def _speed(evidence: Evidence, chosen: Steps) -> float:
+    """Return the median speed of these steps (m/s)."""
+    return float(np.median(evidence.trajectory.steps[chosen])) / FRAME_S
+
+
+ARC = Kind(
+    "arc",
+    "trial",
+    "The turtle drives an arc",
+    Arc,
+    arc,
+    about="The turtle drives an arc by commands, in a certain colour or in a certain part of the trial.",
+    drives=True,
+    # A second arc to the other side leaves the first circle, but not one of twice the radius.
+    radius_m=lambda params: 2.0 * params.radius_m,
+)

@@ -1,0 +1,94 @@
+"""Check of a pause: the turtle stands still for a while, and then goes on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.kind import Kind, number
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.tolerance import Band
+from grader.common.lazy import np
+from grader.evidence.trajectory import RESTS_M
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.evidence.trajectory import Trajectory
+
+BEFORE_S = 1.0
+"""The turtle must move in this time before the pause (s)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pause:
+    """From `from_s` to `until_s` (s) the turtle stands still; it may take `within_s` (s) to stop and to go on."""
+
+    from_s: float = number(at_least=0, about="When the pause begins, on the trial's clock.")
+    until_s: float = number(above=0, about="When the pause ends.")
+    within_s: float = number(0.5, above=0, about="How long the turtle may take to stop, and to go on.")
+    goes_on: float = number(1.0, at_least=0, at_most=1, about="Whether the turtle must go on afterwards: 1 or 0.")
+
+
+def pause(evidence: Evidence, params: Pause) -> Finding:
+    """The turtle moves, stands still in time, and goes on in time."""
+    trajectory = evidence.trajectory
+    within = Band.at_most(params.within_s)
+    expected = f"The turtle stands still within {params.within_s:g} s after {params.from_s:g} s"
+    expected += f", and goes on after {params.until_s:g} s." if params.goes_on else "."
+    where = evidence.place("create_service")
+    if _moved(trajectory, params.from_s - BEFORE_S, params.from_s) is None:
+        crash = crash_of(evidence)
+        if crash is not None:
+            return crash_finding(evidence, crash, end_observed(evidence), expected)
+        return failed("The turtle did not move before the pause.", expected, Cause("not-moving", where=where))
+    last = _moved(trajectory, params.from_s, params.until_s)
+    stop_s = 0.0 if last is None else last[1] - params.from_s
+    near = within.near(stop_s)
+    if not within.holds(stop_s):
+        return _goes_on(evidence, params, stop_s, expected, near_edge=near)
+    if not params.goes_on:
+        return passed(f"The turtle stood still after {stop_s:.2f} s.", near_edge=near)
+    first = _moved(trajectory, params.until_s, float("inf"))
+    wait_s = float("inf") if first is None else first[0] - params.until_s
+    near |= within.near(wait_s)
+    if not within.holds(wait_s):
+        observed = "The turtle never went on." if first is None else f"The turtle went on after {wait_s:.1f} s."
+        text = "The request with data=False ends the pause."
+        return failed(observed, expected, Cause("pause-never-ends", text, where), near_edge=near)
+    return passed("The turtle stood still, and went on.", near_edge=near)
+
+
+def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *, near_edge: bool) -> Finding:
+    where = evidence.place("create_service")
+    inside = [command for command in evidence.commands if params.from_s + 0.1 < command.t_s < params.until_s]
+    driving = any(command.linear[0] or command.angular[2] for command in inside)
+    if driving:
+        observed = f"The turtle still moved {stop_s:.1f} s after the call."
+        text = (
+            "The commands still drive during the pause: while the node is paused, publish a command with all values 0."
+        )
+        return failed(observed, expected, Cause("pause-ignored", text, where), near_edge=near_edge)
+    observed = f"The turtle stood still only {stop_s:.1f} s after the call."
+    text = "Without a new command, a turtle goes on for a second. While the node is paused, publish zeros."
+    return failed(observed, expected, Cause("no-stop-command", text, where), near_edge=near_edge)
+
+
+def _moved(trajectory: Trajectory, from_s: float, until_s: float) -> tuple[float, float] | None:
+    """Return the first and the last time (s) of a movement between two times, or None."""
+    moving = (trajectory.steps > RESTS_M) & (trajectory.t_s > from_s) & (trajectory.t_s <= until_s)
+    times = trajectory.t_s[np.flatnonzero(moving)]
+    return (float(times[0]), float(times[-1])) if len(times) else None
+
+
+PAUSE = Kind(
+    "pause",
+    "trial",
+    "The turtle stands still and goes on",
+    Pause,
+    pause,
+    about="The turtle stands still between two times, such as those of two calls of the trial, and goes on afterwards.",
+    drives=True,
+)

@@ -1,0 +1,194 @@
+"""Checks of services: what the node asked the simulator for, and what it answered when the trial called it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from grader.checks.cause import Cause
+from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_unasked import waits_in_callback, why_unasked
+from grader.checks.kind import Kind, number, string, table
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.tolerance import Band
+from grader.common.words import a_list, nearest, shorten
+from grader.common.words import number as shown
+from grader.evidence import activity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from grader.evidence.evidence import Evidence
+    from grader.trial.observed import Call
+
+CLOSE = 1e-3
+"""How far a number in a request may be off. Many fields are float32."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CallsService:
+    """A call of a service of the simulator, with the fields that matter; `after` names a service that comes before."""
+
+    service: str = string("the full name of a service", start="/", about="The service.")
+    fields: tuple[tuple[str, Any], ...] = table(about="The fields of the request that matter, with their values.")
+    after: str = string(
+        "the full name of a service",
+        default=" ",
+        about="A service that must have been called before. No matter which, if this is left out.",
+    )
+
+
+def calls_service(evidence: Evidence, params: CallsService) -> Finding:
+    """The node called the service of the simulator with these fields."""
+    request = ", ".join(f"{name}={_value(value)}" for name, value in params.fields)
+    after = params.after.strip()
+    expected = f"The node calls {params.service} with {request}" + (f", after it has called {after}." if after else ".")
+    made = [call for call in calls_of(evidence) if not call.by_trial]
+    calls = [call for call in made if call.service == params.service]
+    right = [
+        index for index, call in enumerate(made) if call in calls and not wrong_fields(call.request, params.fields)
+    ]
+    if right:
+        # Two calls may arrive at the same time, so their order counts.
+        first = next((index for index, call in enumerate(made) if call.service == after), None) if after else -1
+        if first is not None and right[-1] >= first:
+            return passed(f"The node called {params.service} with {request}.")
+        text = f"Send this request in the callback that receives the response of {after}."
+        observed = f"The node called {params.service} with {request}, but not after {after}."
+        return failed(observed, expected, Cause("service-order", text, evidence.place("call_async")))
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
+    if calls:
+        return _other_request(evidence, params, calls, expected)
+    others = [call for call in made if call.service.rpartition("/")[2] == params.service.rpartition("/")[2]]
+    observed = f"The node never called {params.service}."
+    if others:
+        observed = f"The node called {shorten(others[0].service)} instead of {params.service}."
+        cause = Cause("service-name", "Each turtle has its own services.", evidence.place("create_client"))
+        return failed(observed, expected, cause)
+    return failed(observed, expected, why_unasked(evidence, params.service))
+
+
+def _other_request(evidence: Evidence, params: CallsService, calls: list[Call], expected: str) -> Finding:
+    nearest_call = min(calls, key=lambda call: len(wrong_fields(call.request, params.fields)))
+    wrong = wrong_fields(nearest_call.request, params.fields)
+    seen = ", ".join(f"{name}={_value(nearest_call.request.get(name))}" for name in wrong)
+    observed = f"The nearest call of {params.service} has {seen}."
+    where = next((place for name in wrong if (place := evidence.code.assigned(name)) is not None), None)
+    zero = all(not nearest_call.request.get(name) for name, _ in params.fields)
+    text = "All these fields have their default values: set them before the call." if zero else ""
+    return failed(observed, expected, Cause("wrong-request", text, where or evidence.place("call_async", "Request")))
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnswersCall:
+    """The response of the node to a call of the trial: the `nth` call of the service, from 1."""
+
+    service: str = string("the full name of a service", start="/", about="The service.")
+    type: str = string("a service type, as in std_srvs/srv/SetBool", about="Its type.")
+    nth: float = number(1, at_least=1, about="Which call of this service in the trial, from 1.")
+    within_s: float = number(1.0, above=0, about="How long the response may take.")
+    fields: tuple[tuple[str, Any], ...] = table(about="The fields of the response that matter, with their values.")
+
+
+def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:
+    """The node answered the call of the trial in time, with these fields."""
+    wanted = ", ".join(f"{name}={_value(value)}" for name, value in params.fields)
+    expected = f"The node answers a call of {params.service} within {params.within_s:g} s, with {wanted}."
+    calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
+    call = calls[int(params.nth) - 1] if len(calls) >= params.nth else None
+    if call is None or call.missing or call.response is None or call.answered_s is None:
+        return _no_response(evidence, params, call, expected)
+    took = Band.at_most(params.within_s)
+    took_s = call.answered_s - call.t_s
+    if not took.holds(took_s):
+        cause = Cause("slow-response", "A callback must not sleep or wait.", evidence.place("create_service"))
+        return failed(f"The response took {took_s:.1f} s.", expected, cause, near_edge=took.near(took_s))
+    wrong = wrong_fields(call.response, params.fields)
+    if wrong:
+        seen = ", ".join(f"{name}={_value(call.response.get(name))}" for name in wrong)
+        text = "The callback of a service fills in the fields of its second argument and returns it."
+        cause = Cause("wrong-response", text, evidence.place("create_service"))
+        return failed(f"The response has {seen}.", expected, cause)
+    return passed(f"The node answered the call of {params.service}.", near_edge=took.near(took_s))
+
+
+def _no_response(evidence: Evidence, params: AnswersCall, call: Call | None, expected: str) -> Finding:
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
+    where = evidence.place("create_service")
+    if call is None:
+        return failed("The node had ended before the call.", expected, Cause("no-response", where=where))
+    if not call.missing:
+        cause = waits_in_callback(evidence) or Cause(
+            "no-response", "Something in the node blocks its callbacks.", where
+        )
+        return failed(f"The node received the call of {params.service} and never answered.", expected, cause)
+    return _missing(evidence, params, expected)
+
+
+def _missing(evidence: Evidence, params: AnswersCall, expected: str) -> Finding:
+    where = evidence.place("create_service")
+    offers = evidence.recording.offers
+    same = [offer for offer in offers if offer.service == params.service]
+    if same:
+        observed = f"{params.service} has the type {shorten(same[0].type)}."
+        text = f"The type is the first argument of create_service. The exercise asks for {params.type}."
+        return failed(observed, expected, Cause("service-type", text, where))
+    names = sorted({offer.service for offer in offers})
+    if names:
+        guess = nearest(params.service, names) or names[0]
+        observed = f"No service is named {params.service}. The node offers {a_list([shorten(name) for name in names])}."
+        text = f"The name is the second argument of create_service. It is {params.service}, with the slash."
+        if guess.endswith(params.service):
+            text = (
+                "Without a slash at the beginning, a name is below the namespace of the node; with ~, below its name."
+            )
+        return failed(observed, expected, Cause("service-name", text, where))
+    stuck = waits_in_callback(evidence)
+    text = "create_service offers a service." if not evidence.code.calls("create_service") else ""
+    return failed("The node offers no service.", expected, stuck or Cause("service-missing", text, where))
+
+
+def calls_of(evidence: Evidence) -> list[Call]:
+    """Return the service calls before SIGINT, in order."""
+    until = activity.end_s(evidence.recording)
+    return [call for call in evidence.recording.calls if call.t_s < until]
+
+
+def wrong_fields(given: Any, fields: Iterable[tuple[str, Any]]) -> list[str]:  # noqa: ANN401 - a request or response
+    """Return the names of the fields whose values differ."""
+    return [name for name, value in fields if not _same(given.get(name), value)]
+
+
+def _same(given: object, wanted: object) -> bool:
+    if isinstance(given, int | float) and isinstance(wanted, int | float) and not isinstance(wanted, bool):
+        return abs(given - wanted) <= CLOSE
+    return type(given) is type(wanted) and given == wanted
+
+
+def _value(value: object) -> str:
+    if isinstance(value, bool) or value is None:
+        return str(value)
+    return shown(round(value, 3)) if isinstance(value, int | float) else f'"{shorten(str(value))}"'
+
+
+CALLS = Kind(
+    "calls_service",
+    "trial",
+    "The node calls a service",
+    CallsService,
+    calls_service,
+    about="The node calls a service of the simulator, with certain values in the request.",
+)
+ANSWERS = Kind(
+    "answers_call",
+    "trial",
+    "The node answers",
+    AnswersCall,
+    answers_call,
+    about="The node answers a `[[trial.call]]` in time, with certain values in the response.",
+)

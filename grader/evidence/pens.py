@@ -1,0 +1,29 @@
+"""The pens of the turtles, and what they drew with them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.turtlesim.turtle import Pen
+
+if TYPE_CHECKING:
+    from grader.trial.recording import Recording
+
+
+@dataclass(frozen=True)
+class PenSpan:
+    """A turtle had this pen from `from_s` until `until_s` (s)."""
+
+    from_s: float
+    until_s: float
+    pen: Pen
+
+
+def pen_spans(recording: Recording, turtle: str = "turtle1") -> list[PenSpan]:
+    """Return the pens of a turtle in order. The first one is the pen with which turtlesim creates every turtle."""
+    changes = [each for each in recording.pens if each.turtle == turtle]
+    begins = [-math.inf, *(each.t_s for each in changes)]
+    pens = [Pen(), *(Pen(each.color, each.width, each.down) for each in changes)]
+    return [PenSpan(*span) for span in zip(begins, [*begins[1:], math.inf], pens, strict=True)]
