@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from grader.notebook.frames import FrameError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 MIB = 1024 * 1024
 DELIMITER = b"<IDS|MSG>"
@@ -88,20 +88,26 @@ class Account:
         return read
 
     def _count(self, read: dict[str, Any]) -> None:
-        waiting: list[tuple[Any, int]] = [(read, 1)]
-        while waiting:
-            value, depth = waiting.pop()
+        for value, depth in walk(read):
             self._values += 1
             if self._values > self.budget.values:
                 _refuse(f"more than {self.budget.values} values in all its messages")
             if depth > self.budget.depth:
                 _refuse(f"a message with more than {self.budget.depth} objects inside each other")
-            if isinstance(value, dict):
-                waiting += [(inner, depth + 1) for item in value.items() for inner in item]
-            elif isinstance(value, list):
-                waiting += [(inner, depth + 1) for inner in value]
-            elif isinstance(value, str) and not _writable(value):
+            if isinstance(value, str) and not _writable(value):
                 _refuse()
+
+
+def walk(read: object) -> Iterator[tuple[object, int]]:
+    """Yield each value and each key in parsed JSON, and how deeply it is nested. `read` itself has the depth 1."""
+    waiting = [(read, 1)]
+    while waiting:
+        value, depth = waiting.pop()
+        yield value, depth
+        if isinstance(value, dict):
+            waiting += [(inner, depth + 1) for item in value.items() for inner in item]
+        elif isinstance(value, list):
+            waiting += [(inner, depth + 1) for inner in value]
 
 
 def _refuse(what: str = "something that is not a message of a kernel") -> NoReturn:

@@ -18,14 +18,17 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     """Configure nbgrader for the course in `root`, the folder that contains solutions/ and exercises/."""
     from nbgrader import preprocessors as steps
 
+    from grader.gradebook import converters
     from grader.gradebook.confined_autograde import CHECK_S, ConfinedExecute
     from grader.gradebook.export import ConfirmedCsv
     from grader.gradebook.feedback import GraderReasons, HideHiddenTests
+    from grader.gradebook.pages import configure_pages
     from grader.gradebook.release_preprocessors import ReleaseFiles, StripSolutions
     from grader.gradebook.restore import RestoreCells
     from grader.gradebook.unconfirmed import SaveUnconfirmed
 
     _see_own_commands()
+    converters.install()
     folders = config.CourseDirectory
     folders.root = str(root)
     folders.course_id = COURSE_ID
@@ -55,6 +58,10 @@ def configure(config: Any, root: Path) -> None:  # noqa: ANN401 - traitlets' Con
     ]
     # By default, `nbgrader validate` limits each cell to 30 s, which is too short for four trials.
     config.Execute.timeout = CHECK_S
+    config.Autograde.exporter_class = converters.BoundedNotebook
+    config.GenerateFeedback.exporter_class = converters.BoundedPage
+    config.ExchangeFactory.collect = converters.BoundedCollect
+    configure_pages(config)
     config.Autograde.sanitize_preprocessors = [
         steps.ClearOutput,
         RestoreCells,

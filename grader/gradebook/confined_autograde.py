@@ -7,10 +7,12 @@ relay.
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import subprocess
 import tempfile
+import time
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,15 +27,13 @@ from grader.common.interpreter import interpreter
 from grader.errors import GraderError, MachineError
 from grader.exercise.model import course_folder
 from grader.gradebook.cell_outputs import MOST_OUTPUT, TOO_MUCH, honest, mark, put_right
+from grader.gradebook.copies import copy_of
 from grader.gradebook.relay import WHY_FILE, Order
 from grader.notebook.mode import CONFINED
 from grader.ros.installation import environment, find_ros
 from grader.ros.underlay import with_turtlesim
 from grader.sandbox import bubblewrap
 from grader.sandbox.bubblewrap import HOME, WORKSPACE, View, ros_view
-from grader.submission import tree
-from grader.submission.package import Submission, write_copy
-from grader.submission.reader import read
 
 if TYPE_CHECKING:
     from nbformat import NotebookNode
@@ -112,15 +112,19 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
 
     cell_s = Integer(20, help="Time limit for a student's own cell, in seconds.").tag(config=True)
 
+    notebook_s = Integer(1800, help="Time limit for all cells of a notebook together, in seconds.").tag(config=True)
+
     def __init__(self, *arguments: Any, **keywords: Any) -> None:  # noqa: ANN401 - as the base class
         keywords.setdefault("kernel_manager_class", ConfinedKernelManager)
         super().__init__(*arguments, **keywords)
         self._ended = ""
         self._printed = 0
+        self._until = 0.0
 
     def preprocess(self, nb: NotebookNode, resources: Any = None, km: Any = None) -> tuple[NotebookNode, Any]:  # noqa: ANN401
         """Run all cells."""
         self._ended, self._printed = "", 0
+        self._until = time.monotonic() + self.notebook_s
         course, about = self.parent.parent.coursedir, resources["nbgrader"]
         folder = course.format_path(course.submitted_directory, about["student"], about["assignment"])
         self._submission = folder
@@ -147,7 +151,9 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
         return self.km
 
     def preprocess_cell(self, cell: NotebookNode, resources: Any, index: int) -> tuple[NotebookNode, Any]:  # noqa: ANN401
-        """Run one cell, if the kernel is still alive."""
+        """Run one cell, if the kernel is still alive and there is time left."""
+        if time.monotonic() >= self._until:
+            self._end(f"All cells of the notebook together took longer than {self.notebook_s} s.")
         if self._ended:
             if cell.cell_type == "code":
                 mark(cell, self._ended)
@@ -180,7 +186,8 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
 
     def _get_timeout(self, cell: NotebookNode | None) -> int | None:
         locked = cell is not None and cell.get("metadata", {}).get("nbgrader", {}).get("locked")
-        return CHECK_S if locked or cell is None else self.cell_s
+        left_s = max(1, math.ceil(self._until - time.monotonic()))
+        return min(left_s, CHECK_S if locked or cell is None else self.cell_s)
 
     def _reason(self, error: Exception) -> str:
         """Return the reason why no more cells can be run."""
@@ -201,18 +208,11 @@ class ConfinedExecute(Execute):  # type: ignore[misc, unused-ignore]
                 _kill(self.km.provisioner.process.pid)  # type: ignore[union-attr]
 
 
-def _copy(folder: Path, copy: Path) -> None:
-    """Copy the files of the submission that are safe to read. Links that point outside the folder are left out."""
-    found = read(tree.read_folder, folder)
-    files = {path: data for path, data in found.files.items() if not path.endswith(".ipynb")}
-    write_copy(Submission("", folder, files, (), "", frozenset(found.executable & files.keys())), copy)
-
-
 def _order(submission: Path, folder: Path, connection_file: str, *, trusted: bool) -> Order:
     """Return the order that says what the relay must start. `folder` is the relay's own folder."""
     confined = bubblewrap.require(trusted=trusted)
     copy, home, workspace = folder / "submission", HOME, WORKSPACE
-    _copy(submission, copy)
+    copy_of(submission, copy, notebooks=False)
     if not confined:
         home, workspace = folder / "home", folder / "workspace"
         home.mkdir()

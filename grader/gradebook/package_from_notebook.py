@@ -11,6 +11,7 @@ import json
 import shutil
 from typing import TYPE_CHECKING
 
+from grader.gradebook.readable import time_of
 from grader.learner.workspace import starting_point
 from grader.notebook.cell_files import Part, counts, ended, parts_of, starting_text
 from grader.submission import tree
@@ -44,6 +45,7 @@ def graded_folder(exercise: Exercise, submitted: Path, together: Path) -> Path:
 
 def _together(exercise: Exercise, submitted: Path) -> Submission | None:
     """Return the submission completed by its notebook, or None if the notebook adds nothing."""
+    time_of(submitted)  # nbgrader stops at an invalid time, and this is where a submission is found to be unreadable
     found = tree.read_folder(submitted)
     notebook = found.files.get(f"{exercise.id}.ipynb")
     parts = _worked_on(exercise, notebook) if notebook else []

@@ -28,10 +28,12 @@ from grader.gradebook.confirmed import (
     withhold_unconfirmed,
 )
 from grader.gradebook.package_from_notebook import graded_folder
+from grader.gradebook.readable import time_of
 from grader.submission.reader import read
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from datetime import datetime
     from pathlib import Path
 
     from grader.classroom.results import Result
@@ -197,7 +199,7 @@ def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter
     """Write the scores of one submission to the gradebook. Return the checks that have no cell."""
     student, step = result.student, result.report.exercise
     gradebook.update_or_create_student(student)
-    timestamp = folders.course.get_existing_timestamp(str(folders.submitted(student, step)))
+    timestamp = _time_of(folders.submitted(student, step))
     given = {} if timestamp is None else {"timestamp": timestamp}
     submission = gradebook.update_or_create_submission(step, student, **given)
     grades: dict[str, Any] = {}
@@ -224,6 +226,13 @@ def _write(gradebook: Any, folders: ClassFolders, result: Result, tally: Counter
     gradebook.db.commit()
     _late(folders, student, step)
     return without_cell
+
+
+def _time_of(folder: Path) -> datetime | None:
+    try:
+        return read(time_of, folder)
+    except UnreadableError:
+        return None  # `_put_together` has reported it
 
 
 def _late(folders: ClassFolders, student: str, step: str) -> None:

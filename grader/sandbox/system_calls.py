@@ -11,9 +11,10 @@ from __future__ import annotations
 import errno
 import os
 import platform
-import struct
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+
+from grader.sandbox import bpf
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -60,11 +61,6 @@ _FAMILIES = (1, 2, 10, 16)
 # CLONE_NEWNS, NEWCGROUP, NEWUTS, NEWIPC, NEWUSER, NEWPID and NEWNET.
 _NEW_NAMESPACE = 0x7E020000
 
-_LOAD, _EQUAL, _AT_LEAST, _ANY_BIT, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
-_NUMBER, _ARCHITECTURE, _FIRST_ARGUMENT, _SECOND_ARGUMENT = 0, 4, 16, 24
-_X86_64, _X32 = 0xC000003E, 0x40000000
-_ALLOW, _ERRNO = 0x7FFF0000, 0x00050000
-
 
 @contextmanager
 def call_filter() -> Iterator[int | None]:
@@ -84,19 +80,17 @@ def call_filter() -> Iterator[int | None]:
 
 def program() -> bytes:
     """Return the filter: a sequence of struct sock_filter."""
-    refuse = _ERRNO | errno.EPERM
-    absent = _ERRNO | errno.ENOSYS
-    lines = [(_LOAD, 0, 0, _ARCHITECTURE), (_EQUAL, 1, 0, _X86_64), (_RETURN, 0, 0, absent)]
-    lines += [(_LOAD, 0, 0, _NUMBER), (_AT_LEAST, 0, 1, _X32), (_RETURN, 0, 0, absent)]
-    for number in sorted(number for group in DENIED.values() for number in group.values()):
-        lines += [(_EQUAL, 0, 1, number), (_RETURN, 0, 0, refuse)]
+    refuse = bpf.ERRNO | errno.EPERM
+    absent = bpf.ERRNO | errno.ENOSYS
+    lines = bpf.begin()
+    lines += bpf.refusing(sorted(number for group in DENIED.values() for number in group.values()), errno.EPERM)
     # Its flags are in memory, where a filter cannot look. The C library then uses clone.
-    lines += [(_EQUAL, 0, 1, _CLONE3), (_RETURN, 0, 0, absent)]
-    lines += [(_EQUAL, 0, 4, _CLONE), (_LOAD, 0, 0, _FIRST_ARGUMENT)]
-    lines += [(_ANY_BIT, 0, 1, _NEW_NAMESPACE), (_RETURN, 0, 0, refuse), (_RETURN, 0, 0, _ALLOW)]
-    lines += [(_EQUAL, 0, 4, _FCNTL), (_LOAD, 0, 0, _SECOND_ARGUMENT)]
-    lines += [(_EQUAL, 0, 1, _SET_PIPE_SIZE), (_RETURN, 0, 0, refuse), (_RETURN, 0, 0, _ALLOW)]
-    lines += [(_EQUAL, 0, len(_FAMILIES) + 2, _SOCKET), (_LOAD, 0, 0, _FIRST_ARGUMENT)]
-    lines += [(_EQUAL, len(_FAMILIES) - index, 0, family) for index, family in enumerate(_FAMILIES)]
-    lines += [(_RETURN, 0, 0, _ERRNO | errno.EAFNOSUPPORT), (_RETURN, 0, 0, _ALLOW)]
-    return b"".join(struct.pack("HBBI", *line) for line in lines)
+    lines += [(bpf.EQUAL, 0, 1, _CLONE3), (bpf.RETURN, 0, 0, absent)]
+    lines += [(bpf.EQUAL, 0, 4, _CLONE), (bpf.LOAD, 0, 0, bpf.argument(0))]
+    lines += [(bpf.ANY_BIT, 0, 1, _NEW_NAMESPACE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
+    lines += [(bpf.EQUAL, 0, 4, _FCNTL), (bpf.LOAD, 0, 0, bpf.argument(1))]
+    lines += [(bpf.EQUAL, 0, 1, _SET_PIPE_SIZE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
+    lines += [(bpf.EQUAL, 0, len(_FAMILIES) + 2, _SOCKET), (bpf.LOAD, 0, 0, bpf.argument(0))]
+    lines += [(bpf.EQUAL, len(_FAMILIES) - index, 0, family) for index, family in enumerate(_FAMILIES)]
+    lines += [(bpf.RETURN, 0, 0, bpf.ERRNO | errno.EAFNOSUPPORT), (bpf.RETURN, 0, 0, bpf.ALLOW)]
+    return bpf.packed(lines)

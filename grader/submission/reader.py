@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 from grader.common.lazy import IMPORTING
 from grader.common.system_errors import refusal
 from grader.errors import GraderError, MachineError, TooLargeError, UnreadableError
+from grader.sandbox.reading_calls import forbid_all_but_reading
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,6 +42,7 @@ MOST_ANSWER = 256 * 1024 * 1024
 _CHUNK = 1024 * 1024
 _STANDARD = {
     "builtins": ("set", "frozenset", "bytearray", "complex"),
+    "datetime": ("datetime",),
     "pathlib": ("PosixPath",),
     "markupsafe": ("Markup",),
     "numpy": ("_frombuffer", "_reconstruct", "dtype", "ndarray", "scalar"),
@@ -109,6 +111,7 @@ def _run(sends: int, function: Callable[[], object]) -> NoReturn:
             signal.signal(number, signal.SIG_DFL)
         _close_all_but(sends)
         _limit()
+        forbid_all_but_reading()
         with open(sends, "wb") as pipe:
             pipe.write(_answer(function))
     except BaseException:

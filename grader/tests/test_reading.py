@@ -106,7 +106,7 @@ def test_the_door_is_where_it_is_said_to_be() -> None:
     }
     behind = {module for module in BEHIND_THE_DOOR.values() if re.fullmatch(r"\w+", module)}
     assert behind <= doors
-    assert {"package", "content", "confined_autograde", "compare", "html", "html_notebook", "picture"} <= doors
+    assert {"package", "content", "copies", "converters", "compare", "html", "html_notebook", "picture"} <= doors
 
 
 NEW = ("tree.read_tree(folder)", "import json\njson.loads(notebook)", "judge(evidence)")

@@ -110,11 +110,11 @@ class Application(Configurable):
     coursedir: Any = None
 
 
-def executed(folder: Path, *sources: str) -> NotebookNode:
+def executed(folder: Path, *sources: str, **limits: int) -> NotebookNode:
     """Run autograde's step on a notebook with these cells. Check that the result can be written and read."""
     application = Application()
     application.coursedir = SimpleNamespace(format_path=lambda *_: str(folder), submitted_directory="submitted")
-    step = ConfinedExecute(parent=Configurable(parent=application))
+    step = ConfinedExecute(parent=Configurable(parent=application), **limits)
     notebook = new_notebook(cells=[new_code_cell(source) for source in sources])  # type: ignore[no-untyped-call]
     about = {"student": "mallory", "assignment": "01"}
     done, _ = step.preprocess(notebook, {"nbgrader": about, "metadata": {"path": str(folder)}})
@@ -149,6 +149,12 @@ def test_a_kernel_that_attacks_is_ended_with_a_reason(name: str, tmp_path: Path)
 def test_one_message_that_changes_many_outputs_does_not_make_a_large_notebook(tmp_path: Path) -> None:
     attacking, later = executed(tmp_path, MANY_CHANGED, "print('later')").cells
     assert (said(attacking), said(later)) == (TOO_MUCH, TOO_MUCH)
+
+
+def test_cells_that_sleep_have_one_time_limit_together(tmp_path: Path) -> None:
+    sleeps = "import time; time.sleep(600)"
+    *_, last = executed(tmp_path, sleeps, sleeps, "print('later')", notebook_s=1).cells
+    assert said(last) == "All cells of the notebook together took longer than 1 s."
 
 
 def test_a_kernel_can_only_write_to_its_own_disks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,13 +5,17 @@ from __future__ import annotations
 import copyreg
 import ctypes
 import os
+import platform
 import resource
+import signal
+import socket
 import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import pytest
 
@@ -21,6 +25,9 @@ from grader.submission import reader
 from grader.submission.reader import read
 from grader.submission.where import Where
 from grader.tests.case import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def add(one: int, other: int = 1) -> int:
@@ -163,3 +170,54 @@ def test_a_child_never_waits_for_an_import_of_its_parent(tmp_path: Path) -> None
     command = [sys.executable, "-c", f"import sys; sys.path.insert(0, {str(tmp_path)!r})\n{READ_MEANWHILE}"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
     assert done.stdout == "5\n", done.stderr
+
+
+FORBIDDEN: dict[str, Callable[[Path], object]] = {
+    "a program": lambda _: os.execv("/bin/true", ["true"]),
+    "a process": lambda _: os.fork(),
+    "another program": lambda _: subprocess.run(["/bin/true"], check=True),
+    "a connection": lambda _: socket.socket(socket.AF_UNIX),
+    "a signal": lambda _: os.kill(os.getppid(), signal.SIGUSR1),
+    "a larger limit": lambda _: resource.setrlimit(resource.RLIMIT_CPU, (resource.RLIM_INFINITY,) * 2),
+    "an empty file": lambda file: file.with_name("new").touch(),
+    "a change": lambda file: file.open("r+"),
+    "an end of a file": lambda file: os.truncate(file, 0),
+    "a removal": lambda file: file.unlink(),
+    "another name": lambda file: file.rename(file.with_name("new")),
+    "a link": lambda file: file.with_name("new").symlink_to(file),
+    "a folder": lambda file: file.with_name("new").mkdir(),
+    "a mode": lambda file: file.chmod(0o777),
+    "a date": lambda file: os.utime(file),
+}
+"""What the code of an attacker might do in this process, if it found a hole in a parser."""
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="the filter is for x86-64")
+@pytest.mark.parametrize("what", FORBIDDEN)
+def test_it_cannot_do_anything_but_read(what: str, tmp_path: Path) -> None:
+    def attempt() -> str:
+        try:
+            FORBIDDEN[what](tmp_path / "a.txt")
+        except (PermissionError, ValueError) as error:
+            return str(error)
+        return ""
+
+    (tmp_path / "a.txt").write_text("as before")
+    before = (tmp_path / "a.txt").stat()
+    assert any(each in read(attempt) for each in ("Permission denied", "not permitted", "not allowed"))
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+    assert (tmp_path / "a.txt").stat().st_mode == before.st_mode
+    assert (tmp_path / "a.txt").read_text() == "as before"
+
+
+def test_it_can_read_and_start_threads(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("a text")
+
+    def reads() -> list[str]:
+        with ThreadPoolExecutor(2) as pool:
+            return [
+                *pool.map(Path.read_text, [tmp_path / "a.txt"] * 3),
+                str(resource.getrlimit(resource.RLIMIT_NOFILE)),
+            ]
+
+    assert read(reads)[:3] == ["a text"] * 3

@@ -1,0 +1,99 @@
+"""What nbgrader may read of a submission. All of this runs in the process that reads (submission/reader.py).
+
+nbgrader follows links, copies files of any size, and parses any notebook in its own process. Our steps give it only
+what these functions return: a notebook of limited size and depth, and a valid time.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from typing import TYPE_CHECKING
+
+from grader.errors import TooLargeError, UnreadableError
+from grader.gradebook.budget import walk
+from grader.submission import tree
+
+if TYPE_CHECKING:
+    from datetime import datetime
+    from pathlib import Path
+
+TIMESTAMP = "timestamp.txt"
+"""The file in which nbgrader writes when a submission was handed in."""
+MOST_TIMESTAMP = 100
+"""The largest size of that file in bytes."""
+MOST_BYTES = tree.MAX_FILE_BYTES
+"""The largest size of a notebook in bytes."""
+MOST_VALUES = 500_000
+"""The largest number of values (objects, lists, strings and numbers) in the JSON of a notebook."""
+MOST_DEPTH = 50
+"""How deeply the objects and lists of a notebook may be nested."""
+MOST_CELLS = 1000
+
+
+def time_of(folder: Path) -> datetime | None:
+    """Return when the submission in this folder was handed in, in UTC, or None if it has no time.
+
+    Raises:
+        UnreadableError: the file is not a regular file with a valid time in it.
+    """
+    from nbgrader.utils import parse_utc
+
+    path = folder / TIMESTAMP
+    if not os.path.lexists(path):
+        return None
+    data = _content(path, MOST_TIMESTAMP)
+    try:
+        return parse_utc(data.decode().strip()) if data.strip() else None  # type: ignore[no-any-return, unused-ignore]
+    except Exception as error:  # dateutil raises more than ValueError
+        message = f"{TIMESTAMP} does not contain a time"
+        raise UnreadableError(message) from error
+
+
+def notebook(path: Path) -> str:
+    """Return the notebook as JSON in the newest format that nbgrader uses.
+
+    Raises:
+        TooLargeError: it exceeds one of the limits above.
+        UnreadableError: it is not a regular file, or not a notebook.
+    """
+    import nbformat
+
+    text = _content(path, MOST_BYTES).decode("utf-8", "strict")
+    _require_small(nbformat.reader.parse_json(text))  # type: ignore[no-untyped-call]
+    found = nbformat.reads(text, as_version=4)  # type: ignore[no-untyped-call]
+    if len(found.cells) > MOST_CELLS:
+        message = f"{path.name} has {len(found.cells)} cells, more than the {MOST_CELLS} that are read"
+        raise TooLargeError(message)
+    written: str = nbformat.writes(found)  # type: ignore[no-untyped-call]
+    written.encode()  # one half of a surrogate pair cannot be written to a file
+    _require_small(found)
+    return written
+
+
+def _require_small(read: object) -> None:
+    for number, (_, depth) in enumerate(walk(read)):
+        if number >= MOST_VALUES:
+            message = f"the notebook has more than the {MOST_VALUES} values that are read"
+            raise TooLargeError(message)
+        if depth > MOST_DEPTH:
+            message = f"the notebook has more than {MOST_DEPTH} objects inside each other"
+            raise TooLargeError(message)
+
+
+def _content(path: Path, most: int) -> bytes:
+    """Return the content of a regular file, and never wait for a pipe or follow a link."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+    except OSError as error:
+        message = f"{path.name} {tree.reason(error, path.name)}"
+        raise UnreadableError(message) from error
+    with os.fdopen(descriptor, "rb") as file:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            message = f"{path.name} is not a regular file"
+            raise UnreadableError(message)
+        data = file.read(most + 1)
+    if len(data) > most:
+        message = f"{path.name} has more than the {most} bytes that are read"
+        raise TooLargeError(message)
+    return data

@@ -1,0 +1,251 @@
+"""nbgrader on folders and notebooks that attack it: it reads no more than what passed, and the others are graded."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import nbformat
+import nbgrader.utils  # noqa: F401 - otherwise each child would import it
+import pytest
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from grader.errors import TooLargeError, UnreadableError
+from grader.gradebook import readable
+from grader.sandbox import bubblewrap
+from grader.submission.reader import read
+from grader.tests.gradebook.term import FIRST, Term
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+SECRET = "the instructor's secret"
+HOMEWORK = "homework"
+LARGE = 20 * 1024**3
+
+
+def a_notebook(*cells: Any) -> str:  # noqa: ANN401 - nbformat's cells
+    return str(nbformat.writes(new_notebook(cells=list(cells))))  # type: ignore[no-untyped-call]
+
+
+def code(source: str) -> Any:  # noqa: ANN401
+    return new_code_cell(source)  # type: ignore[no-untyped-call, no-any-return, unused-ignore]
+
+
+def sparse(file: Path) -> None:
+    file.unlink(missing_ok=True)
+    with file.open("wb") as opened:
+        opened.truncate(LARGE)
+
+
+def pipe(file: Path) -> None:
+    file.unlink(missing_ok=True)
+    os.mkfifo(file)
+
+
+def link(file: Path, target: str) -> None:
+    file.unlink(missing_ok=True)
+    file.symlink_to(target)
+
+
+NOTEBOOKS: dict[str, tuple[Callable[[Path], object], str]] = {
+    "a pipe": (pipe, "is not a regular file"),
+    "a link to endless zeros": (lambda file: link(file, "/dev/zero"), "changed while it was read"),
+    "a link to another student's": (lambda file: link(file, __file__), "changed while it was read"),
+    "20 GiB": (sparse, "has more than the 8388608 bytes"),
+    "deep lists": (lambda file: file.write_text("[" * 100_000 + "]" * 100_000), "nested too deeply"),
+    "deep metadata": (
+        lambda file: file.write_text(
+            a_notebook(code("1")).replace('"metadata": {}', '"metadata": {"a": ' + "[" * 90 + "]" * 90 + "}", 1)
+        ),
+        "more than 50 objects inside each other",
+    ),
+    "many values": (
+        lambda file: file.write_text(json.dumps({"cells": [], "metadata": {"a": [[]] * 1_000_000}})),
+        "more than the 500000 values",
+    ),
+    "many cells": (
+        lambda file: file.write_text(a_notebook(*(code("1") for _ in range(1001)))),
+        "1001 cells, more than the 1000",
+    ),
+    "a long number": (lambda file: file.write_text('{"nbformat": ' + "9" * 5000 + "}"), "could not be read"),
+    "half a letter": (
+        lambda file: file.write_text(a_notebook(code("x")).replace('"x"', '"\\ud800"')),
+        "could not be read",
+    ),
+    "bytes": (lambda file: file.write_bytes(b"\xff\xfe\0"), "could not be read"),
+    "a list": (lambda file: file.write_text("[]"), "could not be read"),
+    "an old format of nothing": (lambda file: file.write_text('{"nbformat": 3, "worksheets": 7}'), "could not be read"),
+}
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_a_notebook_that_is_not_small_and_regular_is_refused(name: str, tmp_path: Path) -> None:
+    make, why = NOTEBOOKS[name]
+    make(tmp_path / "a.ipynb")
+    with pytest.raises(UnreadableError) as raised:
+        read(readable.notebook, tmp_path / "a.ipynb")
+    assert why in str(raised.value)
+
+
+def test_a_notebook_of_an_older_format_is_converted(tmp_path: Path) -> None:
+    cell = {"cell_type": "code", "input": "2 + 2", "outputs": [], "language": "python", "metadata": {}}
+    old = {"nbformat": 3, "nbformat_minor": 0, "metadata": {"name": ""}, "worksheets": [{"cells": [cell]}]}
+    (tmp_path / "a.ipynb").write_text(json.dumps(old))
+    again = json.loads(read(readable.notebook, tmp_path / "a.ipynb"))
+    assert (again["nbformat"], again["cells"][0]["source"]) == (4, ["2 + 2"])
+
+
+TIMES: dict[str, Callable[[Path], object]] = {
+    "a word": lambda file: file.write_text("yesterday evening"),
+    "a date that no calendar has": lambda file: file.write_text("9" * 60),
+    "20 GiB": sparse,
+    "a pipe": pipe,
+    "a link": lambda file: link(file, "/dev/zero"),
+    "a folder": lambda file: file.mkdir(),
+    "bytes": lambda file: file.write_bytes(b"\xff\0"),
+}
+
+
+@pytest.mark.parametrize("name", TIMES)
+def test_a_time_that_is_none_is_refused(name: str, tmp_path: Path) -> None:
+    TIMES[name](tmp_path / readable.TIMESTAMP)
+    with pytest.raises((UnreadableError, TooLargeError)):
+        read(readable.time_of, tmp_path)
+
+
+def test_a_time_is_read_as_nbgrader_reads_it(tmp_path: Path) -> None:
+    assert read(readable.time_of, tmp_path) is None
+    (tmp_path / readable.TIMESTAMP).write_text(f"{FIRST}\n")
+    assert str(read(readable.time_of, tmp_path)) == "2027-03-01 10:00:00"
+
+
+@dataclass(frozen=True)
+class Hostile:
+    """A class with attacks in it: its folder, the output of the commands, and the score of each student."""
+
+    folder: Path
+    collected: str
+    graded: str
+    scores: dict[str, float]
+
+
+@pytest.fixture(scope="module")
+def hostile(tmp_path_factory: pytest.TempPathFactory) -> Hostile:
+    """A class with a short assignment, submissions in the exchange that attack, and an honest one. It was graded."""
+    if not bubblewrap.usable():
+        pytest.skip("autograde runs others' code in a sandbox only")
+    folder = tmp_path_factory.mktemp("term")
+    secret = folder / "secret"
+    secret.write_text(SECRET)
+    term = Term(folder)
+    (term.root / "solutions" / HOMEWORK).mkdir()
+    cell = code("print(open('notes.txt').read() if __import__('os').path.exists('notes.txt') else 'none')\n1")
+    cell.metadata = {
+        "nbgrader": {
+            "grade": True, "grade_id": "one", "locked": True, "points": 1, "schema_version": 3, "solution": False,
+            "task": False,
+        }
+    }  # fmt: skip
+    (term.root / "solutions" / HOMEWORK / f"{HOMEWORK}.ipynb").write_text(a_notebook(cell))
+    term.run("generate_assignment", HOMEWORK)
+    term.run("release_assignment", HOMEWORK)
+    for name, change in SUBMISSIONS.items():
+        hand_in(term, name, change, secret)
+    odd = term.exchange / "ros2-topics" / "inbound" / f"mallory+{HOMEWORK}+when I had time"
+    odd.mkdir()
+    collected = term.run("collect", HOMEWORK)
+    # An instructor may put submissions there without nbgrader's exchange.
+    for name, change in BESIDE.items():
+        to = term.root / "class" / "submitted" / name / HOMEWORK
+        shutil.copytree(term.root / "exercises" / HOMEWORK, to)
+        change(to, secret)
+    graded = term.run("autograde", HOMEWORK, "--create", fails=True)
+    term.run("generate_feedback", HOMEWORK)
+    return Hostile(term.root / "class", collected, graded, scores(term))
+
+
+def hand_in(term: Term, student: str, change: Callable[[Path, Path], object], secret: Path) -> None:
+    to = term.exchange / "ros2-topics" / "inbound" / f"{student}+{HOMEWORK}+{FIRST}"
+    shutil.copytree(term.root / "exercises" / HOMEWORK, to)
+    (to / readable.TIMESTAMP).write_text(FIRST)
+    change(to, secret)
+
+
+MARKDOWN = "<script>steal()</script> [a](javascript:steal()) <div onclick=steal()>x</div> <style>*{color:red}</style>"
+
+
+def with_script(folder: Path, _: Path) -> None:
+    file = folder / f"{HOMEWORK}.ipynb"
+    notebook = nbformat.read(file, as_version=4)  # type: ignore[no-untyped-call]
+    html = "from IPython.display import HTML\nHTML('<img src=x onerror=steal()>')"
+    notebook.cells += [new_markdown_cell(f"# Title\n\n{MARKDOWN}"), code(html)]  # type: ignore[no-untyped-call]
+    nbformat.write(notebook, file)  # type: ignore[no-untyped-call]
+
+
+def with_links(folder: Path, secret: Path) -> None:
+    (folder / "notes.txt").symlink_to(secret)
+    (folder / "zeros.txt").symlink_to("/dev/zero")
+    os.mkfifo(folder / "pipe.txt")
+
+
+def beside(folder: Path, secret: Path) -> None:
+    (folder / "notes.txt").symlink_to(secret)
+    sparse(folder / "large.txt")
+
+
+SUBMISSIONS: dict[str, Callable[[Path, Path], object]] = {
+    "anna": with_script,
+    "links": with_links,
+    "when": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
+}
+"""Student -> what is wrong with the folder in the exchange."""
+BESIDE: dict[str, Callable[[Path, Path], object]] = {
+    "beside": beside,
+    "never": lambda folder, _: (folder / readable.TIMESTAMP).write_text("yesterday evening"),
+    "deep": lambda folder, _: (folder / f"{HOMEWORK}.ipynb").write_text("[" * 100_000),
+    "blocks": lambda folder, _: pipe(folder / f"{HOMEWORK}.ipynb"),
+}
+"""Student -> what is wrong with the folder among those that were collected."""
+
+
+def scores(term: Term) -> dict[str, float]:
+    with term.gradebook() as gradebook:
+        return {each.student.id: each.score for each in gradebook.assignment_submissions(HOMEWORK)}
+
+
+def test_collect_takes_only_regular_files_of_the_submission(hostile: Hostile) -> None:
+    submitted = hostile.folder / "submitted"
+    assert not (submitted / "mallory").exists()
+    assert not (submitted / "when" / HOMEWORK).exists()
+    files = {path.name for path in (submitted / "links" / HOMEWORK).iterdir()}
+    assert files == {f"{HOMEWORK}.ipynb", readable.TIMESTAMP}
+    assert "no valid time" in hostile.collected
+    assert "timestamp.txt does not contain a time" in hostile.collected
+    assert "notes.txt is a link to" in hostile.collected
+
+
+def test_autograde_continues_after_submissions_that_attack_it(hostile: Hostile) -> None:
+    full = {name for name, score in hostile.scores.items() if score == 1.0}
+    assert full == {"anna", "beside", "links"}
+    for student in ("never", "deep", "blocks"):
+        assert f"error processing assignment '{HOMEWORK}' for student '{student}'" in hostile.graded
+        assert not (hostile.folder / "autograded" / student / HOMEWORK).exists()
+
+
+def test_nothing_of_the_instructor_reaches_a_copy_that_a_kernel_can_read(hostile: Hostile) -> None:
+    copies = [path for path in hostile.folder.rglob("*") if path.is_file() and path.stat().st_size < 10**7]
+    outside = hostile.folder / "submitted" / "beside" / HOMEWORK / "notes.txt"
+    assert [path for path in copies if path != outside and SECRET.encode() in path.read_bytes()] == []
+
+
+def test_feedback_runs_no_script_of_a_student(hostile: Hostile) -> None:
+    page = (hostile.folder / "feedback" / "anna" / HOMEWORK / f"{HOMEWORK}.html").read_text("utf-8")
+    assert "<h1>Title" in page
+    assert "steal()" in page  # it is shown as text
+    scripts = ("<script>steal", "<img src=x", 'href="javascript', "<div onclick", "<style>*")
+    assert [each for each in scripts if each in page] == []
