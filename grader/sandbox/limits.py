@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 MIB = 1024 * 1024
 MOST_SIGNALS = 1000
 """How many signals and POSIX timers of a cell may be pending. The kernel also counts them for the user."""
+NO_CORE_DUMP = 1
+"""The limit on core dumps (bytes). Only with 1, the kernel passes none to a program of the machine either: core(5)."""
 MOST_OTHERS = 4096
 """How many processes and threads a user may have in addition to a grading without a cell."""
 
@@ -51,7 +53,7 @@ def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> li
         f"--nofile={_allowed(resource.RLIMIT_NOFILE, limits.open_files)}",
         f"--fsize={_allowed(resource.RLIMIT_FSIZE, limits.file_size)}",
         f"--cpu={_allowed(resource.RLIMIT_CPU, limits.cpu_s)}",
-        "--core=0",
+        f"--core={_allowed(resource.RLIMIT_CORE, NO_CORE_DUMP)}",
         *([f"--sigpending={_allowed(resource.RLIMIT_SIGPENDING, MOST_SIGNALS)}"] if in_cell else []),
         "--",
         # If the machine runs out of memory, the kernel should kill this first.

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from grader.sandbox import bpf
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
 # Numbers for x86-64 (linux/arch/x86/entry/syscalls/syscall_64.tbl), grouped by purpose.
 DENIED = {
@@ -40,7 +40,7 @@ DENIED = {
     "things that one cell could use up for others": {
         "inotify_init": 253, "inotify_init1": 294, "inotify_add_watch": 254, "inotify_rm_watch": 255,
         "io_setup": 206, "io_destroy": 207, "io_getevents": 208, "io_submit": 209, "io_cancel": 210,
-        "io_pgetevents": 333,
+        "io_pgetevents": 333, "sync": 162, "syncfs": 306,
     },
     "memory that no limit counts": {
         "memfd_create": 319, "memfd_secret": 447, "shmget": 29, "shmat": 30, "shmctl": 31, "semget": 64, "msgget": 68,
@@ -58,6 +58,8 @@ _SET_PIPE_SIZE = 1031
 """F_SETPIPE_SZ of fcntl(2). A user may have only 64 pipes of a megabyte. All others are then small."""
 # AF_UNIX, AF_INET, AF_INET6, and AF_NETLINK for listing interfaces. AF_VSOCK would lead out of a virtual machine.
 _FAMILIES = (1, 2, 10, 16)
+# The family's own protocol, TCP and UDP. For others, such as SCTP, the kernel loads modules that few people test.
+_PROTOCOLS = (0, 6, 17)
 # CLONE_NEWNS, NEWCGROUP, NEWUTS, NEWIPC, NEWUSER, NEWPID and NEWNET.
 _NEW_NAMESPACE = 0x7E020000
 
@@ -90,7 +92,13 @@ def program() -> bytes:
     lines += [(bpf.ANY_BIT, 0, 1, _NEW_NAMESPACE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
     lines += [(bpf.EQUAL, 0, 4, _FCNTL), (bpf.LOAD, 0, 0, bpf.argument(1))]
     lines += [(bpf.EQUAL, 0, 1, _SET_PIPE_SIZE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
-    lines += [(bpf.EQUAL, 0, len(_FAMILIES) + 2, _SOCKET), (bpf.LOAD, 0, 0, bpf.argument(0))]
-    lines += [(bpf.EQUAL, len(_FAMILIES) - index, 0, family) for index, family in enumerate(_FAMILIES)]
-    lines += [(bpf.RETURN, 0, 0, bpf.ERRNO | errno.EAFNOSUPPORT), (bpf.RETURN, 0, 0, bpf.ALLOW)]
+    lines += [(bpf.EQUAL, 0, len(_FAMILIES) + len(_PROTOCOLS) + 4, _SOCKET)]
+    lines += _one_of(0, _FAMILIES, errno.EAFNOSUPPORT) + _one_of(2, _PROTOCOLS, errno.EPROTONOSUPPORT)
+    lines += [(bpf.RETURN, 0, 0, bpf.ALLOW)]
     return bpf.packed(lines)
+
+
+def _one_of(index: int, values: Sequence[int], error: int) -> list[bpf.Line]:
+    """Return the lines that let a call fail unless this argument has one of the values."""
+    lines = [(bpf.EQUAL, len(values) - number, 0, value) for number, value in enumerate(values)]
+    return [(bpf.LOAD, 0, 0, bpf.argument(index)), *lines, (bpf.RETURN, 0, 0, bpf.ERRNO | error)]

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 from grader.common.lazy import IMPORTING
 from grader.common.system_errors import refusal
 from grader.errors import GraderError, MachineError, TooLargeError, UnreadableError
+from grader.sandbox.limits import NO_CORE_DUMP
 from grader.sandbox.reading_calls import forbid_all_but_reading
 
 if TYPE_CHECKING:
@@ -133,7 +134,7 @@ def _limit() -> None:
         (resource.RLIMIT_AS, mapped + MEMORY),
         (resource.RLIMIT_CPU, CPU_S),
         (resource.RLIMIT_FSIZE, 0),
-        (resource.RLIMIT_CORE, 0),
+        (resource.RLIMIT_CORE, NO_CORE_DUMP),
     ):
         hard = resource.getrlimit(which)[1]
         resource.setrlimit(which, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
