@@ -126,6 +126,8 @@ def check(
     from grader.learner import steps
 
     following = steps.note(requested, opened.package_dir, graded.report)
+    if following and image is None:
+        following = "\n".join(filter(None, [steps.keep_picture(graded.evidence, graded.report), following]))
     _show(graded.report, graded.evidence, json, image, html, verbose=verbose, following=following, changes=explain)
 
 

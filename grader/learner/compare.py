@@ -10,6 +10,7 @@ from grader.common.words import printable
 from grader.errors import UsageError
 from grader.exercise.markers import MEANT, solved, syntax_of
 from grader.learner import progress, workspace
+from grader.learner.in_words import difference
 from grader.submission import tree
 from grader.submission.reader import read
 
@@ -23,7 +24,7 @@ WIDE = 120
 
 
 def print_solution(step: str, folder: Path | None, console: Console) -> None:
-    """Print where the solution of a step differs from the learner's files.
+    """Print where the solution of a step differs from the learner's files, and the answers to "To think about".
 
     Raises:
         UsageError: the step has not passed yet.
@@ -46,6 +47,10 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
             _print_file(path, theirs.get(path, ""), ours[path], console)
     if same:
         console.print(f"The same in both: {', '.join(same)}", soft_wrap=True, markup=False)
+    thoughts = exercise.folder / "afterwards.md"
+    if thoughts.is_file():
+        text = thoughts.read_text(encoding="utf-8").removeprefix("# ").rstrip()
+        console.print("\n" + text.replace("\n   ", " "), markup=False)  # the console wraps the lines itself
 
 
 def _texts(folder: Path, *, marked: bool = False) -> dict[str, str]:
@@ -67,6 +72,7 @@ def _print_file(path: str, theirs: str, ours: str, console: Console) -> None:
     from rich.text import Text
 
     console.print(Text(f"\n{path}", style="bold"))
+    console.print(Text(printable(difference(theirs, ours, path))), soft_wrap=True)
     if console.is_terminal and console.width >= WIDE:
         _print_beside(theirs, ours, console)
         return

@@ -9,17 +9,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.checks.exercises import exercise_of_folder, find_exercise
+from grader.checks.kinds import KINDS
 from grader.common.words import count
-from grader.errors import UsageError
+from grader.errors import GraderError, UsageError
 from grader.exercise.model import catalogue
 from grader.learner import progress, workspace
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from grader.evidence.evidence import Evidence
     from grader.exercise.model import Exercise
     from grader.learner.workspace import Started
     from grader.report.report import Report
+
+
+PART_ONE, PART_TWO = "Part one: topics", "Part two: beyond topics"
+FIRST_OF_PART_TWO = "08"
 
 
 @dataclass(frozen=True)
@@ -106,7 +112,44 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
         return ""
     if all(known.step(name).passed for name in catalogue()):
         return "That was the last step. You have passed all of them."
-    return f"The next step: grader start next   (our solution: grader solution {exercise.id[:2]})"
+    part = next((title for title, names in parts().items() if exercise.id == names[-1]), "")
+    lines = [f"That was the last step of {part.lower()}."] if part else []
+    return "\n".join(
+        [
+            *lines,
+            "The next step: grader start next",
+            f'Our solution, beside yours, and answers to "To think about": grader solution {exercise.id[:2]}',
+        ]
+    )
+
+
+def keep_picture(evidence: Evidence, report: Report, folder: Path | None = None) -> str:
+    """Draw the turtle's path in the workspace if the step is about driving and has passed. Return what to tell.
+
+    The picture is a present. If it cannot be written, nothing is told.
+    """
+    exercise = evidence.exercise
+    if report.exit_code != 0 or not any(KINDS[check.kind].drives for check in exercise.checks):
+        return ""
+    from grader.report.picture import save_picture
+
+    file = progress.workspace_of(folder) / "pictures" / f"{exercise.id}.png"
+    try:
+        file.parent.mkdir(exist_ok=True)
+        save_picture(evidence, report, file)
+    except (OSError, GraderError):
+        return ""
+    return f"The picture of your turtle's path: {file}"
+
+
+def parts() -> dict[str, list[str]]:
+    """Return the steps of each part of the course, by the title of the part. A part without steps is left out."""
+    names = list(catalogue())
+    found = {
+        PART_ONE: [name for name in names if name < FIRST_OF_PART_TWO],
+        PART_TWO: [name for name in names if name >= FIRST_OF_PART_TWO],
+    }
+    return {title: part for title, part in found.items() if part}
 
 
 def print_status(folder: Path | None, console: Console) -> None:
@@ -118,7 +161,10 @@ def print_status(folder: Path | None, console: Console) -> None:
     table = Table(box=None, pad_edge=False)
     for heading in ("", "step", "", "points", "hints"):
         table.add_column(heading)
+    begins = {part[0]: title for title, part in parts().items()}
     for name in catalogue():
+        if name in begins:
+            table.add_row("", begins[name], style="bold")
         step = known.step(name)
         sign = "✓" if step.passed else ("→" if name == known.current else "·")
         points = f"{step.points:g}/{step.max:g}" if step.max else ""

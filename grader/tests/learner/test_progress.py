@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -218,3 +219,20 @@ def test_the_solution_shows_only_files_that_the_learner_had_to_write(home: Path)
     assert "-            # TODO 5" in text
     assert "package.xml" not in text
     assert "BEGIN SOLUTION" not in text
+    assert "Afterwards: answers to" in text
+
+
+def test_the_parts_of_the_course_are_shown_with_their_steps() -> None:
+    said = Console(width=100, record=True, file=io.StringIO())
+    steps.print_status(None, said)
+    text = said.export_text()
+    assert text.index("Part one: topics") < text.index(FIRST)
+
+
+@pytest.mark.parametrize("name", [name for name in catalogue() if name < steps.FIRST_OF_PART_TWO])
+def test_each_question_of_a_lesson_has_an_answer(name: str) -> None:
+    folder = find_exercise(name).folder
+    questions = (folder / "lesson.md").read_text("utf-8").partition("## To think about")[2].partition("\n---")[0]
+    numbers = re.compile(r"^(\d+)\. ", re.MULTILINE)
+    answers = (folder / "afterwards.md").read_text("utf-8")
+    assert numbers.findall(questions) == numbers.findall(answers) != []

@@ -1,0 +1,60 @@
+"""How the learner's file differs from the solution, in one sentence."""
+
+from __future__ import annotations
+
+import ast
+
+from grader.common.words import a_list, count
+
+
+def difference(theirs: str, ours: str, path: str) -> str:
+    """Return a sentence about where the learner's text differs from ours."""
+    if not theirs:
+        return "You have no such file."
+    mine, solution = (_parts(text) if path.endswith(".py") else None for text in (theirs, ours))
+    if mine is None or solution is None:
+        lines = set(theirs.splitlines()) ^ set(ours.splitlines())
+        return f"{count(len(lines), 'line')} differ{'s' if len(lines) == 1 else ''}."
+    same = [name for name in solution if mine.get(name) == solution[name]]
+    other = [name for name in solution if name in mine and name not in same]
+    sentences = [
+        _sentence("The code is the same in", same),
+        _sentence("It is written differently in", other),
+        _sentence("Only you have", [name for name in mine if name not in solution]),
+        _sentence("Only the solution has", [name for name in solution if name not in mine]),
+    ]
+    if len(same) == len(solution) == len(mine):
+        return "The code is the same. Only comments, docstrings or spaces differ."
+    return " ".join(filter(None, sentences))
+
+
+def _sentence(begin: str, names: list[str]) -> str:
+    return f"{begin} {a_list(names)}." if names else ""
+
+
+def _parts(text: str) -> dict[str, str] | None:
+    """Return the functions and methods of a Python file, without comments and docstrings; None if it has an error."""
+    try:
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError):
+        return None
+    found = {}
+    rest = []
+    for node in tree.body:
+        members = node.body if isinstance(node, ast.ClassDef) else [node]
+        for member in members:
+            if isinstance(member, ast.FunctionDef | ast.AsyncFunctionDef):
+                found[member.name] = ast.dump(_without_docstring(member))
+            elif not _is_text(member):
+                rest.append(ast.dump(member))
+    return {**found, "the lines outside of functions": "\n".join(rest)}
+
+
+def _without_docstring(function: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.AST:
+    if function.body and _is_text(function.body[0]):
+        function.body = function.body[1:]
+    return function
+
+
+def _is_text(node: ast.stmt) -> bool:
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)

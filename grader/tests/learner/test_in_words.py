@@ -1,0 +1,43 @@
+"""How a learner's file differs from the solution, in one sentence."""
+
+from __future__ import annotations
+
+import pytest
+
+from grader.learner.in_words import difference
+
+OURS = '''"""Ours."""
+
+SPEED = 2.0
+
+
+class Node:
+    def __init__(self):
+        self.speed = SPEED
+
+    def step(self):
+        return self.speed
+'''
+
+
+@pytest.mark.parametrize(
+    ("theirs", "said"),
+    [
+        (OURS.replace("Ours", "Mine"), "The code is the same. Only comments, docstrings or spaces differ."),
+        (
+            OURS.replace("return self.speed", "return 2 * self.speed"),
+            "The code is the same in __init__ and the lines outside of functions. It is written differently in step.",
+        ),
+        (
+            OURS.replace("def step", "def go"),
+            "The code is the same in __init__ and the lines outside of functions. Only you have go. Only the solution has step.",
+        ),
+        ("", "You have no such file."),
+    ],
+)
+def test_it_is_said_in_words(theirs: str, said: str) -> None:
+    assert difference(theirs, OURS, "node.py") == said
+
+
+def test_other_files_are_compared_by_their_lines() -> None:
+    assert difference("a\nb\n", "a\nc\n", "setup.cfg") == "2 lines differ."
