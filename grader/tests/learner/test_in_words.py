@@ -19,6 +19,8 @@ class Node:
         return self.speed
 '''
 
+REST = "The code is the same in __init__ and the lines outside of functions."
+
 
 @pytest.mark.parametrize(
     ("theirs", "said"),
@@ -26,11 +28,11 @@ class Node:
         (OURS.replace("Ours", "Mine"), "The code is the same. Only comments, docstrings or spaces differ."),
         (
             OURS.replace("return self.speed", "return 2 * self.speed"),
-            "The code is the same in __init__ and the lines outside of functions. It is written differently in step.",
+            f"{REST} It is written differently in step.",
         ),
         (
             OURS.replace("def step", "def go"),
-            "The code is the same in __init__ and the lines outside of functions. Only you have go. Only the solution has step.",
+            f"{REST} Only you have go. Only the solution has step.",
         ),
         ("", "You have no such file."),
     ],
