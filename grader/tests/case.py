@@ -50,9 +50,9 @@ class Case:
     edit: tuple[Mapping[str, str], ...] = ()
     """Changes of the base: in `file`, `old` becomes `new`, everywhere."""
     remove: tuple[str, ...] = ()
-    """Paths of the base that are taken away."""
+    """Paths of the base that are removed."""
     give: str = "."
-    """What is handed in, relative to the folder that holds the package."""
+    """The path that is submitted, relative to the folder that holds the package."""
     sample: bool = False
     """Belongs to the sample that `make test` runs."""
     clock: str = ""
@@ -71,7 +71,7 @@ class Case:
     says: Mapping[str, tuple[str, ...]] = ()  # type: ignore[assignment]
     """Check -> what its texts must contain; the key "usage" stands for the message of exit code 2."""
     never: tuple[str, ...] = ()
-    """What must not be said anywhere."""
+    """Text that the report must not contain."""
 
 
 def read_case(folder: Path) -> Case:
@@ -94,14 +94,14 @@ def read_cases(below: Path = CASES) -> tuple[Case, ...]:
 
 
 def base_of(case: Case) -> Path | None:
-    """The folder of what the case is laid over."""
+    """The folder of the base of the case."""
     if not case.base:
         return None
     return BASES / case.base if (BASES / case.base).is_dir() else ROOT / "solutions" / case.base
 
 
 def make_submission(case: Case, to: Path) -> Path:
-    """Write what is handed in below the new folder `to`, and return its path."""
+    """Write the submission below the new folder `to`, and return its path."""
     to.mkdir(parents=True)
     base = base_of(case)
     package = to / "my_robot_controller" if base is not None and (base / "my_robot_controller").is_dir() else to

@@ -23,7 +23,7 @@ _own: list[int] = []
 
 @cache
 def default_domain() -> int:
-    """The domain of what this process starts without giving it one."""
+    """The default domain of the processes that this process starts."""
     deadline = time.monotonic() + HANG_S
     while (domain := _free()) is None:
         assert time.monotonic() < deadline, "all ROS domains are in use by other tests"

@@ -28,7 +28,7 @@ HANG_S = 300.0
 
 @dataclass(frozen=True)
 class Graded:
-    """What one `grader check` left: `report` is None where it wrote none."""
+    """The result of one `grader check`: `report` is None if it wrote none."""
 
     exit_code: int
     stdout: str
@@ -139,7 +139,7 @@ def compare(case: Case, graded: Graded) -> None:
 
 
 def all_reported(graded: Graded) -> str:
-    """What did not pass, a line each, for whoever reads the failed test."""
+    """The checks that did not pass, one line each, for the message of a failed test."""
     keys = ("id", "diagnosis", "seen", "expected", "cause")
     lines = [
         " | ".join(str(outcome[key]) for key in keys) + f" | {place_of(outcome)}"

@@ -39,7 +39,7 @@ class InRos:
     home: Path
 
     def environment(self) -> dict[str, str]:
-        """The environment of one process; whoever has another hears nothing of it."""
+        """The environment of one process; processes in other domains do not receive its messages."""
         return installation.environment(self.ros, home=self.home, domain=own_domain())
 
     def run(self, name: str, *arguments: object) -> Ran:

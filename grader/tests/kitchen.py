@@ -1,4 +1,4 @@
-"""Thermometer and heater in one process: the small system whose graph step 05 shows. Runs until told to stop."""
+"""Thermometer and heater in one process: the small system whose graph step 05 shows. Runs until it is stopped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a test does without a program that it needs."""
+"""Skip a test, or fail in CI, if a program that it needs is missing."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def hide_ros(cache: Path) -> None:
 
 
 def without_ros(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """No ROS 2 is looked for, and whoever else grades on this machine is not waited for."""
+    """Do not look for a ROS 2, and do not wait for other gradings on this machine."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(cache))
     monkeypatch.setattr(grade, "find_ros", lambda: NO_ROS)
     monkeypatch.setattr(underlay, "ensure", lambda *_: None)

@@ -33,7 +33,7 @@ USER = 65531
 """An ordinary user, where root runs the tests."""
 HANG_S = 400.0
 SETTLE_S = 0.5
-"""How long those who wait for the end of the grading get."""
+"""How long to wait for processes that outlive the grading (s)."""
 
 
 @dataclass(frozen=True)

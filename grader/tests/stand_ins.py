@@ -17,7 +17,7 @@ class StandIns:
 
     @property
     def path(self) -> str:
-        """A PATH with nothing but them, and what their own scripts need."""
+        """A PATH with only the stand-ins and the programs that their scripts need."""
         return str(self.folder)
 
     def add(self, name: str, then: str = "") -> None:

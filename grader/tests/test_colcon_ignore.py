@@ -85,7 +85,7 @@ def test_nothing_that_is_copied_to_students_hides_their_package(tracked: list[Pu
 
 
 def test_a_workspace_that_holds_the_course_has_no_package_twice(tmp_path: Path) -> None:
-    """Who clones the course into src/ builds their own package, none of the course's."""
+    """With the course cloned into src/, colcon builds the learner's own package and none of the course's."""
     shutil.copytree(PACKAGE, tmp_path / "src/my_robot_controller")
     hand_out(tmp_path / "src/course")
     assert colcon_list(tmp_path) == ["src/my_robot_controller"]

@@ -1,4 +1,4 @@
-"""The truth of step 02 is asked from a running simulator: another simulator, other right answers."""
+"""The right answers of step 02 come from a running simulator: another simulator, other right answers."""
 
 from __future__ import annotations
 

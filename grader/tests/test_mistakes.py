@@ -42,7 +42,7 @@ NOWHERE = frozenset({"node-name", "no-answers", "no-numbers", "rejected-file"})
 
 @pytest.fixture(scope="module")
 def graded(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grade]:
-    """What is said of a case under a clock; all that this session asks for is graded side by side."""
+    """The grading of a case under a clock; all that this session asks for is graded side by side."""
     folder, builds = tmp_path_factory.mktemp("mistakes"), Builds()
     futures: dict[tuple[str, str], Future[Graded]] = {}
     with ThreadPoolExecutor(AT_ONCE) as pool:
@@ -102,7 +102,7 @@ def test_both_clocks_name_the_same_mistake(case: Case, graded: Grade) -> None:
 
 
 def test_a_diagnosis_is_not_shown_over_and_over() -> None:
-    """The first diagnosis that a case names is what it is about."""
+    """A case is about the first diagnosis that it names."""
     about = Counter(next(iter(case.diagnosis.values())) for case in CASES if case.diagnosis)
     assert [id_ for id_, amount in about.items() if amount > 3] == []
 

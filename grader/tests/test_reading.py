@@ -44,7 +44,7 @@ BEHIND_THE_DOOR = {
     ("runner", "_described"): "runner",
     ("runner", "_entry_points"): "runner",
 }
-"""Other functions that read there, and the module that has the door."""
+"""Other functions that read there, and the module that calls `read` for them."""
 OURS = {
     ("archives", "_why"): "what unpack.py says",
     ("bridge", "main"): "an order of the relay",

@@ -37,7 +37,7 @@ def outside():
 
 @dataclass(frozen=True)
 class Reported:
-    """What is said of a crash: the diagnosis, the line to look at, the cause in words."""
+    """The report of a crash: the diagnosis, the line to look at, the cause in words."""
 
     diagnosis: str | None
     line: int | None
@@ -56,13 +56,13 @@ def to_look_at(source: str) -> int | None:
 
 
 def reported(source: str, error: str, files: dict[str, str] | None = None) -> Reported:
-    """What is told of a node with this source that ended with this error; `files` lie beside it."""
+    """The report of a node with this source that ended with this error; `files` lie beside it."""
     finding = _finding(source, error, files)
     return Reported(finding.diagnosis, None if finding.where is None else finding.where.line, finding.cause)
 
 
 def fixed(source: str, error: str) -> str | None:
-    """The source after the fix of the cause that is told; None if there is none that fits."""
+    """The source after the fix of the reported cause; None if there is none that fits."""
     changed = applied({NODE_FILE: source.encode()}, _finding(source, error, None).fix)
     return None if changed is None or changed[NODE_FILE] == source.encode() else changed[NODE_FILE].decode()
 

@@ -171,7 +171,7 @@ def as_command(timed: Timed) -> Command:
 
 
 class NoPaper:
-    """For a turtle whose trail nobody looks at."""
+    """For a turtle whose trail does not matter."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         """Draw nothing."""
@@ -181,7 +181,7 @@ class NoPaper:
 
 
 def frames(commands: Iterable[Command], start: Pose, duration_s: float) -> Frames:
-    """What the simulator makes of the commands, frame by frame."""
+    """The motion that the simulator computes from the commands, frame by frame."""
     turtle, paper = Turtle(Start(start.x, start.y, start.theta)), NoPaper()
     waiting = sorted(commands, key=lambda command: command.t_s)
     rows = []
@@ -254,12 +254,12 @@ def evidence(
 
 
 def finding(check: str, given: Evidence) -> Finding:
-    """What the exercise's check of this id finds, all others left out."""
+    """The finding of the exercise's check with this id, without the other checks."""
     spec = next(each for each in exercise().checks if each.id == check)
     alone = replace(given.exercise, checks=(replace(spec, needs=()),))
     return judge(replace(given, exercise=alone))[0].finding
 
 
 def found(kind: Kind[Any], given: Evidence, **values: Param) -> Finding:
-    """What a check of this kind finds with these parameters, the others at their defaults."""
+    """The finding of a check of this kind with these parameters and otherwise the defaults."""
     return kind.judge(given, {**kind.defaults(), **values})

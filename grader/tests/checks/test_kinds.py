@@ -1,4 +1,4 @@
-"""What belongs to a kind is told by the kind."""
+"""Everything that belongs to a kind of check is defined with the kind."""
 
 from __future__ import annotations
 

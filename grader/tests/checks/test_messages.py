@@ -19,7 +19,7 @@ SOLUTION = (
     'create_publisher(Twist, "/turtle1/cmd_vel"',
     "publish(msg)",
 )
-"""Lines of the solution: to be found by the learner, never told."""
+"""Lines of the solution, which no message may contain."""
 
 
 def catalogue() -> dict[str, Outcome]:

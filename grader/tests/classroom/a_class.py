@@ -92,7 +92,7 @@ def reports(out: Path) -> dict[str, dict[str, Any]]:
 
 
 def judged(out: Path) -> dict[str, list[tuple[Any, ...]]]:
-    """Return what two gradings must agree on: status, points, diagnosis and cause of every check."""
+    """Return the parts in which two gradings must agree: status, points, diagnosis and cause of every check."""
     return {
         student: [tuple(outcome[key] for key in COMPARED) for outcome in report["outcomes"]]
         for student, report in reports(out).items()

@@ -19,7 +19,7 @@ from grader.tests.docs.pages import BESIDE_THE_CODE, PAGES, ROOT, prose_of, text
 
 CONSOLE = {page: [block for block in blocks(text_of(page)) if block.language == "console"] for page in PAGES}
 SET_UP = re.compile(r"make \w+|source \.venv/bin/activate")
-"""Set-up is what has brought these tests here; running it from them would run them again."""
+"""The set-up has already run; running it from them would run them again."""
 FAILS = re.compile(r"grader check exercises/\S+|grader check$")
 """A starting point does not pass; every other command ends with 0."""
 ELSEWHERE = {
@@ -35,7 +35,7 @@ ELSEWHERE = {
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    """What the pages are about, as it stands now, where their commands may leave things behind."""
+    """A copy of the repository in which the commands of the pages may leave files."""
     for name in ("course", "exercises", "solutions"):
         shutil.copytree(ROOT / name, tmp_path / name)
     (tmp_path / "home").mkdir()

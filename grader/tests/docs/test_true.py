@@ -1,4 +1,4 @@
-"""What docs/ says in tables is what the code has: limits of cells, keys of exercise.toml."""
+"""The tables in docs/ agree with the code: limits of cells, keys of exercise.toml."""
 
 from __future__ import annotations
 

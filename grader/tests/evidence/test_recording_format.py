@@ -23,7 +23,7 @@ CHALLENGES = find_exercise("07-challenges")
 
 
 def some_trials() -> Evidence:
-    """Two trials that were run, one that the node brought down, one that was not made."""
+    """Two trials that were run, one in which the node broke the simulator, and one that was not run."""
     runs = {
         "circle": Run(good()),
         "eight": Run(recording(every(0.1, 1.0, 1.0))),

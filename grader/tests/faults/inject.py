@@ -75,7 +75,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Done:
-    """What a command has printed, how it ended, and how many calls failed."""
+    """The output of a command, its exit code, and the number of calls that failed."""
 
     code: int
     said: str
@@ -119,6 +119,6 @@ def failures(folder: Path) -> int:
 
 
 def no_traceback(done: Done) -> None:
-    """What was printed holds no traceback, and no fault of ours."""
+    """The output has no traceback and no fault of the grader."""
     for trace in (*TRACES, "GRADER_DEBUG=1"):
         assert trace not in done.said, done.said

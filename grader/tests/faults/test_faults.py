@@ -1,4 +1,4 @@
-"""What the system refuses while a submission is graded is a sentence, or changes nothing; it costs no points."""
+"""If the system refuses something during a grading, one sentence says so, or nothing changes; it costs no points."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from grader.tests.fuzz import inline
 
 SECONDS, MEBIBYTES = 20, 3072
-"""What one input may take."""
+"""The limit for one input."""
 
 
 def main() -> None:

@@ -1,4 +1,4 @@
-"""Decisions drawn from bytes, so that whoever varies the bytes varies the decisions."""
+"""Decisions drawn from bytes, so that other bytes lead to other decisions."""
 
 from __future__ import annotations
 

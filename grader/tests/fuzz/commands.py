@@ -1,4 +1,4 @@
-"""What commands do with a submission, as far as no code of it runs: build and trials are made up."""
+"""The commands of the grader with a submission whose code does not run: build and trials are made up."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def write(student: str, report: Report, page: str) -> None:
 
 
 def regraded(folder: Path) -> None:
-    """What `regrade` does with the recording in the folder, with all of its options."""
+    """Run `regrade` with the recording in the folder, with all of its options."""
     from typer.testing import CliRunner
 
     from grader.cli import app

@@ -1,4 +1,4 @@
-"""The door to reading without its process. It prints where an error that is not ours came from."""
+"""Read in this process instead of a child. It prints where an error that is not ours came from."""
 
 from __future__ import annotations
 

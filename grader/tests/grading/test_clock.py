@@ -1,4 +1,4 @@
-"""The policy of the clock: what a trial begins with, and what decides after it."""
+"""The policy of the clock: the first clock of a trial, and the clock of its repetition."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The plan of a trial: what follows from the seed, the option of the clock, and the checks."""
+"""The plan of a trial, which depends on the seed, the option `--clock` and the checks."""
 
 from __future__ import annotations
 

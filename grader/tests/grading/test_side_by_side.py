@@ -108,7 +108,7 @@ def test_all_are_begun_where_they_may_run_side_by_side(at_once: int, begun: int)
 
 
 def built_solution() -> Built:
-    """What colcon makes of the solution, without the files."""
+    """The build of the solution, without its files."""
     scripts = (ROOT / "solutions" / STEP / PACKAGE / PACKAGE).glob("*.py")
     build = replace(
         BUILD,

@@ -1,4 +1,4 @@
-"""A wall-clock trial that failed on a crowded machine is made again, alone; one that had the machine is believed."""
+"""A trial in wall time that failed on a crowded machine is repeated alone; on an idle machine, it counts."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Trials:
 
 
 def _is_taken(lock: Path) -> bool:
-    """Whether nobody else could share it."""
+    """Whether no other process can share it."""
     with lock.open("ab") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)

@@ -1,4 +1,4 @@
-"""What breaks the grader while it reads a submission has failed; only the machine's own faults are errors."""
+"""A submission that breaks the grader while it is read has failed; only the machine's own faults are errors."""
 
 from __future__ import annotations
 

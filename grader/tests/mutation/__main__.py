@@ -104,7 +104,7 @@ def _unnoticed(
     notice: Callable[[Iterable[str]], bool],
     at_once: int,
 ) -> list[Mutant]:
-    """The mutants that nobody notices of those who run their lines, `alike` of those who do so alike."""
+    """The mutants that no test notices. `alike` tests are tried of those that run the same lines."""
 
     def job(mutant: Mutant) -> judging.Job:
         names = judging.requested(mutant, lines, alike)

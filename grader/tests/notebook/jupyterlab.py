@@ -1,4 +1,4 @@
-"""JupyterLab as a student starts it, and what a student does in it, for the browser tests."""
+"""JupyterLab for the browser tests: start it and work in it like a student."""
 
 from __future__ import annotations
 

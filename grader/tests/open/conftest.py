@@ -23,7 +23,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def learner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Course]:
-    """A learner who has begun no step yet, with a server."""
+    """A learner who has not started a step yet, with a server."""
     for made in course(tmp_path_factory.mktemp("learner")):
         made.start()
         yield made
@@ -31,7 +31,7 @@ def learner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Course]:
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Course]:
-    """A learner who has begun step 03, with a server."""
+    """A learner who has started step 03, with a server."""
     for made in course(tmp_path_factory.mktemp("begun")):
         made.run("start", CIRCLE)
         made.start()

@@ -1,4 +1,4 @@
-"""Pages of reports, and a browser tab that collects what goes wrong in it."""
+"""Pages of reports, and a browser tab that collects all errors in it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What students see of a hidden check in the formats that they may read."""
+"""The hidden checks in the formats that students may read."""
 
 from __future__ import annotations
 

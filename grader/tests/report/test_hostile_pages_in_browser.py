@@ -1,4 +1,4 @@
-"""Pages of hostile submissions in a browser: no script of theirs runs."""
+"""Pages of hostile submissions in a browser: none of their scripts runs."""
 
 from __future__ import annotations
 

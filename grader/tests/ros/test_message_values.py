@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Point:
-    """As a message of rclpy looks from outside."""
+    """Looks like a message of rclpy."""
 
     def __init__(self) -> None:
         self.x = 0.0

@@ -13,7 +13,7 @@ COMPARED = {"test_golden.py"}
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Skip what is about our own `ros2` where the real one stands."""
+    """Skip tests of our own `ros2` where the real one is used."""
     for item in items:
         if item.path.parent == Path(__file__).parent and item.path.name not in COMPARED:
             item.add_marker(of_our_ros2)

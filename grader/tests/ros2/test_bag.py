@@ -1,4 +1,4 @@
-"""`ros2 bag`: what was on the wire is in the bag and comes out of it again, however the recorder ended."""
+"""`ros2 bag`: all messages are in the bag and can be played again, however the recorder ended."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ rclpy.spin(node)
 
 @pytest.fixture
 def quiet(tmp_path: Path) -> Iterator[World]:
-    """A domain with nobody in it; the home has two programs."""
+    """A domain without nodes; the home has two programs."""
     for made in world(tmp_path):
         made.home.joinpath("talker.py").write_text(TALKER)
         made.home.joinpath("listener.py").write_text(LISTENER)
@@ -67,7 +67,7 @@ def record(here: World, options: str = "/count", count: int = 300) -> Running:
 
 
 def numbers(folder: Path) -> list[int]:
-    """What a bag holds, read by another library than the one that wrote it."""
+    """The content of a bag, read by another library than the one that wrote it."""
     (file,) = folder.glob("*.mcap")
     with file.open("rb") as stream:
         found = list(make_reader(stream).iter_messages())

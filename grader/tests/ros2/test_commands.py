@@ -1,4 +1,4 @@
-"""What the commands do beyond the recordings: starting, handing over, ending, and options."""
+"""The commands where there are no recordings: starting, handing over, ending, and options."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """turtlesim, and nobody who drives."""
+    """turtlesim, and no node that drives."""
     for made in world(tmp_path_factory.mktemp("still")):
         made.turtlesim()
         yield made

@@ -29,7 +29,7 @@ START = "5.544444561004639,5.544444561004639,0.0,0.0,0.0\n"
 
 @pytest.fixture
 def users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[World]]:
-    """What `grader env` gives to each of two users, who choose nothing."""
+    """The environments that `grader env` gives to two users without options."""
     ros = underlay.with_turtlesim(installation.find_ros())
     worlds = []
     for uid in UIDS:

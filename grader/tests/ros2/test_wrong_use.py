@@ -1,4 +1,4 @@
-"""What the commands say when something is wrong: what it is, the nearest name, an exit code; never a traceback."""
+"""The messages about wrong commands: the reason, the nearest name, an exit code; never a traceback."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """turtlesim, and nobody who drives."""
+    """turtlesim, and no node that drives."""
     for made in world(tmp_path_factory.mktemp("still")):
         made.turtlesim()
         yield made

@@ -77,7 +77,7 @@ def children(pid: int) -> list[int]:
 
 @dataclass
 class World:
-    """A HOME, an environment with ROS 2, and a domain that nobody else has."""
+    """A HOME, an environment with ROS 2, and a domain of its own."""
 
     home: Path
     env: dict[str, str]
@@ -136,7 +136,7 @@ class World:
 
 
 def environment(home: Path, domain: int | None = None) -> dict[str, str]:
-    """What a user has after `source <(grader env)`, in a domain of its own."""
+    """The environment after `source <(grader env)`, in a domain of its own."""
     ros = underlay.with_turtlesim(installation.find_ros())
     own = own_domain() if domain is None else domain
     ours = str(Path(sys.executable).parent)
@@ -177,7 +177,7 @@ _GOLDEN = Path(__file__).parents[1] / "golden/ros2"
 
 @dataclass(frozen=True)
 class Golden:
-    """What the real `ros2` did: a command, what it wrote, and how it ended."""
+    """A recording of the real `ros2`: a command, its output, and its exit code."""
 
     command: str
     stdout: str

@@ -52,7 +52,7 @@ class Course:
 
     @property
     def programs(self) -> list[str]:
-        """What was run: venv or grader.setup.install."""
+        """The command that was run: venv or grader.setup.install."""
         known = ("venv", "grader.setup.install")
         return [next(word for word in command if word in known) for command in self.commands]
 

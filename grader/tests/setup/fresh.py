@@ -1,4 +1,4 @@
-"""A fresh clone of the course with nothing installed, as somebody has it who just got it.
+"""A fresh clone of the course, with nothing installed.
 
 Each `make` target is tried in one of its own, and one real thing is done with what it brought. These tests need the
 network where the caches of pip and uv lack something; `.ci/doors` runs them, and `make test-all`.
@@ -26,7 +26,7 @@ NETWORK = ("PIP_", "UV_", "SSL_CERT_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY",
 
 @dataclass(frozen=True)
 class Clone:
-    """The clone and the home of whoever uses it."""
+    """The clone, and the home of its user."""
 
     folder: Path
     home: Path

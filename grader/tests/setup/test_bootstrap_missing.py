@@ -1,4 +1,4 @@
-"""What the set-up does about things that the system lacks."""
+"""The set-up on a system that lacks programs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Our commands as files: what they do before any of our modules is there."""
+"""The commands as files: what they do before they import a module of the grader."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The development container: what can be said of it without starting one."""
+"""The development container, tested without starting one."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ def wheels() -> Ros:
 
 @pytest.fixture
 def bare(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
-    """Nothing is tried, only what lies there is looked at: each test breaks one thing."""
+    """Nothing is run, only files are read: each test breaks one thing."""
     monkeypatch.setattr(bubblewrap, "why_unavailable", lambda: None)
     monkeypatch.setattr(underlay, "ensure", lambda _ros, _tell: Path("/cache/turtlesim"))
     monkeypatch.setattr(doctor, "look_at_node", lambda _ros, **_: Line("a node", "starts"))

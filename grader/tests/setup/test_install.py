@@ -12,13 +12,13 @@ from grader.setup.bootstrap import PARTS
 
 
 class Installers:
-    """What the installers were asked for, instead of being run."""
+    """The requests to the installers, which are not run."""
 
     def __init__(self) -> None:
         self.pip: list[str] = []
         self.uv: list[str] = []
         self.failed: dict[str, str] = {}
-        """What an installer that fails prints, by its name."""
+        """The output of an installer that fails, by its name."""
 
     def run(self, command: list[str], _: dict[str, str]) -> install.Ran:
         if "--editable" in command:

@@ -63,7 +63,7 @@ def applies(entry: lock.Entry, python: str) -> bool:
 
 
 def applying(python: str) -> dict[str, str]:
-    """Name -> version of what the lock file installs for a Python; fails if one name has two versions."""
+    """Name -> version of each package that the lock file installs for a Python; fails if one name has two versions."""
     found: dict[str, str] = {}
     for entry in ENTRIES:
         if applies(entry, python):
@@ -112,7 +112,7 @@ def test_ros_is_a_part_of_its_own() -> None:
 
 
 def named_by_the_project(parts: list[str]) -> list[Requirement]:
-    """What pyproject.toml asks for so that these parts of the lock file are there."""
+    """The requirements in pyproject.toml for these parts of the lock file."""
     project = tomllib.loads(lock.PROJECT.read_text(encoding="utf-8"))["project"]
     extras = {"grader": "view", "tests": "dev"}
     texts = chain.from_iterable(project["optional-dependencies"][extras.get(part, part)] for part in parts)
@@ -120,7 +120,7 @@ def named_by_the_project(parts: list[str]) -> list[Requirement]:
 
 
 def resolved(wanted: list[Requirement]) -> set[str]:
-    """The names of all packages that these need, by what the installed ones say of themselves."""
+    """The names of all packages that these need, according to the metadata of the installed ones."""
     found: set[tuple[str, str]] = set()
     while wanted:
         need = wanted.pop()

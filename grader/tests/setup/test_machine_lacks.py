@@ -1,4 +1,4 @@
-"""What a machine lacks, and the message about it."""
+"""The messages about what a machine lacks."""
 
 from __future__ import annotations
 

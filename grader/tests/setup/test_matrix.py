@@ -33,7 +33,7 @@ STAGES = (
     "Set up:",
     "$ grader check",
 )
-"""What the set-up prints when a stage begins or has ended."""
+"""The lines that the set-up prints when a stage begins or ends."""
 
 
 def pythons() -> dict[int, str]:

@@ -26,7 +26,7 @@ APT = "apt-get install -y -q --no-install-recommends -o DPkg::Lock::Timeout=60 -
 
 
 class Machine:
-    """A machine of stand-ins, and what was said on it."""
+    """A machine of stand-ins, and the messages on it."""
 
     def __init__(self, folder: Path) -> None:
         self.stand_ins = StandIns(folder)

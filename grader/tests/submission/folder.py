@@ -1,4 +1,4 @@
-"""Packages as folders, for tests of what is read of them."""
+"""Packages as folders, for tests of reading."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sources that were written to take for ever, or all memory, are read in a bounded time, or told to be too large."""
+"""Sources that would take for ever, or all memory, are read in a limited time or reported as too large."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The process that reads what students wrote: its limits, and what comes back from it."""
+"""The process that reads what students wrote: its limits and its results."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ def launch(in_ros: InRos, folder: Path, text: str, ros_arguments: list[str]) -> 
 
 
 def printed(done: subprocess.CompletedProcess[bytes]) -> bytes:
-    """What the program itself printed."""
+    """The output of the program itself."""
     return done.stdout.rpartition(b"ready\n")[2]
 
 

@@ -76,7 +76,7 @@ class Rig:
         return self.turtlesim.turtle_state(name)
 
     def goal(self, theta: float, feedback: list[float]) -> Any:
-        """Have a goal of rotate_absolute accepted."""
+        """Send a goal to rotate_absolute and wait until it is accepted."""
         action = ActionClient(self.client, RotateAbsolute, "/turtle1/rotate_absolute")
         self.until(action.server_is_ready)
         sent = action.send_goal_async(

@@ -40,7 +40,7 @@ def opened(browser: Browser, url: str) -> Page:
 
 
 def drawn(page: Page) -> int:
-    """How many pixels of the canvas have the pen's colour, as they are seen."""
+    """The number of visible pixels of the canvas in the pen's colour."""
     picture = Image.open(io.BytesIO(page.locator("#sea").screenshot())).convert("RGB")
     return sum(
         count

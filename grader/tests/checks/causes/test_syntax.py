@@ -1,4 +1,4 @@
-"""Python's own words for a file that it cannot read, told by the mistake that is usually behind them."""
+"""Python's messages for a file that it cannot read, and the usual mistake behind each of them."""
 
 from __future__ import annotations
 

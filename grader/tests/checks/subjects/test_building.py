@@ -1,4 +1,4 @@
-"""The checks of the build: that it ends well, and that what was meant to be installed is installed."""
+"""The checks of the build: it succeeds and installs everything that it should."""
 
 from __future__ import annotations
 

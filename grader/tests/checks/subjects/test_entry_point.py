@@ -1,4 +1,4 @@
-"""The check of the entry point, and what a text that is none is told by."""
+"""The check of the entry point, and the causes for a string that is not an entry point."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ Said = tuple["Floats", "Floats", "Floats"]
 
 
 def truth(lag_s: float = 0.0) -> Said:
-    """What a right node says at TIMES, by the pose that was true `lag_s` before."""
+    """The lines of a right node at TIMES, with the poses of `lag_s` before."""
     frames, start = DRIVE.frames, DRIVE.start
     at = np.searchsorted(frames.t_s, TIMES - lag_s) - 1
     x, y = np.append(start.x, frames.x), np.append(start.y, frames.y)

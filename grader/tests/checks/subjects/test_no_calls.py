@@ -30,7 +30,7 @@ SLEEP = ("sleep", "sleep_for", "create_rate")
 
 
 def used(text: str, **files: str) -> tuple[Status, str]:
-    """What is said of a node with this text below it, and with these modules beside it."""
+    """The finding about a node with this text below it and these modules next to it."""
     beside = {f"my_robot_controller/{name}.py": code for name, code in files.items()}
     package = submission({NODE_FILE: f"import time\n{NODE}\n{text}\n", **beside})
     finding = found(NO_CALLS, evidence(package=package), names=SLEEP, cause="Count.")

@@ -1,4 +1,4 @@
-"""The circle with a student's own numbers: whose they are, and what the node made of them."""
+"""The circle with a student's own numbers."""
 
 from __future__ import annotations
 

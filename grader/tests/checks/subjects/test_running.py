@@ -105,7 +105,7 @@ def test_by_either_clock_an_end_in_the_first_moment_is_one_at_the_start(
 @pytest.mark.parametrize("clock", ["wall", "simulated"])
 @pytest.mark.parametrize(("frame", "starts"), [("await_or_execute", True), ("handler", True), ("spin_once", False)])
 def test_a_node_that_crashes_in_its_first_callback_has_started(clock: ClockName, frame: str, *, starts: bool) -> None:
-    """However soon that is, and whoever looks first. A class that is given to rclpy.spin has no callback."""
+    """However soon that is. A class that is given to rclpy.spin has no callback."""
     text = f'{START}\n  File "/ros/rclpy/executors.py", line 838, in {frame}\n    x\nValueError: x\n'
     end = ProcessEnd(by="itself", exit_code=1, t_s=0.0, stop_s=None)
     crashed_early = evidence(recording([], clock=clock, end=end, stderr=Output(text)))

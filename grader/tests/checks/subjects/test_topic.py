@@ -1,4 +1,4 @@
-"""The topic: who publishes and subscribes what, and what arrived."""
+"""The topic: publishers, subscriptions, and the messages that arrived."""
 
 from __future__ import annotations
 
