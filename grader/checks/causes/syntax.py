@@ -45,6 +45,11 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
         "There is one closing bracket too many, or it is the wrong kind of bracket.",
     ),
     (
+        r"unterminated triple-quoted",
+        "quote-open",
+        "A string that begins with three quotation marks must end with three.",
+    ),
+    (
         r"unterminated",
         "quote-open",
         "A string must end on the same line, with the same quotation mark that it starts with.",
@@ -65,6 +70,15 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
 """(pattern of Python's message, diagnosis, cause). The first pattern that matches is used."""
 NOT_CLOSED = re.compile(r"does not match opening parenthesis '(?P<bracket>.)' on line (?P<line>\d+)")
 ENTRY_POINT = re.compile(r"\s*\w+\s*=\s*[\w.]+:\w+\s*,?\s*")
+OTHER_LANGUAGES = (
+    (r"\s*else\s+if\b.*", "Python spells else if as one word: elif."),
+    (r".*(?:\+\+|--)\s*;?\s*", "Python has no ++ and no --. Write += 1 or -= 1."),
+    (r"\s*(?:def|class|if|for|while)\b.*\{\s*", "In Python, a block begins with a colon, not with a brace."),
+    (r"\s*//.*", "In Python, a comment begins with #."),
+    (r".*=\s*new\s+\w+.*", "Python has no new. The name of a class with parentheses creates an object."),
+    (r"\s*else\s*:.*", "An else needs an if, for, while or try before it, with the same indentation."),
+)
+"""(pattern of a line that Python cannot read, cause): what other languages allow, and an else that stands alone."""
 NO_SPACE = re.compile(r"\s*(?P<keyword>def|class)(?P<rest>\w+\s*[(:].*)")
 """A definition whose first word has no space after it."""
 CONFLICT = r"^(<<<<<<<|=======|>>>>>>>)"
@@ -87,6 +101,10 @@ def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:
         place = Where(file, unreadable.line)
         fix = at(place, glued["keyword"] + glued["rest"], f"{glued['keyword']} {glued['rest']}")
         return Cause("syntax-error", f"A space is missing after {glued['keyword']}.", place).fixed_by(fix)
+    line = _line(unreadable, data)
+    foreign = next((text for pattern, text in OTHER_LANGUAGES if re.fullmatch(pattern, line)), None)
+    if foreign is not None and re.search(r"invalid syntax|expected ':'", unreadable.message):
+        return Cause("syntax-error", foreign)
     other = NOT_CLOSED.search(unreadable.message)
     if other is not None:
         text = f"The bracket {other['bracket']} of line {other['line']} is still open in line {unreadable.line}."

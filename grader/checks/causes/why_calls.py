@@ -121,6 +121,8 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
         )
     if "'NoneType' object does not support the context manager" in text:
         return _with_init(scene) or _after_shutdown(scene)
+    if "rclpy_resolve_name(): incompatible" in text:
+        return Cause("crash", "A topic name must be a string in quotation marks, or a variable that holds a string.")
     if "Expected QoSProfile or int" in text:
         return Cause("queue-size", "The last argument is the queue size, a whole number.")
     return None
@@ -139,7 +141,8 @@ def _after_shutdown(scene: CrashScene) -> Cause | None:
     """Return the cause if an earlier line of the same function calls rclpy.shutdown, else None."""
     calls = (node for node in scene.nodes if isinstance(node, ast.Call) and node.lineno < scene.line)
     ended = [node for node in calls if (dotted(node.func) or "").rpartition(".")[2] in ("shutdown", "try_shutdown")]
-    if not ended or scene.function_around(ended[-1]) is not scene.function:
+    around = scene.function_around(ended[-1]) if ended else None
+    if around is None or (around is not scene.function and around.name != "__init__"):
         return None
     text = "ROS 2 ends with this call of shutdown, so nothing after it can spin or publish."
     return Cause("crash", text, scene.at(ended[-1]))
@@ -149,6 +152,11 @@ def _too_few(scene: CrashScene, function: str, names: str) -> Cause:
     if function == "__init__" and "node_name" in names:
         return _init_misspelt(scene) or Cause("node-name-missing", "Pass the node name, a string, to super().__init__.")
     own = scene.functions(function)
+    if own and not any(own[0] in methods(each) for each in scene.classes):
+        text = (
+            f"{function} is called without a value for {shorten(names)}. A parameter with a default value needs none."
+        )
+        return Cause("argument-missing", text, scene.at(own[0]))
     if own:
         text = (
             f"Nothing is passed for {shorten(names)}. "

@@ -31,7 +31,10 @@ def why_ended(evidence: Evidence) -> Cause:
     returned = _returns_before_spin(evidence)
     if returned is not None:
         return returned
+    stop = _exits(evidence)
     ended: Diagnosis = "ends-at-once" if ended_at_start(evidence.recording) else "ended-early"
+    if stop is not None:
+        return Cause(ended, "This call of exit may be what ends the program.", stop)
     return Cause(ended, "", evidence.place("spin", "init"))
 
 
@@ -46,6 +49,16 @@ def _returns_before_spin(evidence: Evidence) -> Cause | None:
             if lines and spins and min(lines) < min(spins):
                 text = f"{node.name} returns here, before it calls rclpy.spin."
                 return Cause("ends-at-once", text, Where(module.file, min(lines)))
+    return None
+
+
+def _exits(evidence: Evidence) -> Where | None:
+    """Return where a method calls exit, or None."""
+    for module in evidence.code.modules:
+        for own in (node for node in module.nodes if isinstance(node, ast.ClassDef)):
+            for node in ast.walk(own):
+                if isinstance(node, ast.Call) and dotted(node.func) in ("exit", "quit", "sys.exit", "os._exit"):
+                    return Where(module.file, node.lineno)
     return None
 
 

@@ -55,12 +55,10 @@ def _as_float(scene: CrashScene, value: ast.Constant) -> tuple[Edit, ...]:
 def _why_no_float(field: str, value: ast.expr | None) -> Cause:
     if isinstance(value, ast.UnaryOp):
         value = value.operand
-    if isinstance(value, ast.Constant) and isinstance(value.value, str):
-        return Cause("string-for-number", f"The field {field} is a float. In quotation marks, a number is a string.")
-    if isinstance(value, ast.Constant) and isinstance(value.value, bool):
-        return Cause("field-type", f"The field {field} is a float, not True or False.")
-    if isinstance(value, ast.Constant) and isinstance(value.value, int):
-        return Cause("int-for-float", f"The field {field} is a float. Write the number with a decimal point.")
+    if isinstance(value, ast.Constant | ast.JoinedStr):
+        known = _why_constant(field, value)
+        if known is not None:
+            return known
     names = [dotted(call.func) or "" for call in ast.walk(value) if isinstance(call, ast.Call)] if value else []
     if any(name.startswith(("np.", "numpy.")) for name in names):
         return Cause(
@@ -80,6 +78,21 @@ def _why_no_float(field: str, value: ast.expr | None) -> Cause:
     return Cause(
         "field-type", f"The field {field} is a float, but the value has another type. Convert it with float(...)."
     )
+
+
+def _why_constant(field: str, value: ast.Constant | ast.JoinedStr) -> Cause | None:
+    """Return the cause if a string, a bool, an integer or None is written where a float belongs, else None."""
+    if isinstance(value, ast.JoinedStr):
+        return Cause("string-for-number", f"The field {field} is a float, but an f-string is a string.")
+    if isinstance(value.value, str):
+        return Cause("string-for-number", f"The field {field} is a float. In quotation marks, a number is a string.")
+    if isinstance(value.value, bool):
+        return Cause("field-type", f"The field {field} is a float, not True or False.")
+    if isinstance(value.value, int):
+        return Cause("int-for-float", f"The field {field} is a float. Write the number with a decimal point.")
+    if value.value is None:
+        return Cause("field-type", f"The field {field} is a float, and None is not a number.")
+    return None
 
 
 def _assigned(scene: CrashScene, field: str) -> ast.expr | None:

@@ -32,7 +32,14 @@ MEMBERS = {
 """Module -> its names that learners use and often forget to prefix with the module."""
 TAKE_A_STRING = {"__init__": 0, "create_node": 0, "create_publisher": 1, "create_subscription": 1, "create_client": 1}
 """Functions of rclpy that take the name of a node, a topic or a service, and the place of that argument."""
-CONSTANTS = {"true": "True", "false": "False", "none": "None", "null": "None", "TRUE": "True", "FALSE": "False"}
+CONSTANTS = {
+    "true": "True",
+    "false": "False",
+    "none": "None",
+    "null": "None",
+    "TRUE": "True",
+    "FALSE": "False",
+}
 
 
 def why_no_name(scene: CrashScene) -> Cause | None:
@@ -150,6 +157,9 @@ def _stores(scene: CrashScene, name: str) -> Iterator[tuple[int, Function | None
 
 
 def _alike(scene: CrashScene, name: str) -> Cause | None:
+    if name == "this":
+        text = "this belongs to other languages. In a Python method, the object is called self."
+        return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, "this", "self"))
     if name in CONSTANTS:
         text = f"Python spells it {CONSTANTS[name]}. Upper and lower case matter."
         return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, CONSTANTS[name]))

@@ -107,6 +107,17 @@ def _waits(node: ast.AST, module: Module) -> Cause | None:
     return Cause("service-not-there", f"The node waits for the service {shorten(name)}, which does not exist.{more}")
 
 
+def returns_before(evidence: Evidence, call: str) -> Cause | None:
+    """Return the cause if a function returns unconditionally before it calls `call`, else None."""
+    for module, method in methods_of(evidence):
+        returns = [each.lineno for each in method.body if isinstance(each, ast.Return)]
+        calls = [each.lineno for each in ast.walk(method) if isinstance(each, ast.Call) and _calls(each, call)]
+        if returns and calls and min(returns) < min(calls):
+            text = f"{method.name} returns in line {min(returns)}, before it calls {call}."
+            return Cause("never-publishes", text, Where(module.file, min(returns)))
+    return None
+
+
 def hidden_error(evidence: Evidence, call: str) -> Cause | None:
     """Return the cause if `call` is in a try whose except catches every error and says nothing, else None."""
     for module in evidence.code.modules:

@@ -9,7 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_ended import loops, why_ended
-from grader.checks.causes.why_silent import WAKES, hidden_error, why_nothing, why_qos
+from grader.checks.causes.why_silent import WAKES, hidden_error, returns_before, why_nothing, why_qos
 from grader.checks.causes.wrong_topic import right_name, why_topic
 from grader.checks.kind import Kind, string
 from grader.checks.outcome import Finding, failed, passed
@@ -126,7 +126,8 @@ def _why_silent(evidence: Evidence) -> Cause:
     text = "The line that publishes may never be reached, or it may run only at the start, before anything subscribes."
     if not any(code.calls(name) for name in WAKES) and not loops(evidence):
         text = "create_timer is never called, and there is no loop, so nothing publishes again and again."
-    return hidden_error(evidence, "publish") or Cause("never-publishes", text, evidence.place("publish"))
+    known = returns_before(evidence, "publish") or hidden_error(evidence, "publish")
+    return known or Cause("never-publishes", text, evidence.place("publish"))
 
 
 def _publisher_line(evidence: Evidence, topic: str) -> Where | None:
