@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Progress:
-    """Two functions: `tell` shows what is being done now, `keep` prints a line that stays on the screen.
+    """Two functions: `tell` shows what is being done now, `keep` shows a line until the report says the same.
 
     Calling the object is the same as calling `tell`:
 
@@ -29,14 +29,14 @@ class Progress:
         self.tell(text)
 
     def keep_all(self, lines: Iterable[str]) -> None:
-        """Print lines that stay on the screen."""
+        """Show lines until the report says the same."""
         for line in lines:
             self.keep(line)
 
 
 @contextmanager
 def progress() -> Iterator[Progress]:
-    """Yield a Progress: one live line on a terminal, plain lines elsewhere."""
+    """Yield a Progress: live lines on a terminal, which disappear at the end, and plain lines elsewhere."""
     if not sys.stderr.isatty():
 
         def line(text: str) -> None:
@@ -49,4 +49,13 @@ def progress() -> Iterator[Progress]:
 
     console = Console(stderr=True, highlight=False)
     with console.status("Starting", spinner="dots") as status:
-        yield Progress(lambda text: status.update(f"{text} ..."), lambda text: console.print(Text(text)))
+        kept: list[str] = []
+
+        def tell(text: str) -> None:
+            status.update(Text("\n".join([f"{text} ...", *kept])))
+
+        def keep(text: str) -> None:
+            kept.append(text)
+            tell("Starting")
+
+        yield Progress(tell, keep)
