@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.exercise.model import course_folder
 from grader.gradebook.new_class import make_class
+from grader.tests.gradebook.nbgrader_command import nbgrader
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -44,16 +45,17 @@ class Term:
 
     def run(self, *command: str, fails: bool = False, cwd: Path | None = None) -> str:
         """Run a command of nbgrader, or of the grader if the first word is "grader". Return both output streams."""
+        path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
         if command[0] == "grader":
             argv = [sys.executable, "-m", "grader.cli", *command[1:], "--course", str(self.course)]
+            env = {**os.environ, "PATH": path, "PYTHONWARNINGS": "ignore"}
+            done = subprocess.run(
+                argv, cwd=cwd or self.course, capture_output=True, text=True, env=env, check=False, timeout=1800
+            )
+            code, said = done.returncode, done.stdout + done.stderr
         else:
-            argv = [sys.executable, "-m", "nbgrader", *command]
-        env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONWARNINGS": "ignore"}
-        done = subprocess.run(
-            argv, cwd=cwd or self.course, capture_output=True, text=True, env=env, check=False, timeout=1800
-        )
-        said = done.stdout + done.stderr
-        assert (done.returncode != 0) == fails, f"{' '.join(command)}: {done.returncode}\n{said[-6000:]}"
+            code, said = nbgrader(*command, cwd=cwd or self.course, PATH=path)
+        assert (code != 0) == fails, f"{' '.join(command)}: {code}\n{said[-6000:]}"
         return said
 
     def generate(self) -> None:

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import filecmp
 import json
-import os
 import shutil
-import subprocess
-import sys
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from grader.exercise.model import catalogue, course_folder
 from grader.notebook.kernel import install
+from grader.tests.gradebook.nbgrader_command import nbgrader
 from grader.tests.gradebook.term import STEP, Term, with_cell
 
 if TYPE_CHECKING:
@@ -106,10 +104,8 @@ def validated(step: str, root: str, home: Path) -> str:
     """Return the output of `nbgrader validate`. It works on a copy, because it runs the notebook in place."""
     folder = home / root / step
     shutil.copytree(ROOT / root / step, folder)
-    env = {**os.environ, "JUPYTER_DATA_DIR": str(home / "jupyter"), "PYTHONWARNINGS": "ignore"}
-    argv = [sys.executable, "-m", "nbgrader", "validate", "--Execute.timeout=600", f"{step}.ipynb"]
-    done = subprocess.run(argv, cwd=folder, capture_output=True, text=True, env=env, check=False, timeout=900)
-    return done.stdout + done.stderr
+    argv = ("validate", "--Execute.timeout=600", f"{step}.ipynb")
+    return nbgrader(*argv, cwd=folder, JUPYTER_DATA_DIR=str(home / "jupyter"))[1]
 
 
 @pytest.fixture
