@@ -176,6 +176,8 @@ def hand_in(term: Term, student: str, change: Callable[[Path, Path], object], se
     change(to, secret)
 
 
+TITLE = "\x1b]0;a title of a student\x07"
+"""A name that changes the title of the terminal that prints it."""
 MARKDOWN = "<script>steal()</script> [a](javascript:steal()) <div onclick=steal()>x</div> <style>*{color:red}</style>"
 
 
@@ -196,6 +198,7 @@ def with_links(folder: Path, secret: Path) -> None:
 def beside(folder: Path, secret: Path) -> None:
     (folder / "notes.txt").symlink_to(secret)
     sparse(folder / "large.txt")
+    (folder / f"{TITLE}.ipynb").write_text("{}")
 
 
 SUBMISSIONS: dict[str, Callable[[Path, Path], object]] = {
@@ -232,6 +235,7 @@ def test_collect_takes_only_regular_files_of_the_submission(hostile: Hostile) ->
 def test_autograde_continues_after_submissions_that_attack_it(hostile: Hostile) -> None:
     full = {name for name, score in hostile.scores.items() if score == 1.0}
     assert full == {"anna", "beside", "links"}
+    assert TITLE not in hostile.graded
     for student in ("never", "deep", "blocks"):
         assert f"error processing assignment '{HOMEWORK}' for student '{student}'" in hostile.graded
         assert not (hostile.folder / "autograded" / student / HOMEWORK).exists()

@@ -37,7 +37,7 @@ class DrawCircle(Node):
                 self.clear.call_async(Empty.Request())
         elif not self.moved:
             self.moved = True
-            self.teleport.call_async(TeleportAbsolute.Request(x=pose.x, y=pose.y, theta=pose.theta))
+            self.teleport.call_async(TeleportAbsolute.Request(x=pose.x + 0.001, y=pose.y, theta=pose.theta))
 
 
 def main(args=None):
