@@ -32,8 +32,9 @@ if TYPE_CHECKING:
 DEBOUNCE_MS = 50
 """Events within this time count as one, because an editor that saves by renaming causes several events (ms)."""
 
-
-_LOOK_MS = 200
+_STEP_MS = 25
+"""The interval for looking at new events (ms). At 10 ms, an idle watch uses 0.7 % of a core."""
+_LOOK_MS = 500
 """The interval for checking whether the path still leads to the watched folder (ms)."""
 
 
@@ -108,7 +109,7 @@ class Events:
                 folder,
                 watch_filter=_Sources(),
                 debounce=DEBOUNCE_MS,
-                step=10,
+                step=_STEP_MS,
                 rust_timeout=_LOOK_MS,
                 yield_on_timeout=True,
                 stop_event=stop,

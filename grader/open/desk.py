@@ -70,10 +70,17 @@ class Desk:
         """Show what is certain to fail, from the files alone."""
         self._set(replace(self._content, early={each.id: _check(each) for each in outcomes}, problem=""))
 
-    def judged(self, report: Report, html: str) -> None:
-        """Show a verdict."""
+    def judged(self, report: Report) -> None:
+        """Show a verdict. Its details stay those of the last one until `detailed` is called."""
         checks = {outcome.id: _check(outcome) for outcome in report.outcomes}
-        self._set(self._final(verdict=Verdict(checks, verdict(report), tone(report), html)))
+        before = self._content.verdict
+        made = Verdict(checks, verdict(report), tone(report), before.html if before else "")
+        self._set(replace(self._content, verdict=made, early=None, problem="", doing="Drawing"))
+
+    def detailed(self, html: str) -> None:
+        """Show the details of the verdict."""
+        if self._content.verdict is not None:
+            self._set(self._final(verdict=replace(self._content.verdict, html=html)))
 
     def failed(self, problem: str) -> None:
         """Show why there is no verdict."""

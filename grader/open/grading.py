@@ -62,6 +62,7 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
     try:
         graded = watched.grade(desk.tell, desk.early)
         steps.note(watched.exercise, watched.folder, graded.report, workspace)
-        desk.judged(graded.report, verdict_html(graded.evidence, graded.report, watched.folder))
+        desk.judged(graded.report)
+        desk.detailed(verdict_html(graded.evidence, graded.report, watched.folder))
     except GraderError as error:
         desk.failed(str(error))

@@ -41,7 +41,8 @@ class GraphNews:
 
     def whole(self) -> dict[str, object]:
         """Return the whole state for a new page."""
-        return {"domain": os.environ.get("ROS_DOMAIN_ID", "0"), "topics": self._topics(), "graph": self._graph}
+        known = {"topics": self._topics(), "graph": self._graph} if self._drawn is not None else {}
+        return {"domain": os.environ.get("ROS_DOMAIN_ID", "0"), **known}
 
     async def _draw(self, system: System) -> None:
         drawn = picture(system.observed.nodes, system.observed.ends, self._show)

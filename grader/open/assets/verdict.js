@@ -23,7 +23,14 @@ export class Verdict {
     this.line.className = `verdict ${tone}`;
     const doing = state.doing ? `${state.doing.replace(/\.$/, "")} …` : "";
     if (this.doing.textContent !== doing) this.doing.textContent = doing;
+    this.dropPassed(state.checks);
     if (state.number !== this.number) this.load(state);
+  }
+
+  // What has passed now needs no reasons any more. The other details come a moment later.
+  dropPassed(checks) {
+    const passed = new Set(checks.filter((check) => check.kind === "passed").map((check) => check.id));
+    for (const each of [...this.details.children]) if (passed.has(each.dataset.key)) each.remove();
   }
 
   async load(state) {

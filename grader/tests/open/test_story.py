@@ -68,7 +68,7 @@ def test_the_story_of_step_03(learner: Course, browser: Browser) -> None:
     learner.save()
     verdict(page, "Passed: 100 of 100 points.")
     page.locator("#checks li.failed").first.wait_for(state="detached")
-    assert page.locator("#details article").count() == 0
+    page.locator("#details article").first.wait_for(state="detached")
     page.get_by_role("button", name="Play").click()
     page.get_by_role("button", name="Pause").wait_for()
     assert page.locator(f'.steps [data-step="{CIRCLE}"]').get_by_text("100/100").is_visible()

@@ -1,0 +1,130 @@
+"""Measure `grader open`: from a save to the verdict in the page, against `grader watch`; the page's size; its idle CPU.
+
+    python -m grader.benchmarks.open_page [--times 5] [--idle 30]
+
+Both grade the same saves in the same home, alternately. The page runs in a real browser, which is not counted as CPU.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import statistics
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pexpect
+
+from grader.benchmarks.measure import cpu_s
+from grader.tests.browser import browser_or_reason, launched
+from grader.tests.open.course import CIRCLE, GRADER, Course, course
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+AIM_MORE_S = 0.1
+"""How much longer than `grader watch` the page may take (s)."""
+AIM_SIZE = 600_000
+AIM_READY_S = 1.0
+AIM_IDLE = 0.01
+"""The aim for the share of one core while nothing happens."""
+_REST_S = 2.0
+"""The shortest time (s) that a learner thinks between two saves. Meanwhile, the next trial is prepared."""
+_PATIENCE_S = 300
+_SAVES = (("2.0", "3.0", "50 of 100 points"), ("2.0", "2.0", "100 of 100 points"))
+
+
+def main() -> None:
+    """Measure everything and print the results."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("--times", type=int, default=5, help="number of saves; the median time is printed")
+    parser.add_argument("--idle", type=float, default=30.0, help="seconds during which nothing happens")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder, launched(browser_or_reason()) as browser:
+        for learner in course(Path(folder)):
+            learner.run("start", CIRCLE)
+            learner.start()
+            page = learner.opened(browser)
+            page.locator("#verdict-line").get_by_text("15 of 100").wait_for()
+            in_page = [_in_page_s(learner, page, number) for number in range(arguments.times)]
+            size, ready_s = _loaded(page)
+            idle = _idle(arguments.idle)
+            page.close()
+            learner.end()
+            in_watch = _in_watch_s(learner, arguments.times)
+    more_s = statistics.median(in_page) - statistics.median(in_watch)
+    print(f"save to verdict: page {statistics.median(in_page):.2f} s, watch {statistics.median(in_watch):.2f} s,")
+    print(f"  {more_s:+.2f} s (aim {AIM_MORE_S:+.2f} s)")
+    print(f"the page of {CIRCLE}: {size / 1000:.0f} kB (aim {AIM_SIZE / 1000:.0f} kB)")
+    print(f"ready after {ready_s:.2f} s (aim {AIM_READY_S:.2f} s)")
+    print(f"idle: {idle:.2%} of a core (aim {AIM_IDLE:.0%})")
+
+
+def _in_page_s(learner: Course, page: Page, number: int) -> float:
+    """Return the seconds from a save until the page shows the verdict."""
+    old, new, line = _SAVES[number % len(_SAVES)]
+    time.sleep(_REST_S)
+    begun = time.monotonic()
+    learner.save(old, new)
+    page.locator("#verdict-line").get_by_text(line).wait_for()
+    return time.monotonic() - begun
+
+
+def _in_watch_s(learner: Course, times: int) -> list[float]:
+    """Return the seconds from each save until `grader watch` has printed the verdict."""
+    screen = pexpect.spawn(
+        str(GRADER), ["watch"], env=learner.env, encoding="utf-8", timeout=_PATIENCE_S, dimensions=(60, 110)
+    )
+    screen.delaybeforesend = None
+    screen.expect("Watching")
+    found = []
+    for number in range(times):
+        old, new, _ = _SAVES[number % len(_SAVES)]
+        time.sleep(_REST_S)
+        begun = time.monotonic()
+        learner.save(old, new)
+        screen.expect("Watching")
+        found.append(time.monotonic() - begun)
+    screen.send("q")
+    screen.expect(pexpect.EOF)
+    screen.close()
+    return found
+
+
+def _loaded(page: Page) -> tuple[int, float]:
+    """Load the page again without a cache; return the size of all that it loads (bytes), and when it is ready (s)."""
+    sizes: list[int] = []
+    page.on("response", lambda response: sizes.append(len(response.body())) if response.ok else None)
+    begun = time.monotonic()
+    page.reload()
+    page.get_by_text("Live", exact=True).wait_for()
+    ready_s = time.monotonic() - begun
+    page.wait_for_load_state("networkidle")
+    return sum(sizes), ready_s
+
+
+def _idle(seconds: float) -> float:
+    """Return the share of one core that the processes below this one use, without the browser."""
+    own = [pid for pid in _descendants(os.getpid()) if "chrom" not in _name(pid) and "node" not in _name(pid)]
+    time.sleep(_REST_S)
+    before = sum(map(cpu_s, own))
+    time.sleep(seconds)
+    return (sum(map(cpu_s, own)) - before) / seconds
+
+
+def _descendants(pid: int) -> list[int]:
+    found = []
+    for task in Path(f"/proc/{pid}/task").iterdir():
+        for child in map(int, (task / "children").read_text().split()):
+            found += [child, *_descendants(child)]
+    return found
+
+
+def _name(pid: int) -> str:
+    return Path(f"/proc/{pid}/comm").read_text().strip()
+
+
+if __name__ == "__main__":
+    main()
