@@ -17,6 +17,7 @@ from grader.checks.subjects import (
     no_calls,
     own,
     package_xml,
+    parameters,
     path,
     pause,
     rate,
@@ -73,6 +74,8 @@ KINDS: Mapping[str, Kind[Any]] = {
         services.CALLS,
         services.ANSWERS,
         pause.PAUSE,
+        parameters.DECLARES,
+        parameters.SETS,
         stop.STOP,
         advice.USES_TIMER,
     )

@@ -40,7 +40,7 @@ def no_entry_point(evidence: Evidence) -> Finding:
     cause = _unread(evidence, setup) or _script(evidence)
     if cause is None:
         others = sorted(set(evidence.built.entry_points) | set(evidence.built.executables))
-        guess = nearest(executable, [other for other in others if other != executable])
+        guess = nearest(executable, [other for other in others if not _is_another(evidence, other)])
         if guess is not None:
             where = next((Where("setup.py", point.line) for point in points if point.name == guess), line(evidence))
             text = "Compare the two names letter by letter. The name is the part before the = sign."
@@ -49,6 +49,14 @@ def no_entry_point(evidence: Evidence) -> Finding:
             return failed(observed, expected, why)
         cause = _missing(evidence, points)
     return failed(observed, expected, cause.at(line(evidence)))
+
+
+def _is_another(evidence: Evidence, name: str) -> bool:
+    """Return whether an executable is a program of its own, and not this one with another name."""
+    executable = evidence.trial.executable
+    has_file = any(path.rpartition("/")[2] == f"{executable}.py" for path in evidence.submission.files)
+    module = evidence.built.entry_points.get(name, "").partition(":")[0].strip()
+    return name == executable or (has_file and module.rpartition(".")[2] == name)
 
 
 def _script(evidence: Evidence) -> Cause | None:

@@ -119,7 +119,7 @@ def _made_in_callback(evidence: Evidence, maker: str) -> tuple[str, Where] | Non
     return None
 
 
-PLACES = {"create_timer": 1, "add_done_callback": 0}
+PLACES = {"create_timer": 1, "add_done_callback": 0, "add_on_set_parameters_callback": 0}
 """The position of the callback among the arguments; 2 for all others."""
 
 

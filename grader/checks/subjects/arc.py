@@ -9,6 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.why_unasked import waits_in_callback
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.parameters import set_calls
 from grader.checks.subjects.path import STRAIGHT_RADIUS_M, moved_otherwise
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
@@ -84,7 +85,7 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     near = round_.near(fitted.rms) or size.near(fitted.radius)
     if not size.holds(fitted.radius):
         text = "The radius is linear.x divided by angular.z."
-        cause = Cause("wrong-radius", text, where)
+        cause = _not_followed(evidence, params) or Cause("wrong-radius", text, where)
         return failed(f"The radius of this arc is {fitted.radius:.2f} m.", expected, cause, near_edge=near)
     turns = turns_about(x, y, fitted.x, fitted.y)
     if (turns > 0.0) != (params.direction == "counter-clockwise"):
@@ -106,9 +107,18 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
         cause = Cause("wrong-angle", text, where)
         return failed(f"This arc has an angle of {angle:.0f} degrees.", expected, cause, near_edge=near)
     if not pace.holds(speed):
-        cause = Cause("wrong-speed", where=where)
+        cause = _not_followed(evidence, params) or Cause("wrong-speed", where=where)
         return failed(f"The turtle drove this arc at {speed:.2f} m/s.", expected, cause, near_edge=near)
     return passed(f"The turtle drove an arc of radius {fitted.radius:.2f} m.", near_edge=near)
+
+
+def _not_followed(evidence: Evidence, params: Arc) -> Cause | None:
+    """Return the cause if the trial set a parameter before, and the node accepted it, else None."""
+    made = [call for call in set_calls(evidence) if call.t_s < params.from_s and call.response is not None]
+    if not any(call.response["results"][0]["successful"] for call in made if call.response is not None):
+        return None
+    text = "The parameter was set, and the commands did not follow. Read it with get_parameter before each command."
+    return Cause("parameter-not-followed", text, evidence.place("get_parameter"))
 
 
 def _expected(params: Arc) -> str:

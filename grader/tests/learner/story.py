@@ -81,6 +81,7 @@ OWN = {
         "2.0, 9.0": "{x_m}, {y_m}",
     },
     "pausable_circle.py": {"RADIUS = 1.2": "RADIUS = {radius_m}"},
+    "tunable_circle.py": {"1.8,": "{radius_m},", "1.0,": "{speed_m_s},"},
 }
 """Where our solutions hold own numbers: file -> text -> the same text for a learner."""
 

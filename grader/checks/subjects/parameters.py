@@ -1,0 +1,161 @@
+"""Checks of parameters: how they are declared, and what the node says when the trial sets one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from grader.checks.cause import Cause
+from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.kind import Kind, choice, number, string
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.services import calls_of
+from grader.common.words import number as shown
+from grader.common.words import shorten
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.trial.observed import Call
+
+CLOSE = 1e-6
+DOUBLE = 3
+"""The number of a double in rcl_interfaces/msg/ParameterType."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Declares:
+    """A parameter that is a float, with a description and a range."""
+
+    parameter: str = string("the name of a parameter", about="The parameter.")
+    at_least: float = number(about="The lower end of its range.")
+    at_most: float = number(about="The upper end of its range.")
+
+
+def declares(evidence: Evidence, params: Declares) -> Finding:
+    """The node answered a `describe_parameters` call of the trial with a float, a description and this range."""
+    name = params.parameter
+    limits = f"{shown(params.at_least)} to {shown(params.at_most)}"
+    expected = f"The parameter {name} is a float with a description and the range {limits}."
+    where = evidence.place("declare_parameter", "declare_parameters")
+    service = f"/{evidence.trial.node}/describe_parameters"
+    call = next((each for each in calls_of(evidence) if each.by_trial and each.service == service), None)
+    found = _described(call, name)
+    if found is None:
+        return _undeclared(evidence, name, expected)
+    if found["type"] != DOUBLE:
+        text = "A number without a decimal point is an integer, and stays one. Write 2.0 for 2."
+        observed = f"The parameter {name} is not a float."
+        return failed(observed, expected, Cause("parameter-type", text, where))
+    if not found["description"].strip():
+        text = "A ParameterDescriptor has the fields description and floating_point_range."
+        return failed(f"The parameter {name} has no description.", expected, Cause("parameter-descriptor", text, where))
+    ranges = [(each["from_value"], each["to_value"]) for each in found["floating_point_range"]]
+    if not ranges:
+        text = "The field floating_point_range of the ParameterDescriptor is a list with one FloatingPointRange."
+        return failed(f"The parameter {name} has no range.", expected, Cause("parameter-descriptor", text, where))
+    low, high = ranges[0]
+    if abs(low - params.at_least) > CLOSE or abs(high - params.at_most) > CLOSE:
+        observed = f"The range of {name} is {shown(low)} to {shown(high)}."
+        return failed(observed, expected, Cause("parameter-range", where=where))
+    return passed(f"The parameter {name} has a description and the range {limits}.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetsParameter:
+    """What the node says to a `[[trial.set]]` of this parameter to this value."""
+
+    parameter: str = string("the name of a parameter", about="The parameter.")
+    value: float = number(about="The value that the trial sets.")
+    answer: str = choice("accepted", "refused", about="What the node must say to it.")
+
+
+def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
+    """The node accepted the value, or refused it with a reason."""
+    name, value = params.parameter, shown(params.value)
+    with_reason = " with a reason" if params.answer == "refused" else ""
+    expected = f"Setting {name} to {value} is {params.answer}{with_reason}."
+    where = evidence.place("add_on_set_parameters_callback", "declare_parameter")
+    call = next((each for each in set_calls(evidence) if _sets(each, params)), None)
+    result = (call.response or {}).get("results", []) if call is not None else []
+    if not result:
+        crash = crash_of(evidence)
+        if crash is not None:
+            return crash_finding(evidence, crash, end_observed(evidence), expected)
+        observed = f"The node did not answer when {name} was set."
+        text = "A node answers in rclpy.spin. Something blocks its callbacks, or its parameter services are turned off."
+        return failed(observed, expected, Cause("no-response", text, where))
+    successful, reason = result[0]["successful"], result[0]["reason"].strip()
+    if params.answer == "accepted" and not successful:
+        return _refused(
+            evidence, f"The node refused {name} = {value}: {shorten(reason or 'no reason')}.", expected, reason
+        )
+    if params.answer == "refused" and successful:
+        text = "The callback of add_on_set_parameters_callback must return SetParametersResult(successful=False, ...)."
+        observed = f"The node accepted {name} = {value}."
+        return failed(observed, expected, Cause("parameter-accepted", text, where))
+    if params.answer == "refused" and not reason:
+        text = "Set the field reason of the SetParametersResult, for the person who reads it."
+        observed = f"The node refused {name} = {value} without a reason."
+        return failed(observed, expected, Cause("no-reason", text, where))
+    return passed(f"The node {params.answer} {name} = {value}" + (f": {shorten(reason)}." if reason else "."))
+
+
+def set_calls(evidence: Evidence) -> list[Call]:
+    """Return the calls of the trial that set a parameter of the node, in order."""
+    return [call for call in calls_of(evidence) if call.by_trial and call.service.endswith("/set_parameters")]
+
+
+def _sets(call: Call, params: SetsParameter) -> bool:
+    given = call.request["parameters"][0]
+    return bool(given["name"] == params.parameter and given["value"].get("double_value") == params.value)
+
+
+def _described(call: Call | None, name: str) -> Any | None:  # noqa: ANN401 - a ParameterDescriptor as plain data
+    found = (call.response or {}).get("descriptors", []) if call is not None else []
+    # An undeclared parameter is described with the type 0 (not set).
+    return next((each for each in found if each["name"] == name and each["type"] != 0), None)
+
+
+def _undeclared(evidence: Evidence, name: str, expected: str) -> Finding:
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
+    text = "declare_parameter makes a parameter known, with its default value and its descriptor."
+    where = evidence.place("declare_parameter", "get_parameter", "__init__")
+    return failed(f"The node has no parameter {name}.", expected, Cause("parameter-undeclared", text, where))
+
+
+def _refused(evidence: Evidence, observed: str, expected: str, reason: str) -> Finding:
+    where = evidence.place("add_on_set_parameters_callback", "declare_parameter")
+    if "not been declared" in reason or "not declared" in reason:
+        text = "Only a declared parameter can be set."
+        return failed(observed, expected, Cause("parameter-undeclared", text, evidence.place("declare_parameter")))
+    if "Callback returned" in reason:
+        text = "The callback must return a SetParametersResult in every case. Without return, it gives None."
+        return failed(observed, expected, Cause("result-not-returned", text, where))
+    if "type" in reason:
+        text = "The type of the default value is the type of the parameter. Write 2.0 for 2."
+        return failed(observed, expected, Cause("parameter-type", text, evidence.place("declare_parameter")))
+    if "read-only" in reason:
+        return failed(observed, expected, Cause("parameter-range", "", evidence.place("declare_parameter")))
+    text = "The callback must accept every value that is possible: SetParametersResult(successful=True)."
+    return failed(observed, expected, Cause("parameter-refused", text, where))
+
+
+DECLARES = Kind(
+    "declares_parameter",
+    "trial",
+    "The parameter has a description and a range",
+    Declares,
+    declares,
+    about="The node describes a parameter when a `[[trial.call]]` of `/NODE/describe_parameters` asks for it.",
+)
+SETS = Kind(
+    "sets_parameter",
+    "trial",
+    "The node answers when a parameter is set",
+    SetsParameter,
+    sets_parameter,
+    about="The node accepts a `[[trial.set]]`, or refuses it with a reason.",
+)
