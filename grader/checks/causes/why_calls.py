@@ -27,7 +27,13 @@ EXPECTED = re.compile(r"Expected <class '[\w.]*\.(?P<wanted>\w+)'>, got <class '
 STRING_AND_NUMBER = re.compile(
     r"can only concatenate str|unsupported operand type\(s\) for \+|rcutils_log\(\): incompatible"
 )
-MAKERS = {"create_timer": 1, "create_subscription": 2, "create_service": 2, "add_done_callback": 0}
+MAKERS = {
+    "create_timer": 1,
+    "create_subscription": 2,
+    "create_service": 2,
+    "add_done_callback": 0,
+    "add_on_set_parameters_callback": 0,
+}
 """Methods that take a callback, and the position of the callback among the arguments."""
 CREATE_OBJECT = "Add parentheses after the class name to create an object."
 TAKES = {
