@@ -47,7 +47,7 @@ class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
         for each in copy_of(source, Path(self._format_dest(assignment_id, student_id)), notebooks=False):
             self.log.warning("Not copied from %s: %s", source, each)
         # nbgrader writes the names of unknown notebooks to the terminal as they are.
-        self.notebooks = [notebook for notebook in self.notebooks if notebook.isprintable()]
+        self.notebooks: list[str] = [notebook for notebook in self.notebooks if notebook.isprintable()]
 
 
 class BoundedAutograde(Autograde, _Copying):  # type: ignore[misc, unused-ignore]

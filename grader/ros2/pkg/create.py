@@ -68,6 +68,8 @@ def run(args: argparse.Namespace) -> int:
     try:
         package_files.write(wanted)
         licensed = licenses.write(wanted.license, wanted.folder / "LICENSE", wanted.maintainer)
+    except BrokenPipeError:
+        raise  # the program that reads the output has exited, and the folder is not at fault
     except OSError as error:
         message = f"\nAborted!\n{error.filename or wanted.folder} could not be written: {error.strerror}"
         raise Ros2Error(message) from error

@@ -218,6 +218,13 @@ def test_whoever_reads_us_may_go(still: World) -> None:
     assert done.stderr == ""
 
 
+def test_the_reader_of_pkg_create_may_exit(still: World, tmp_path: Path) -> None:
+    # The reader has exited before anything is printed.
+    done = still.run(f"ros2 pkg create --build-type ament_python a --destination-directory {tmp_path} > >(exec true)")
+    assert "Traceback" not in done.stderr
+    assert "could not be written" not in done.stderr
+
+
 def test_help_without_arguments(still: World) -> None:
     for command in ("ros2", "ros2 topic", "ros2 --help"):
         done = still.run(command)
