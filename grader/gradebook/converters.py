@@ -41,6 +41,8 @@ def install() -> None:
 class _Copying(BaseConverter):  # type: ignore[misc, unused-ignore]
     """Copies the files of a submission that are safe to copy."""
 
+    notebooks: list[str]
+
     def init_assignment(self, assignment_id: str, student_id: str) -> None:
         """Copy the files next to the notebooks."""
         source = Path(self._format_source(assignment_id, student_id))
