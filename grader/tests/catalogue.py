@@ -39,7 +39,6 @@ SHOWN_BY_TESTS = {
     "too-soon": "checks/subjects/test_square.py",
     "unreadable": "checks/test_judge.py",
     "wrong-centre": "checks/subjects/test_path.py",
-    "wrong-rate": "checks/subjects/test_rate.py",
 }
 """Diagnosis -> the test that shows it: no ordinary submission leads to it, but a hostile one, or a class."""
 HEAD = """\

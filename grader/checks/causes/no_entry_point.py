@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import tokenize
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from grader.checks.edit import at
 from grader.checks.outcome import Finding, failed
 from grader.common.words import nearest, shorten
 from grader.submission.code import module_file, read_code
+from grader.submission.package_xml import line_of
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
@@ -92,7 +94,9 @@ def _unread(evidence: Evidence, setup: SetupPy | None) -> Cause | None:
         text = (
             f'entry_points has the group "{shorten(setup.groups[0])}". Executables belong in the group console_scripts.'
         )
-        return Cause("entry-point-group", text, None if stray is None else Where("setup.py", stray.line))
+        source = evidence.submission.files["setup.py"]
+        group = line_of(source, rf"['\"]{re.escape(setup.groups[0])}['\"]")
+        return Cause("entry-point-group", text, Where("setup.py", group) if group is not None else None)
     if stray is not None:
         text = "The entry point is in another list. The list console_scripts ends before it."
         return Cause("entry-point-elsewhere", text, Where("setup.py", stray.line))

@@ -228,6 +228,14 @@ def _not_callable(scene: CrashScene, kind: str) -> Cause | None:
             if attribute in names:
                 text = f"self.{attribute} is set in line {line}, which hides the method of the same name."
                 return Cause("name-used-twice", text, scene.at(line))
+    made = scene.class_named(kind)
+    if made is not None:
+        inside = [each for each in scene.functions("__call__") if each not in methods(made)]
+        text = f"An object of {kind} can be called only if the class has a method __call__."
+        if inside:
+            text = "__call__ is indented too far. It is inside another method, so the object cannot be called."
+            return Cause("method-in-method", text, scene.at(inside[0]))
+        return Cause("not-callable", text)
     if kind == "NoneType":
         for name, place in MAKERS.items():
             for call in (node for node in scene.nodes if isinstance(node, ast.Call)):

@@ -83,7 +83,7 @@ def _of_string(scene: CrashScene, name: str) -> Cause | None:
     for function, place in TAKE_A_STRING.items():
         for call in scene.calls_on_line(function):
             given = call.args[place] if len(call.args) > place else None
-            if isinstance(given, ast.Name) and given.id == name:
+            if isinstance(given, ast.Name) and given.id == name not in ros_names.MODULE_OF:
                 text = f"Here {function} takes a string, and a string needs quotation marks."
                 return Cause("name-undefined", text).fixed_by(at(scene.at(given), name, f'"{name}"'))
     return None
@@ -163,7 +163,8 @@ def _alike(scene: CrashScene, name: str) -> Cause | None:
     if name in CONSTANTS:
         text = f"Python spells it {CONSTANTS[name]}. Upper and lower case matter."
         return Cause("name-misspelt", text).fixed_by(at(scene.crash.where, name, CONSTANTS[name]))
-    guess = nearest(name, _bound(scene) - {name}, alike=0.8)
+    bound = _bound(scene) - {name}
+    guess = nearest(name, bound, alike=0.8) or next((each for each in bound if sorted(each) == sorted(name)), None)
     if guess is None and _is_called(scene, name):
         plain = {each.lower(): each for each in _bound(scene)}
         guess = plain.get(name.lower())

@@ -63,7 +63,10 @@ class Hunk:
 
     def is_at(self, where: Where) -> bool:
         """Whether a report that points there points at the change. What was removed can be pointed at nowhere."""
-        if self.moved or (where.file == self.file and not "".join(self.new).replace("pass", "").strip()):
+        removed = Counter(WORD.findall("\n".join(self.old))) - Counter(WORD.findall("\n".join(self.new)))
+        opened_elsewhere = bool(removed) and set(removed) <= set("()[]{}")
+        only_removed = not "".join(self.new).replace("pass", "").strip()
+        if self.moved or (where.file == self.file and (only_removed or opened_elsewhere)):
             return True
         return where.file == self.file and (where.line is None or 0 <= where.line - self.line < len(self.new))
 

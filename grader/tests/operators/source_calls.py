@@ -118,7 +118,7 @@ OPERATORS = (
     _removes("init-left-out", r"^ +rclpy\.init\(", "no-init"),
     _removes("spin-left-out", r"rclpy\.spin\(", "no-spin"),
     _removes("publish-left-out", r"\.publish\(", "no-publish"),
-    _removes("timer-left-out", r"create_timer\(", "method-never-called"),
+    _removes("timer-left-out", r"create_timer\(", "method-never-called", "never-publishes"),
     _removes("subscription-left-out", r"create_subscription\(", "no-subscription", "method-never-called"),
     _removes("publisher-left-out", r"self\.\w+ = self\.create_publisher\(", "attribute-missing"),
     _removes("log-left-out", r"\.info\(f", "no-log"),

@@ -80,15 +80,12 @@ def test_what_setup_py_has_instead_is_reported(files: Files, diagnosis: str, whe
     assert got.cause.startswith(words)
 
 
-def test_another_group_is_shown_at_the_line_or_at_setup() -> None:
+def test_another_group_is_shown_at_its_line() -> None:
     other = SETUP_PY.replace("console_scripts", "console_script")
     assert [found({"setup.py": text}).diagnosis for text in (other, other.replace(POINT, ""))] == [
         "entry-point-group"
     ] * 2
-    assert [str(found({"setup.py": text}).where) for text in (other, other.replace(POINT, ""))] == [
-        "setup.py:14",
-        "setup.py:5",
-    ]
+    assert [str(found({"setup.py": text}).where) for text in (other, other.replace(POINT, ""))] == ["setup.py:13"] * 2
 
 
 def test_comments_that_are_no_entry_point_are_none() -> None:

@@ -1,0 +1,74 @@
+"""Each diagnosis has a case in which it is true, and a right package close to that case which keeps it away.
+
+A case is laid over a right package by few edits. So a diagnosis that ignored the mistake, and was printed for whatever
+looks like the case, would be printed for the right package, too. Those packages pass: the solutions in `test_course`,
+the packages in bases/ as cases of `unusual/`.
+"""
+
+from __future__ import annotations
+
+import difflib
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from grader.checks.diagnoses import DIAGNOSES
+from grader.tests.case import BASES, CASES, Case, make_submission, read_cases
+from grader.tests.catalogue import cases
+
+MOST_LINES = 13
+"""A right package is close to a case if at most so many lines were removed and added."""
+FAR = {
+    "answers-empty": "every line of the answers is missing",
+    "empty-file": "every line of the file is missing",
+    "loop-without-pause": "the clocks see a node that never rests differently, so only whole files of it are cases",
+    "polygon": "a polygon is driven by other commands than a circle",
+    "spin-once": "whether the first event is the timer depends on the machine; the case was written for both",
+    "timer-in-callback": "thousands of timers slow a machine down; the case has a limit of its own",
+}
+"""Diagnosis -> why no right package is close to a case of it."""
+
+
+def test_a_right_package_is_close_to_a_case_of_each_diagnosis() -> None:
+    shown = {id_ for case in cases() for id_ in case.diagnosis.values()}
+    far = {id_: lines for id_ in shown if (lines := closest().get(id_, 999)) > MOST_LINES and id_ not in FAR}
+    assert far == {}
+    assert sorted(FAR.keys() - DIAGNOSES.keys()) == []
+
+
+def test_the_packages_that_cases_are_laid_over_are_right() -> None:
+    plain = {case.base for case in read_cases(CASES.parent / "unusual") if not case.edit and not case.remove}
+    assert sorted({folder.name for folder in BASES.iterdir()} - plain) == []
+
+
+@cache
+def closest() -> dict[str, int]:
+    """Diagnosis -> the number of lines by which the closest case of it differs from a right package."""
+    found: dict[str, int] = {}
+    bases: dict[str, dict[str, list[str]]] = {}
+    with TemporaryDirectory() as name:
+        for number, case in enumerate(cases()):
+            if case.base and case.diagnosis:
+                if case.base not in bases:
+                    right = Case(name=case.base, why="", result="passed", base=case.base)
+                    bases[case.base] = contents(right, Path(name) / f"right-{number}")
+                lines = distance(bases[case.base], contents(case, Path(name) / str(number)))
+                for id_ in set(case.diagnosis.values()):
+                    found[id_] = min(lines, found.get(id_, lines))
+    return found
+
+
+def contents(case: Case, folder: Path) -> dict[str, list[str]]:
+    """The lines of each file of what is handed in."""
+    make_submission(case, folder)
+    files = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
+    return {path.relative_to(folder).as_posix(): path.read_bytes().decode("latin-1").splitlines() for path in files}
+
+
+def distance(right: dict[str, list[str]], wrong: dict[str, list[str]]) -> int:
+    """The number of removed and added lines; a file that is there in one of them alone counts as one."""
+    lines = len(right.keys() ^ wrong.keys())
+    for path in right.keys() & wrong.keys():
+        if right[path] != wrong[path]:
+            lines += sum(line[0] in "+-" for line in difflib.unified_diff(right[path], wrong[path], n=0)) - 2
+    return lines
