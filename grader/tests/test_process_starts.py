@@ -46,6 +46,7 @@ OTHERS = {
     ("node_process", "__init__"): "bubblewrap, with what conductor._command made inside",
     ("notebooks", "seconds"): "what `nbgrader` below it made",
     ("programs", "start"): "made by the door in the same function",
+    ("open_page", "_in_watch_s"): "our command grader",
     ("process", "run"): "bubblewrap, with what colcon.runner.build made inside",
     ("relay", "run"): "bubblewrap, with what gradebook.confined_autograde._order made inside",
     ("ros2", "_measure"): "our command ros2",

@@ -49,6 +49,23 @@ export const FIGURES = {
       };
     },
   },
+  radius: {
+    title: "Try it: the radius and the turning speed",
+    sliders: [
+      { name: "radius", label: "radius", unit: "m", min: 0.2, max: 3, step: 0.1, value: 2 },
+      { name: "speed", label: "speed", unit: "m/s", min: 0.1, max: 2, step: 0.1, value: 1 },
+    ],
+    draw({ radius, speed }) {
+      const w = speed / radius;
+      const poses = drive(START, speed, w, 2 * Math.PI / w);
+      const points = poses.map((each) => `${px(each.x).toFixed(1)},${py(each.y).toFixed(1)}`).join(" ");
+      return {
+        shapes: [["polyline", { points, class: "trail" }], turtle(START)],
+        text: `angular.z = speed / radius = ${said(speed)} / ${said(radius)} = ${said(w)} rad/s. `
+          + `One turn takes ${said(2 * Math.PI / w)} s.`,
+      };
+    },
+  },
   frames: {
     title: "Try it: the pose, and what the turtle sees",
     sliders: pose,

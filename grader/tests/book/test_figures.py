@@ -79,7 +79,9 @@ def test_the_sliders_change_the_circle_by_keyboard(page: Page) -> None:
     assert slider.get_attribute("aria-valuetext") == "2.5 m/s"
 
 
-def test_the_figures_of_06_and_07_say_what_they_show(page: Page) -> None:
+def test_the_other_figures_say_what_they_show(page: Page) -> None:
+    step(page, "09-parameters")
+    page.get_by_text("angular.z = speed / radius = 1.00 / 2.00 = 0.50 rad/s. One turn takes 12.57 s.").wait_for()
     step(page, "06-pose-subscriber")
     page.get_by_text("In the world, it is at x 4.28 m, y 7.84 m.").wait_for()
     assert violations(page) == []
