@@ -72,7 +72,7 @@ def _print_file(path: str, theirs: str, ours: str, console: Console) -> None:
     from rich.text import Text
 
     console.print(Text(f"\n{path}", style="bold"))
-    console.print(Text(printable(difference(theirs, ours, path))), soft_wrap=True)
+    console.print(Text(printable(read(difference, theirs, ours, path))), soft_wrap=True)
     if console.is_terminal and console.width >= WIDE:
         _print_beside(theirs, ours, console)
         return

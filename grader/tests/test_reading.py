@@ -30,6 +30,7 @@ BEHIND_THE_DOOR = {
     ("clues", "wall_clues"): "judging",
     ("cli", "_judged"): "cli",
     ("html_class", "read_class"): "html_class",
+    ("in_words", "_parts"): "compare",
     ("judging", "_all"): "judging",
     ("judging", "_early"): "judging",
     ("clock", "first_clock"): "judging",
