@@ -50,10 +50,7 @@ SIGNS = {
 
 @dataclass(frozen=True)
 class Hunk:
-    """A changed place: lines of the correct package and those in their place, which begin at `line`.
-
-    `moved` is set if the whole file was removed or added.
-    """
+    """Lines of the correct package, and those in their place from `line` on. `moved` is set for a whole file."""
 
     file: str
     old: tuple[str, ...]
@@ -252,8 +249,8 @@ def _all_commands(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
 
 
 def _turned(facts: Facts) -> float:
-    theta = facts.evidence.recording.frames.theta
-    return float(sum(math.remainder(later - earlier, math.tau) for earlier, later in pairwise(theta)))
+    turns = pairwise(facts.evidence.recording.frames.theta)
+    return float(sum(math.remainder(later - earlier, math.tau) for earlier, later in turns))
 
 
 def _direction(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
