@@ -108,11 +108,13 @@ class Course:
 
 def course(home: Path) -> Iterator[Course]:
     made = Course(home)
-    yield made
-    for process in made.processes:
-        if process.poll() is None:
-            process.send_signal(signal.SIGINT)
-            process.wait(HANG_S)
-        assert process.stdout is not None
-        process.stdout.close()
-    shutil.rmtree(made.workspace, ignore_errors=True)
+    try:
+        yield made
+    finally:
+        for process in made.processes:
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+                process.wait(HANG_S)
+            assert process.stdout is not None
+            process.stdout.close()
+        shutil.rmtree(made.workspace, ignore_errors=True)
