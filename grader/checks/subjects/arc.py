@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 SHORT_M = 0.05
 """A shorter piece than this is not an arc."""
 FEW = 5
+MOST_ROOM_M = 2.5
+"""The radius of a circle for which there is surely room on either side of a random start (m)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,5 +174,5 @@ ARC = Kind(
     about="The turtle drives an arc by commands, in a certain colour or in a certain part of the trial.",
     drives=True,
     # A second arc to the other side leaves the first circle, but not one of twice the radius.
-    radius_m=lambda params: 2.0 * params.radius_m,
+    radius_m=lambda params: max(params.radius_m, min(2.0 * params.radius_m, MOST_ROOM_M)),
 )
