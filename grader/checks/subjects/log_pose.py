@@ -56,7 +56,7 @@ def log_position(evidence: Evidence, params: LogPosition) -> Finding:
 
     early = [line for line in logged if line.t_s < evidence.trial.scenario.pose_from_s]
     if early:
-        observed = f"At {early[0].t_s:.0f} s no pose had arrived yet, but the log has a line with numbers."
+        observed = "The log has a line with numbers before the first pose had arrived."
         cause = "Before the first pose, nothing is known, not even 0. Keep None until then, and log nothing meanwhile."
         where = evidence.place("info", "create_subscription")
         return failed(observed, expected, Cause("before-first-pose", cause, where))

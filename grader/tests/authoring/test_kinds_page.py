@@ -12,6 +12,7 @@ from grader.authoring.kinds_page import UNITS, main, page, unit_of
 from grader.checks.exercises import load_exercise
 from grader.checks.kinds import KINDS
 from grader.exercise.model import catalogue, course_folder
+from grader.exercise.own_numbers import Own
 from grader.tests.console import blocks
 
 if TYPE_CHECKING:
@@ -24,8 +25,8 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
-WITHOUT_UNIT = {"turns", "first"}
-"""Parameters that are numbers without a unit."""
+WITHOUT_UNIT = {"turns", "first", "nth", "goes_on", "red", "green", "blue", "at_least", "at_most", "value"}
+"""Parameters that are numbers without a unit, or with the unit of the parameter or field that they are about."""
 
 
 def sections() -> dict[str, str]:
@@ -99,5 +100,8 @@ def test_the_example_is_a_check_of_the_course(kind: Kind[Any]) -> None:
     assert check.pop("title", kind.title) == spec.title
     assert tuple(check.pop("needs", ())) == spec.needs
     assert check.pop("trial", exercise.trials[0].id) == spec.trial
-    given = {name: kind.parameters()[name].accept(value) for name, value in check.items()}
+    given = {
+        name: Own(value["own"]) if isinstance(value, dict) and "own" in value else kind.parameters()[name].accept(value)
+        for name, value in check.items()
+    }
     assert {**kind.defaults(), **given} == spec.params

@@ -23,7 +23,7 @@ SET_UP = re.compile(r"make \w+|source \.venv/bin/activate")
 FAILS = re.compile(r"grader check exercises/\S+|grader check$")
 """A starting point does not pass; every other command ends with 0."""
 ELSEWHERE = {
-    *("--security-opt", "--privileged", "--ros-args"),
+    *("--security-opt", "--privileged", "--ros-args", "--params-file"),
     # Of benchmarks.
     *("--again", "--keep"),
     # Of the real `ros2 bag`: docs/ros2-differences.md says that ours does without them.

@@ -110,7 +110,7 @@ def test_rqt_console_shows_what_nodes_log_and_filters_it(driven: World, browser:
         warned.first.wait_for()
         tab.get_by_label("Warn").uncheck()
         warned.first.wait_for(state="detached")
-        tab.get_by_label("Text").fill("SPAWNING")
+        tab.get_by_label("Text").fill("SPAWNING turtle [anna]")
         assert log.get_by_role("row").count() == 2  # the header, and one message
         tab.get_by_role("status").get_by_text("hidden by the filters").wait_for()
         assert tab.title() == "rqt_console, live"

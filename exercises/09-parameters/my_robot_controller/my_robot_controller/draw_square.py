@@ -27,24 +27,8 @@ class DrawSquareNode(Node):
         if self.publisher.get_subscription_count() == 0:
             return  # nobody listens yet: a command sent now would be lost
         msg = Twist()
-        if self.state == "drive":
-            msg.linear.x = SIDE / (TICKS * PERIOD)
-        elif self.state == "turn":
-            msg.angular.z = math.pi / 2 / (TICKS * PERIOD)
-        self.ticks += 1
-        if self.ticks == TICKS:
-            self.change_state()
+        # TODO c: set the speeds that belong to the state, count the call, and change the state when it is over.
         self.publisher.publish(msg)
-
-    def change_state(self):
-        self.ticks = 0
-        if self.state == "drive":
-            self.sides += 1
-            self.state = "turn"
-        elif self.sides < 4:
-            self.state = "drive"
-        else:
-            self.state = "done"
 
 
 def main(args=None):

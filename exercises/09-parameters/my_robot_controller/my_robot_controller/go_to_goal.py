@@ -18,7 +18,7 @@ class GoToGoalNode(Node):
     def __init__(self):
         super().__init__("go_to_goal")
         self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
-        self.subscription = self.create_subscription(Pose, "/turtle1/pose", self.pose_received, 10)
+        # TODO d: subscribe to the turtle's pose.
         self.timer = self.create_timer(0.1, self.step)
         self.pose = None
 
@@ -27,16 +27,8 @@ class GoToGoalNode(Node):
 
     def step(self):
         msg = Twist()
-        if self.pose is None:
-            return
-        dx, dy = GOAL[0] - self.pose.x, GOAL[1] - self.pose.y
-        distance = math.hypot(dx, dy)
-        if distance > CLOSE:
-            error = math.atan2(dy, dx) - self.pose.theta
-            error = math.atan2(math.sin(error), math.cos(error))
-            msg.angular.z = 3.0 * error
-            if abs(error) < 0.5:
-                msg.linear.x = min(1.5, 1.5 * distance)
+        # TODO d: how far is the goal, and in which direction? Turn towards it, drive when you face it, stand
+        # still when you are there.
         self.publisher.publish(msg)
 
 

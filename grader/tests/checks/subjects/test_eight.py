@@ -45,9 +45,11 @@ def test_a_first_lobe_that_lacks_its_beginning_by_the_walls_clock_was_begun_befo
     assert found(EIGHT, evidence(observed), radius_m=1.0).diagnosis == diagnosis
 
 
-def test_a_rest_between_the_lobes_is_allowed_and_going_on_after_them_too() -> None:
+def test_a_rest_between_the_lobes_is_allowed_and_driving_on_after_them_is_not() -> None:
     assert eight(lobe(1), (5, 0.0, 0.0), lobe(-1)).status is Status.PASSED
-    assert eight(lobe(1), lobe(-1), (12, TURN, -TURN)).status is Status.PASSED
+    on = eight(lobe(1), lobe(-1), (12, TURN, -TURN))
+    assert (on.status, on.diagnosis) == (Status.FAILED, "lobe-angle")
+    assert "continues for 108 degrees after it was closed" in on.observed
 
 
 @pytest.mark.parametrize(

@@ -53,7 +53,7 @@ def test_whoever_stops_near_enough_has_arrived(length_m: float) -> None:
         (
             (ahead(3.92, 90), (20, 0.05, 0.0)),
             "still-moving",
-            "The turtle is still moving at the end: 0.03 m in the last 0.5 s.",
+            "The turtle still drives at 0.05 m/s at the end.",
         ),
     ],
 )

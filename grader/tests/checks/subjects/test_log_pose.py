@@ -170,12 +170,12 @@ def test_the_worst_line_is_shown() -> None:
     assert distance((x, y, off)).observed.startswith("At 4 s the line shows")
 
 
-def test_a_line_before_the_first_frame_speaks_of_the_start() -> None:
+def test_a_line_with_numbers_before_the_first_pose_is_named() -> None:
     early = LogLine(-0.5, "INFO", "pose_subscriber", "x=9.00 y=9.00 distance=9.00")
     trial = recording(WAY, log=(early, *logged(truth()).log))
-    start = trial.frames
     finding = found(LOG_POSITION, evidence(trial), format=FORMAT)
-    assert finding.observed.endswith(f"the turtle was at x={start.x[0]:.2f} y={start.y[0]:.2f}.")
+    assert (finding.status, finding.diagnosis) == (Status.FAILED, "before-first-pose")
+    assert finding.observed == "The log has a line with numbers before the first pose had arrived."
     late = LogLine(99.0, "INFO", "pose_subscriber", "x=9.00 y=9.00 distance=9.00")
     after = found(LOG_POSITION, evidence(recording(WAY, log=(*logged(truth()).log, late))), format=FORMAT)
     assert (after.status, "At 99 s" in after.observed) in ((Status.FAILED, True), (Status.PASSED, False))

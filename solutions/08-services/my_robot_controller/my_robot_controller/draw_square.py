@@ -27,6 +27,7 @@ class DrawSquareNode(Node):
         if self.publisher.get_subscription_count() == 0:
             return  # nobody listens yet: a command sent now would be lost
         msg = Twist()
+        # BEGIN SOLUTION
         if self.state == "drive":
             msg.linear.x = SIDE / (TICKS * PERIOD)
         elif self.state == "turn":
@@ -34,7 +35,12 @@ class DrawSquareNode(Node):
         self.ticks += 1
         if self.ticks == TICKS:
             self.change_state()
+        # END SOLUTION
+        # BEGIN STARTER
+        # # TODO c: set the speeds that belong to the state, count the call, and change the state when it is over.
+        # END STARTER
         self.publisher.publish(msg)
+        # BEGIN SOLUTION
 
     def change_state(self):
         self.ticks = 0
@@ -45,6 +51,7 @@ class DrawSquareNode(Node):
             self.state = "drive"
         else:
             self.state = "done"
+        # END SOLUTION
 
 
 def main(args=None):

@@ -25,12 +25,17 @@ class FigureEightNode(Node):
         if self.publisher.get_subscription_count() == 0:
             return  # nobody listens yet: a command sent now would be lost
         msg = Twist()
+        # BEGIN SOLUTION
         turn = 2 * math.pi / (TICKS * PERIOD)  # rad/s
         if self.ticks < TICKS:
             msg.linear.x, msg.angular.z = RADIUS * turn, turn
         elif self.ticks < 2 * TICKS:
             msg.linear.x, msg.angular.z = RADIUS * turn, -turn
         self.ticks += 1
+        # END SOLUTION
+        # BEGIN STARTER
+        # # TODO b: drive a lobe of radius RADIUS to the left in TICKS calls, then one to the right; then stand still.
+        # END STARTER
         self.publisher.publish(msg)
 
 

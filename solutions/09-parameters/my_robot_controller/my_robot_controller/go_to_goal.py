@@ -18,7 +18,12 @@ class GoToGoalNode(Node):
     def __init__(self):
         super().__init__("go_to_goal")
         self.publisher = self.create_publisher(Twist, "/turtle1/cmd_vel", 10)
+        # BEGIN SOLUTION
         self.subscription = self.create_subscription(Pose, "/turtle1/pose", self.pose_received, 10)
+        # END SOLUTION
+        # BEGIN STARTER
+        # # TODO d: subscribe to the turtle's pose.
+        # END STARTER
         self.timer = self.create_timer(0.1, self.step)
         self.pose = None
 
@@ -27,6 +32,7 @@ class GoToGoalNode(Node):
 
     def step(self):
         msg = Twist()
+        # BEGIN SOLUTION
         if self.pose is None:
             return
         dx, dy = GOAL[0] - self.pose.x, GOAL[1] - self.pose.y
@@ -37,6 +43,11 @@ class GoToGoalNode(Node):
             msg.angular.z = 3.0 * error
             if abs(error) < 0.5:
                 msg.linear.x = min(1.5, 1.5 * distance)
+        # END SOLUTION
+        # BEGIN STARTER
+        # # TODO d: how far is the goal, and in which direction? Turn towards it, drive when you face it, stand
+        # # still when you are there.
+        # END STARTER
         self.publisher.publish(msg)
 
 
