@@ -28,8 +28,8 @@ docs: python3 ## build README, docs/ and the lessons as a site in build/site; a 
 	@$(BIN)/sphinx-build -q -W --keep-going -n -c docs -d build/site-doctrees . build/site
 	@echo "The documentation: build/site/index.html"
 
-test: lint ## set up, lint, and run all tests but the exhaustive ones, one process per core
-	@$(BIN)/python -m pytest -n auto --dist loadscope
+test: lint ## set up, lint, and run all tests but the exhaustive ones
+	@$(BIN)/python -m pytest -n $$(( $$(nproc) + 1 )) --dist loadscope
 
 test-all: lint ## all tests: in both clocks, with repetition and load (long)
 	@$(BIN)/python -m pytest -m ""
