@@ -45,14 +45,14 @@ HEAD = """\
 # The catalogue of mistakes
 
 A failed check names its cause by a stable id, the diagnosis. This page lists all diagnoses with the cases that show
-them. A case is a folder in `grader/tests/mistakes/` or `grader/tests/cases/`: a submission and what the report must say
-about it. A few diagnoses are shown by a test instead. [diagnoses.py](diagnoses.py) holds the ids and their meanings.
-`python -m grader.tests.catalogue` generates this page, and a test fails when the page is stale.
+them. A case is a folder in `grader/tests/mistakes/` (here its number alone) or `grader/tests/cases/`: a submission and
+what the report must say about it. A few diagnoses are shown by a test instead. [diagnoses.py](diagnoses.py) holds the
+ids and their meanings. `python -m grader.tests.catalogue` generates this page, and a test fails when the page is stale.
 
 To add a mistake:
 
-1. Make a folder `grader/tests/mistakes/NNN-name/` with the submission and a file `expected.toml`. The keys of that file
-   are the fields of `Case` in [case.py](../tests/case.py).
+1. Make a folder `grader/tests/mistakes/NNN-name/` with a new number. Put the submission and a file `expected.toml` into
+   it. The keys of that file are the fields of `Case` in [case.py](../tests/case.py).
 2. If no id fits, add one to [diagnoses.py](diagnoses.py), and write the code that recognises the mistake in the module
    of its subject.
 3. Run the case:
@@ -77,7 +77,7 @@ def page() -> str:
     shown: dict[str, list[str]] = {}
     for case in cases():
         for id_ in dict.fromkeys(case.diagnosis.values()):
-            shown.setdefault(id_, []).append(case.name.partition("-")[0])
+            shown.setdefault(id_, []).append(_number(case))
     parts = [HEAD]
     for group, diagnoses in GROUPS.items():
         rows = [f"| `{id_}` | {meaning} | {_shown(id_, shown)} |" for id_, meaning in diagnoses.items()]
@@ -85,6 +85,12 @@ def page() -> str:
             "\n".join([f"## {group}", "", "| id | what it means | shown by |", "| --- | --- | --- |", *rows, ""])
         )
     return "\n".join(parts)
+
+
+def _number(case: Case) -> str:
+    """Return the number of a case, with its folder if that is not mistakes/: both folders begin at 101."""
+    number = case.name.partition("-")[0]
+    return number if case.folder.parent == MISTAKES else f"{case.folder.parent.name}/{number}"
 
 
 def _shown(id_: str, by_case: dict[str, list[str]]) -> str:

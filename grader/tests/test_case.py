@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.tests.attack import FOLDER as HOSTILE
 from grader.tests.case import CASES, Case, make_submission, read_case, read_cases
+from grader.tests.catalogue import MISTAKES
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,3 +50,9 @@ def test_a_slip_in_expected_toml_is_no_case_that_passes(cases: Path, text: str) 
 
 def test_every_folder_of_cases_is_a_case() -> None:
     assert [case.name for case in read_cases()] == sorted(path.name for path in CASES.iterdir() if path.is_dir())
+
+
+@pytest.mark.parametrize("below", [CASES, MISTAKES, CASES.parent / "unusual", HOSTILE], ids=lambda below: below.name)
+def test_each_case_of_a_folder_has_its_own_number(below: Path) -> None:
+    numbers = Counter(path.name.partition("-")[0] for path in below.iterdir() if path.is_dir())
+    assert [number for number, amount in numbers.items() if amount > 1 and number.isdigit()] == []

@@ -138,7 +138,7 @@ def test_the_authors_page_is_up_to_date() -> None:
         ("305", ["build"]),
         ("306", ["dependencies"]),
         ("403", ["depends-geometry-msgs"]),
-        ("453-colcon", ["build"]),
+        ("453", ["build"]),
         ("101", []),
     ],
 )
