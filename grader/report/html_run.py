@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from grader.common.words import a_list, count, shorten
+from grader.common.words import a_list, count
 from grader.evidence import activity
 from grader.report import charts
+from grader.report.calls_and_goals import call_rows, goal_rows, moments
 from grader.report.expectations import must_drive
 from grader.report.graph_drawing import GraphDrawing, draw_graph
 from grader.report.scene import scene_of
@@ -18,18 +19,15 @@ from grader.report.shapes import SIDE_M
 from grader.report.svg import LEFT, SIDE, TOP, scene_svg, sign
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from grader.evidence.evidence import Evidence
-    from grader.trial.observed import Call
     from grader.trial.recording import Recording
 
 MOST_FRAMES = 1500
 """The approximate maximum number of trajectory points in all players of a page together."""
 MOST_ROWS = 100
 """The maximum number of rows in the table of commands."""
-MOST_TEXT = 120
-"""The maximum length of a request or a response in the table of calls (characters)."""
 MOST_STEPS = 1000
 """The maximum number of commands in all players of a page together."""
 
@@ -62,6 +60,7 @@ class Run:
     amount: int
     idle: bool
     calls: tuple[tuple[str, ...], ...]
+    goals: tuple[tuple[str, ...], ...]
     graph: GraphDrawing | None
     graph_svg: Markup
     data: dict[str, object]
@@ -94,7 +93,8 @@ def _run(evidence: Evidence, key: str, several: bool, among: int) -> Run:
         charts=tuple(Picture(Markup(each.svg), each.caption) for each in found if each is not None),
         rows=tuple(_rows(evidence)),
         amount=len(evidence.commands),
-        calls=tuple(_calls(recording)),
+        calls=tuple(call_rows(recording)),
+        goals=tuple(goal_rows(recording)),
         idle=must_drive(evidence) and not evidence.commands,
         graph=graph,
         graph_svg=Markup(graph.svg if graph else ""),
@@ -135,32 +135,6 @@ def _rows(evidence: Evidence) -> list[tuple[str, ...]]:
     return rows
 
 
-def _calls(recording: Recording) -> list[tuple[str, ...]]:
-    """Return each service call as strings: time, who calls, the service, the request, the response."""
-    return [
-        (
-            f"{call.t_s:.2f}",
-            _caller(call),
-            call.service,
-            _fields(call.request),
-            "none" if call.response is None else _fields(call.response),
-        )
-        for call in _shown(recording)
-    ]
-
-
-def _shown(recording: Recording) -> tuple[Call, ...]:
-    return recording.calls[:MOST_ROWS]
-
-
-def _caller(call: Call) -> str:
-    return "the trial" if call.by_trial else "the node"
-
-
-def _fields(values: Mapping[str, object]) -> str:
-    return shorten(", ".join(f"{name}={value}" for name, value in values.items()), MOST_TEXT)
-
-
 def _data(evidence: Evidence, among: int) -> dict[str, object]:
     """Return the data for the player: poses (m, rad) by time (s), and the commands.
 
@@ -181,7 +155,7 @@ def _data(evidence: Evidence, among: int) -> dict[str, object]:
         "x": [round(start.x, 3), *_numbers(frames.x[:count:every].tolist())],
         "y": [round(start.y, 3), *_numbers(frames.y[:count:every].tolist())],
         "theta": [round(start.theta, 3), *_numbers(frames.theta[:count:every].tolist())],
-        "calls": [[round(call.t_s, 3), f"{_caller(call)} calls {shorten(call.service)}"] for call in _shown(recording)],
+        "calls": [[round(t_s, 3), text] for t_s, text in moments(recording)],
         "commands": [
             [round(command.t_s, 3), _number(command.linear[0]), _number(command.angular[2])] for command in commands
         ],

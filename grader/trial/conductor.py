@@ -125,6 +125,7 @@ def _conduct(order: dict[str, Any], answers: IO[str]) -> None:
             interventions_dropped=trial.interventions_dropped,
             graph_dropped=recorder.graph_dropped,
             calls=trial.calls,
+            goals=trial.goals.goals,
             offers=recorder.offers,
             pens=trial.turtles.pens,
             tracks=trial.turtles.tracks,

@@ -1,9 +1,9 @@
-"""What a recording holds besides messages: service calls, pens, and the other turtles."""
+"""What a recording holds besides messages: service calls, goals of actions, pens, and the other turtles."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,6 +38,25 @@ class Offer:
     node: str
     service: str
     type: str
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A goal that a node sent to an action of the simulator, which accepted it at the time `t_s` of the trial's clock.
+
+    The other times (s) are None if that did not happen: `result_asked_s` is when a client asked for the result,
+    `cancel_asked_s` is when a client asked to cancel the goal, and `ended_s` is when the goal ended with this `status`.
+    """
+
+    t_s: float
+    action: str
+    type: str
+    request: Mapping[str, Any]
+    status: Literal["executing", "succeeded", "canceled", "aborted"] = "executing"
+    result: Mapping[str, Any] | None = None
+    ended_s: float | None = None
+    result_asked_s: float | None = None
+    cancel_asked_s: float | None = None
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 from grader.common.lazy import np
-from grader.trial.observed import Call, Offer, PenChange, Track
+from grader.trial.observed import Call, Goal, Offer, PenChange, Track
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -173,6 +173,8 @@ class Recording:
     """The number of calls that were not kept because there were too many."""
     calls: tuple[Call, ...] = ()
     """The service calls of the node to the simulator and of the trial to the node, in order. There is a limit."""
+    goals: tuple[Goal, ...] = ()
+    """The goals that the node sent to the actions of the simulator, in order. There is a limit."""
     offers: tuple[Offer, ...] = ()
     """The services of the submission's nodes, if the trial calls any."""
     pens: tuple[PenChange, ...] = ()
@@ -255,6 +257,7 @@ def from_json(data: dict[str, Any], payloads: Iterable[bytes] | None = None) -> 
             "own_nodes": tuple(data["own_nodes"]),
             "interventions": tuple(data["interventions"]),
             "calls": tuple(Call(**call) for call in data.get("calls", ())),
+            "goals": tuple(Goal(**goal) for goal in data.get("goals", ())),
             "offers": tuple(Offer(**offer) for offer in data.get("offers", ())),
             "pens": tuple(PenChange(**{**pen, "color": tuple(pen["color"])}) for pen in data.get("pens", ())),
             "tracks": tuple(

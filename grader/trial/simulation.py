@@ -13,6 +13,7 @@ from rclpy.subscription import Subscription
 
 from grader.ros.message_values import plain
 from grader.trial.caller import Caller
+from grader.trial.goals import GoalLog
 from grader.trial.observed import Call
 from grader.trial.recorder import Recorder
 from grader.trial.turtles import TurtleWatch
@@ -63,6 +64,7 @@ class Simulation:
         self.interventions_dropped = 0
         simulated = {**PUBLISHED, "/clock": "rosgraph_msgs/msg/Clock"}
         self.recorder = Recorder(self.now, prefixes, simulated, (COMMANDS, *PUBLISHED, *judged))
+        self.goals = GoalLog(self.now)
         self.turtlesim = TurtlesimNode(
             start=Start(start.x, start.y, start.theta),
             pose_every=inputs.pose_every,
@@ -72,6 +74,7 @@ class Simulation:
             on_publish=self.recorder.keep,
             on_intervention=self._intervened,
             on_call=self._called,
+            on_goal=self.goals.add,
         )
         self.turtles = TurtleWatch()
         self.caller = Caller(self.recorder, inputs.calls, self.now) if inputs.calls else None

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.service import Service
 
+    from grader.turtlesim.goal_event import GoalEvent
     from grader.turtlesim.turtle import Rgb, State, Turtle
     from grader.turtlesim.world import World
 
@@ -39,13 +40,14 @@ class Hooks:
     `on_publish(topic, type, data)` is called when a pose or a colour is published. `on_intervention(name)` is called
     when somebody calls a service or an action ("spawn", "rotate_absolute") or sets a parameter ("set_background" if
     only colours are set, or else "set_parameters"). `on_call(service, type, request, response)` is called when a
-    service has been called.
+    service has been called, and `on_goal(event)` when something happens to the goal of an action.
     """
 
     on_command: Callable[[str, bytes, Any], object]
     on_publish: Callable[[str, str, bytes], object]
     on_intervention: Callable[[str], object]
     on_call: Callable[[str, str, Any, Any], object]
+    on_goal: Callable[[GoalEvent], object]
 
     def serve(self, node: Node, service_type: Any, name: str, handle: Callable[[Any, Any], Any]) -> Service:  # noqa: ANN401
         """Create a service of the node. `on_call` hears of each call."""
@@ -88,9 +90,7 @@ class TurtleInterface:
             ):
                 service = hooks.serve(node, service_type, f"{name}/{service_name}", serve)
                 parts.callback(node.destroy_service, service)
-            self._rotate = RotateAbsoluteServer(
-                node, name, self._turtle, lambda: hooks.on_intervention("rotate_absolute")
-            )
+            self._rotate = RotateAbsoluteServer(node, name, self._turtle, self._goal_event)
             parts.callback(self._rotate.destroy)
             self._parts = parts.pop_all()
 
@@ -139,6 +139,11 @@ class TurtleInterface:
         for sender in (self._pose, self._color) if due else (self._color,):
             sender.publish(sender.data)
             self._hooks.on_publish(sender.topic, sender.type_name, sender.data)
+
+    def _goal_event(self, event: GoalEvent) -> None:
+        if event.what == "accepted":
+            self._hooks.on_intervention("rotate_absolute")
+        self._hooks.on_goal(event)
 
     def _turtle(self) -> Turtle | None:
         return self._world.turtles.get(self.name)

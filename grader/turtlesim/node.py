@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from rclpy.parameter import Parameter
 
     from grader.turtlesim.canvas import Canvas
+    from grader.turtlesim.goal_event import GoalEvent
     from grader.turtlesim.turtle import State
 
 MOST_TURTLES = 64
@@ -51,6 +52,7 @@ class TurtlesimNode(Node):
         on_publish: Callable[[str, str, bytes], object] = _nobody,
         on_intervention: Callable[[str], object] = _nobody,
         on_call: Callable[[str, str, Any, Any], object] = _nobody,
+        on_goal: Callable[[GoalEvent], object] = _nobody,
         pose_every: int = 1,
         pose_from_s: float = 0.0,
         canvas: Canvas | None = None,
@@ -62,7 +64,7 @@ class TurtlesimNode(Node):
         real turtlesim publishes one in each frame. `canvas` is what the turtles draw on.
         """
         self._pose_every, self._pose_from_s = pose_every, pose_from_s
-        self._hooks = Hooks(on_command, on_publish, on_intervention, on_call)
+        self._hooks = Hooks(on_command, on_publish, on_intervention, on_call, on_goal)
         super().__init__("turtlesim", **node)
         parameters.declare(self)
         self.world = World(start or Start(), canvas)

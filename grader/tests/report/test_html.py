@@ -25,6 +25,7 @@ from grader.tests.checks.made import NODE, NODE_FILE, every, evidence, good, nod
 from grader.tests.checks.shapes import SHAPES
 from grader.tests.report.hostile import enormous, hostile
 from grader.tests.report.reports import EVIDENCE, report_of
+from grader.trial.observed import Goal
 from grader.trial.recording import Output
 
 if TYPE_CHECKING:
@@ -263,3 +264,22 @@ def test_a_page_that_cannot_be_written_is_a_usage_error(tmp_path: Path) -> None:
     given = EVIDENCE["passed"]
     with pytest.raises(UsageError, match="cannot be written"):
         save_html(given, report_of(given), tmp_path / "no" / "page.html")
+
+
+def test_goals_are_in_a_table_and_on_the_time_line_of_the_replay() -> None:
+    action, type_ = "/turtle1/rotate_absolute", "turtlesim/action/RotateAbsolute"
+    goal = Goal(1.0, action, type_, {"theta": 1.5}, "canceled", {"delta": 0.51234}, 2.5, 1.1, 2.4)
+    page = page_of(evidence(recording(every(0.5, 2.0, 1.0), goals=(goal,))))
+    cells = ("1.00", action, "theta=1.5", "canceled", "2.50", "delta=0.512")
+    assert "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>" in page
+    assert [1.0, f"the node sends a goal to {action}: theta=1.5"] in moments_of(page)
+    assert [2.4, f"the node asks {action} to cancel the goal"] in moments_of(page)
+    assert [2.5, f"the goal of {action} is canceled"] in moments_of(page)
+
+
+def moments_of(page: str) -> list[list[object]]:
+    """Return what the replay says at which time (s)."""
+    found = re.search(r'"calls": ?(\[.*?\]\])', page)
+    assert found is not None
+    moments: list[list[object]] = json.loads(found[1])
+    return moments

@@ -6,6 +6,7 @@ import itertools
 import math
 import threading
 import time
+from dataclasses import asdict
 from typing import Any
 
 import rclpy
@@ -18,6 +19,7 @@ from turtlesim.msg import Color, Pose
 from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
 
 from grader.tests.turtlesim.rig import Rig, names_of, twist
+from grader.trial.goals import GoalLog
 from grader.turtlesim.interface import QOS
 from grader.turtlesim.node import TurtlesimNode
 from grader.turtlesim.standalone import spin
@@ -141,7 +143,8 @@ def services() -> dict[str, Any]:
 
 
 def rotations() -> dict[str, Any]:
-    with Rig() as rig:
+    log = GoalLog(lambda: rig.frames * FRAME_S)
+    with Rig(on_goal=log.add) as rig:
         feedback: list[float] = []
         status, delta = rig.result(rig.goal(0.5, feedback))
         found: dict[str, Any] = {"status": status, "delta": delta}
@@ -164,6 +167,7 @@ def rotations() -> dict[str, Any]:
         rig.call(Kill, "/kill", name="turtle1")
         rig.frame(20)
         found["after kill"] = rig.call(Spawn, "/spawn", x=1.0, y=1.0, name="turtle1").name
+        found["log"] = [asdict(each) for each in log.goals]
         return found
 
 

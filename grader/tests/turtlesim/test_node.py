@@ -161,6 +161,21 @@ def test_rotate_absolute(in_ros: InRos) -> None:
     assert found["after kill"] == "turtle1"
 
 
+def test_a_trial_knows_what_became_of_each_goal(in_ros: InRos) -> None:
+    goals = in_ros.run("turtlesim.scenarios:rotations").result["log"]
+    assert [goal["request"]["theta"] for goal in goals] == pytest.approx([0.5, 3.0, -3.0, -2.9, 3.0, 3.0])
+    assert [goal["status"] for goal in goals] == ["succeeded", "canceled", *["aborted"] * 4]
+    assert {(goal["action"], goal["type"]) for goal in goals} == {
+        ("/turtle1/rotate_absolute", "turtlesim/action/RotateAbsolute")
+    }
+    first, second, *_, last = goals
+    assert first["t_s"] < first["ended_s"] <= second["t_s"] <= second["cancel_asked_s"] <= second["ended_s"]
+    assert first["t_s"] <= first["result_asked_s"] <= first["ended_s"]
+    assert first["result"]["delta"] == pytest.approx(-0.5, abs=0.021)
+    assert [goal["cancel_asked_s"] is None for goal in goals] == [True, False, *[True] * 4]
+    assert last["result_asked_s"] is None
+
+
 def test_wrong_requests_do_not_stop_the_node(in_ros: InRos) -> None:
     found = in_ros.run("turtlesim.scenarios:hostile").result
     assert found["names"] == [""] * 8

@@ -1,0 +1,47 @@
+"""The goals that nodes send to the actions of the simulator, and what became of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from grader.ros.message_values import plain
+from grader.trial.observed import Goal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from grader.turtlesim.goal_event import GoalEvent
+
+MOST_GOALS = 1000
+"""A node that keeps sending goals must not fill the memory of the grader."""
+
+
+class GoalLog:
+    """Collects what happens to each goal."""
+
+    def __init__(self, now: Callable[[], float]) -> None:
+        """Create an empty log. `now` returns the time of the trial (s)."""
+        self._now = now
+        self._goals: dict[bytes, Goal] = {}
+
+    @property
+    def goals(self) -> tuple[Goal, ...]:
+        """The goals so far, in the order in which they were accepted."""
+        return tuple(self._goals.values())
+
+    def add(self, event: GoalEvent) -> None:
+        """Take in what happened to a goal."""
+        now_s, goal = self._now(), self._goals.get(event.goal_id)
+        if event.what == "accepted" and len(self._goals) < MOST_GOALS:
+            self._goals[event.goal_id] = Goal(now_s, event.action, event.type, plain(event.content))
+        elif goal is None or event.what == "accepted":
+            return
+        elif event.what == "result requested":
+            self._goals[event.goal_id] = replace(
+                goal, result_asked_s=now_s if goal.result_asked_s is None else goal.result_asked_s
+            )
+        elif event.what == "cancel requested":
+            self._goals[event.goal_id] = replace(goal, cancel_asked_s=now_s)
+        else:
+            self._goals[event.goal_id] = replace(goal, status=event.what, result=plain(event.content), ended_s=now_s)
