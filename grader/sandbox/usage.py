@@ -52,6 +52,7 @@ class Guard:
     def __init__(self, pid: int, limits: Limits, over: Callable[[str], None]) -> None:
         self._pid, self._limits, self._over = pid, limits, over
         self._worked: list[tuple[float, float]] = [(time.monotonic(), 0.0)]
+        self._ready: dict[int, float] = {}
         self._closed = Event()
         self._thread = Thread(target=self._run, name="guard", daemon=True)
         self._thread.start()
@@ -66,9 +67,19 @@ class Guard:
         before = max((cpu for at, cpu in self._worked if at <= begin), default=0.0)
         return max((cpu for at, cpu in self._worked if at <= end + EVERY_S), default=0.0) - before
 
+    def ready_s(self, *, but: int) -> float:
+        """Return how long all processes of the cell except `but` ran or waited for a processor so far (s).
+
+        A process that is ready to run uses less CPU time on a crowded machine, but it is ready for as long as on an
+        idle one. Other threads than the first one of each process are not counted.
+        """
+        return sum(ready_s for pid, ready_s in self._ready.copy().items() if pid != but)
+
     def _run(self) -> None:
         while not self._closed.wait(EVERY_S):
-            self._worked.append((time.monotonic(), sum(map(_cpu_s, _family(self._pid)))))
+            family = list(_family(self._pid))
+            self._worked.append((time.monotonic(), sum(map(_cpu_s, family))))
+            self._ready.update({pid: max(_ready_s(pid), self._ready.get(pid, 0.0)) for pid in family})
             what = exceeded(self._pid, self._limits)
             if what is not None:
                 self._over(what)
@@ -113,6 +124,15 @@ def _cpu_s(pid: int) -> float:
         return 0.0
     # utime, stime, cutime and cstime of proc(5), counted from the state (field 3).
     return sum(map(int, fields[11:15])) * _TICK_S
+
+
+def _ready_s(pid: int) -> float:
+    """Return how long the first thread of the process has run and waited for a processor (s)."""
+    try:
+        ran_ns, waited_ns, _ = _read(f"/proc/{pid}/schedstat").split()
+    except (OSError, ValueError):
+        return 0.0
+    return (int(ran_ns) + int(waited_ns)) / 1e9
 
 
 def _disks(pid: int) -> dict[int, tuple[int, int]]:

@@ -47,6 +47,10 @@ that makes three requests per pose makes 190 per second.
 """
 MESSAGES_HZ = 1000
 """The same for the messages that arrive from other nodes than the simulator (Hz)."""
+STARTED = 0.4
+STARTED_LEAST = 1.2
+"""The same for the processes that the node started: they were ready to run for more than this share of the time of all
+processors, and for more than STARTED_LEAST of one processor, which a single process cannot be."""
 SIMULATORS = ("/pose", "/color_sensor")
 """The simulator publishes on topics with these last parts, for each turtle and in each frame."""
 
@@ -153,6 +157,8 @@ def _own_doing(stall: tuple[float, float], node: NodeProcess, trial: SimulatedTr
     now_s = trial.now()
     offset = time.monotonic() - now_s
     begin, end = stall
+    if node.started_ready_s() >= max(STARTED_LEAST, STARTED * len(os.sched_getaffinity(0))) * now_s:
+        return True
     if trial.requests >= REQUESTS_HZ * now_s or _arrived(trial) >= MESSAGES_HZ * now_s:
         return True
     if node.worked_s(offset, time.monotonic()) + trial.worked_for_node_s(0.0, now_s) >= BUSY * now_s:

@@ -162,6 +162,10 @@ class NodeProcess:
         """Return the CPU time that all processes of the cell used between two times of CLOCK_MONOTONIC (s)."""
         return self._guard.worked_s(begin, end) if self._guard is not None else 0.0
 
+    def started_ready_s(self) -> float:
+        """Return how long the processes that the node started have run or waited for a processor so far (s)."""
+        return self._guard.ready_s(but=self.pid) if self._guard is not None else 0.0
+
     def read_output(self, now_s: float) -> int:
         """Store the output of the node with the arrival time `now_s`, and return the number of bytes."""
         return sum(stream.read(now_s) for stream in self._streams)

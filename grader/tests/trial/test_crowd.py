@@ -144,13 +144,23 @@ def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch:
 class Busy:
     """A node whose processes have worked so long, and a stage whose simulator has, whenever one asks."""
 
-    def __init__(self, node_s: float, simulator_s: float, requests: int = 0, messages: Iterable[str] = ()) -> None:
-        self._node_s, self._simulator_s, self.requests = node_s, simulator_s, requests
+    def __init__(
+        self,
+        node_s: float,
+        simulator_s: float,
+        requests: int = 0,
+        messages: Iterable[str] = (),
+        started_s: float = 0.0,
+    ) -> None:
+        self._node_s, self._simulator_s, self.requests, self._started_s = node_s, simulator_s, requests, started_s
         made = [Message(topic, "std_msgs/msg/String", b"", 0.0, 0.0) for topic in messages]
         self.recorder = SimpleNamespace(messages=made, dropped=0)
 
     def worked_s(self, *_: float) -> float:
         return self._node_s
+
+    def started_ready_s(self) -> float:
+        return self._started_s
 
     def worked_for_node_s(self, *_: float) -> float:
         return self._simulator_s
@@ -184,4 +194,15 @@ def test_stalls_beside_a_flood_of_messages_are_the_nodes_however_little_time_bot
     topic: str, count: int, *, own: bool
 ) -> None:
     of: Any = Busy(0.0, 0.0, messages=[topic] * count)
+    assert conductor._own_doing((1.0, 1.1), of, of) == own
+
+
+@pytest.mark.parametrize(
+    ("processors", "started_s", "own"), [(2, 10.0, False), (2, 18.0, True), (8, 18.0, False), (8, 36.0, True)]
+)
+def test_stalls_beside_processes_that_could_use_the_machine_alone_are_the_nodes(
+    monkeypatch: pytest.MonkeyPatch, processors: int, started_s: float, *, own: bool
+) -> None:
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: set(range(processors)))
+    of: Any = Busy(0.0, 0.0, started_s=started_s)
     assert conductor._own_doing((1.0, 1.1), of, of) == own

@@ -1,0 +1,45 @@
+"""How long the processes of a cell were ready to run does not depend on what else uses the machine."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from grader.sandbox.limits import Limits
+from grader.sandbox.usage import Guard
+from grader.tests.trial.program import python
+from grader.tests.waiting import until
+
+if TYPE_CHECKING:
+    import subprocess
+
+WORK_S = 0.4
+STARTS_TWO = f"""
+import os, sys, time
+os.sched_setaffinity(0, {{min(os.sched_getaffinity(0))}})
+print("ready", flush=True)
+for _ in range(2):
+    if os.fork() == 0:
+        while time.process_time() < {WORK_S}:
+            pass
+        os.write(1, b"worked\\n")
+        sys.stdin.readline()
+        os._exit(0)
+sys.stdin.readline()
+"""
+"""Two processes that work on one processor, so that at any time one of them waits."""
+LIMITS = Limits(processes=50, cpu_s=60)
+
+
+def lines(process: subprocess.Popen[str], count: int) -> None:
+    assert process.stdout is not None
+    for _ in range(count):
+        assert process.stdout.readline() == "worked\n"
+
+
+def test_processes_that_share_a_processor_are_ready_for_as_long_as_with_one_each() -> None:
+    with python(STARTS_TWO) as process:
+        guard = Guard(process.pid, LIMITS, lambda _: None)
+        lines(process, 2)
+        until(lambda: guard.ready_s(but=process.pid) >= 2.5 * WORK_S)
+        guard.close()
+    assert guard.ready_s(but=0) > guard.ready_s(but=process.pid)
