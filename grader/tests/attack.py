@@ -63,7 +63,7 @@ class Attack:
     never_html: tuple[str, ...] = ()
     """Text that the page must not contain."""
     edit: tuple[Mapping[str, str], ...] = ()
-    """Changes of the solution: in `file`, `old` becomes `new`, everywhere."""
+    """The edits of the solution: `old` in `file` is replaced by `new` everywhere."""
     sample: bool = False
     clock: str = "auto"
 

@@ -1,4 +1,4 @@
-"""The two worlds in which all tests run: with the course's own ROS 2, and in a terminal in which one was sourced."""
+"""The two worlds in which all tests run: with the course's own ROS 2, and in a terminal with a sourced ROS 2."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ SET_BY_ROS = (
 SOURCED_ENV: dict[str, str] = {
     name: os.environ[name] for name in SET_BY_ROS if HERE.kind == "sourced" and name in os.environ
 }
-"""What a terminal has besides, in which nothing but the tests' ROS 2 was sourced; nothing in the other world."""
+"""The variables of a terminal in which only the tests' ROS 2 is sourced; empty in the other world."""
 PATH = os.pathsep.join([*([str(HERE.prefix / "bin")] if SOURCED_ENV else []), "/usr/bin", "/bin"])
-"""PATH of such a terminal."""
+"""PATH in such a terminal."""
 REAL_ROS2 = bool(SOURCED_ENV) and Path(HERE.prefix, "bin/ros2").is_file()
 REAL_TURTLESIM = installation.has_turtlesim(HERE)
 OUR_TURTLESIM = "grader sim" if REAL_TURTLESIM else "ros2 run turtlesim turtlesim_node"
-"""The command line of the course's turtlesim; the real one, which opens a window, knows none of its options."""
+"""The command line of the course's turtlesim. The real one opens a window and does not know these options."""
 
 of_the_wheels = pytest.mark.skipif(
     bool(SOURCED_ENV), reason="this is about the course's own ROS 2, and one is sourced here"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 FLAGS = (
-    # Root has no sandbox in Chromium; it opens nothing but files of ours.
+    # Chromium has no sandbox when root starts it. It opens only our own files.
     "--no-sandbox",
     "--disable-gpu",
     "--disable-quic",
@@ -37,7 +37,7 @@ def find_browser() -> str | None:
 
 
 def browser_or_reason() -> str:
-    """The path of a Chromium. Without one the test is skipped with the reason, and under CI it fails."""
+    """The path of a Chromium. If there is none, the test is skipped with the reason; in CI it fails."""
     found = find_browser()
     if found is None:
         if os.environ.get("TESTS_WITHOUT_BROWSER"):
@@ -58,7 +58,7 @@ def launched(executable: str) -> Iterator[Browser]:
 
 
 def violations(page: Page) -> list[str]:
-    """What axe-core finds wrong with the page as it is, in words."""
+    """Return what axe-core reports about the page in its current state, in words."""
     page.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
     found: list[str] = page.evaluate(
         "() => axe.run().then(all => all.violations.map(each => "

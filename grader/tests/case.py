@@ -28,54 +28,54 @@ else:
 ROOT = Path(__file__).parent.parent.parent
 CASES = Path(__file__).parent / "cases"
 BASES = Path(__file__).parent / "bases"
-"""Packages as learners write them, which several cases change in a few places."""
+"""Packages as learners write them. Several cases change them in a few places."""
 EXIT_CODES = {"passed": 0, "failed": 1, "usage": 2, "error": 3}
 
 
 @dataclass(frozen=True)
 class Case:
-    """What stands in expected.toml. Checks are named by their id; all that are not named must pass."""
+    """The content of expected.toml. Checks are named by their id. A check that is not named must pass."""
 
     name: str
     why: str
-    """What is odd about the submission, for the reader of the tests."""
+    """What is unusual about the submission, for the reader of the tests."""
     result: str
-    """A key of EXIT_CODES."""
+    """One of the keys of EXIT_CODES."""
     folder: Path = CASES
-    """Where its files are; no key of expected.toml."""
+    """The folder of the case. This is not a key of expected.toml."""
     base: str = "03-circle-publisher"
-    """What `files` is laid over: the solution of a step, or a package in bases/; empty for none."""
+    """`files` is copied over this: the solution of a step, or a package in bases/. Empty if there is no base."""
     exercise: str = ""
-    """The exercise that it is graded by; empty for the one of the base, where that is a solution."""
+    """The exercise by which the case is graded. Empty for the exercise of the base, if the base is a solution."""
     edit: tuple[Mapping[str, str], ...] = ()
-    """Changes of the base: in `file`, `old` becomes `new`, everywhere."""
+    """The edits of the base: `old` in `file` is replaced by `new` everywhere."""
     remove: tuple[str, ...] = ()
-    """Paths of the base that are removed."""
+    """The paths of the base that are removed."""
     give: str = "."
     """The path that is submitted, relative to the folder that holds the package."""
     sample: bool = False
-    """Belongs to the sample that `make test` runs."""
+    """Whether the case belongs to the sample that `make test` runs."""
     clock: str = ""
-    """The clock that must judge under `--clock auto`; empty for any."""
+    """The clock that must judge with `--clock auto`; empty for any clock."""
     wall_varies: str = ""
-    """Why it does not behave the same twice in wall time, so that the clocks are not compared; empty for nearly all."""
+    """Why two runs in wall time can differ, so that the clocks are not compared. Empty for nearly all cases."""
     points: float | None = None
     failed: tuple[str, ...] = ()
     skipped: tuple[str, ...] = ()
     advice: tuple[str, ...] = ()
-    """The advice given: checks worth nothing that did not pass. Whatever they say, they are not among `failed`."""
+    """The advice that is given: the checks worth 0 points that did not pass. They are not listed in `failed`."""
     diagnosis: Mapping[str, str] = ()  # type: ignore[assignment]
     """Check -> the stable id of the cause."""
     where: Mapping[str, str] = ()  # type: ignore[assignment]
     """Check -> "file:line"."""
     says: Mapping[str, tuple[str, ...]] = ()  # type: ignore[assignment]
-    """Check -> what its texts must contain; the key "usage" stands for the message of exit code 2."""
+    """Check -> strings that its message must contain. The key "usage" is for the message of exit code 2."""
     never: tuple[str, ...] = ()
     """Text that the report must not contain."""
 
 
 def read_case(folder: Path) -> Case:
-    """The case in a folder; ValueError for a key that there is not."""
+    """Return the case in a folder. Raises ValueError for an unknown key."""
     values: dict[str, Any] = tomllib.loads((folder / "expected.toml").read_text("utf-8"))
     unknown = values.keys() - ({field.name for field in fields(Case)} - {"name", "folder"})
     if unknown or values["result"] not in EXIT_CODES:
@@ -89,12 +89,12 @@ def read_case(folder: Path) -> Case:
 
 
 def read_cases(below: Path = CASES) -> tuple[Case, ...]:
-    """Every case of a folder, in the order of their names."""
+    """Return every case of a folder, sorted by name."""
     return tuple(read_case(folder) for folder in sorted(below.iterdir()) if (folder / "expected.toml").is_file())
 
 
 def base_of(case: Case) -> Path | None:
-    """The folder of the base of the case."""
+    """Return the folder of the case's base, or None."""
     if not case.base:
         return None
     return BASES / case.base if (BASES / case.base).is_dir() else ROOT / "solutions" / case.base
@@ -131,7 +131,7 @@ def make_submission(case: Case, to: Path) -> Path:
 
 
 def apply_edits(edits: Iterable[Mapping[str, str]], package: Path, name: str) -> None:
-    """In each `file` of a package, replace `old` by `new` everywhere; AssertionError if `old` is not there."""
+    """In each `file` of a package, replace `old` by `new` everywhere. Raises AssertionError if `old` is not found."""
     for edit in edits:
         file = package / edit["file"]
         text = file.read_text("utf-8")
@@ -140,7 +140,7 @@ def apply_edits(edits: Iterable[Mapping[str, str]], package: Path, name: str) ->
 
 
 def copy_solution(step: str, to: Path) -> None:
-    """A solution's package (in step 02: its answers) as a learner would have written it: no markers in it."""
+    """Copy a solution's package (in step 02: its answers) without the markers, as a learner would have written it."""
     source = ROOT / "solutions" / step
     source = source / "my_robot_controller" if (source / "my_robot_controller").is_dir() else source
     for file in sorted(path for path in source.rglob("*") if path.is_file() and "__pycache__" not in path.parts):

@@ -40,7 +40,7 @@ SHOWN_BY_TESTS = {
     "unreadable": "checks/test_judge.py",
     "wrong-centre": "checks/subjects/test_path.py",
 }
-"""Diagnosis -> the test that shows it: no ordinary submission leads to it, but a hostile one, or a class."""
+"""Diagnosis -> the test that shows it. No ordinary submission causes it, only a hostile one or a class."""
 HEAD = """\
 # The catalogue of mistakes
 
@@ -68,12 +68,12 @@ must not say.
 
 
 def cases() -> tuple[Case, ...]:
-    """All cases that name diagnoses."""
+    """Return all cases that name diagnoses."""
     return (*read_cases(CASES), *read_cases(MISTAKES))
 
 
 def page() -> str:
-    """The whole page."""
+    """Return the whole page."""
     shown: dict[str, list[str]] = {}
     for case in cases():
         for id_ in dict.fromkeys(case.diagnosis.values()):
@@ -94,7 +94,7 @@ def _number(case: Case) -> str:
 
 
 def _shown(id_: str, by_case: dict[str, list[str]]) -> str:
-    """What shows a diagnosis: some of the cases, else a test."""
+    """Return what shows a diagnosis: some of its cases, or a test."""
     names = by_case.get(id_, [])
     if not names and id_ in SHOWN_BY_TESTS:
         return f"[{Path(SHOWN_BY_TESTS[id_]).stem}](../tests/{SHOWN_BY_TESTS[id_]})"

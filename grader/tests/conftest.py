@@ -17,27 +17,27 @@ if TYPE_CHECKING:
 
     from grader.tests.gradings import Gradings
 
-# Started in the background of a script or by nohup, tests have signals ignored, and all that they start would too.
+# If tests are started in the background or by nohup, they ignore signals, and so would all their child processes.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-# Not the domain of the user's programs, nor that of another test process.
+# This domain is used neither by the user's programs nor by another test process.
 os.environ["ROS_DOMAIN_ID"] = str(default_domain())
-# Nothing that a test did not ask for stays behind it.
+# A daemon would remain after the test that started it.
 os.environ["GRADER_ROS2_DAEMON"] = "0"
 
 collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
-"""Submissions, some of which bring tests of their own."""
+"""Submissions. Some of them contain tests of their own."""
 
 
 @pytest.fixture(scope="session")
 def in_ros(tmp_path_factory: pytest.TempPathFactory) -> InRos:
-    """Processes with ROS 2 and turtlesim's interfaces, which are built if they were not yet."""
+    """Processes with ROS 2 and the turtlesim interfaces. The interfaces are built if that has not been done yet."""
     home: Path = tmp_path_factory.mktemp("ros")
     return InRos(underlay.with_turtlesim(installation.find_ros()), home)
 
 
 @pytest.fixture(scope="module")
 def gradings(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gradings]:
-    """All cases that this module's tests mark with `clocks`, graded side by side."""
+    """All cases that the tests of this module mark with `clocks`. They are graded side by side."""
     yield from gradings_of(request, tmp_path_factory)

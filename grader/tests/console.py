@@ -23,7 +23,7 @@ END = "--- the end of what one command printed ---"
 
 @dataclass(frozen=True)
 class Step:
-    """A command and the lines that it is shown to print."""
+    """A command, and the lines that the page shows as its output."""
 
     command: str
     printed: tuple[str, ...]
@@ -31,14 +31,14 @@ class Step:
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block: its language, what follows it on the line, its text."""
+    """A fenced block: its language, the rest of its first line, and its text."""
 
     language: str
     about: str
     text: str
 
     def steps(self) -> tuple[Step, ...]:
-        """The commands of a console block; ValueError for output that no command printed."""
+        """Return the commands of a console block. Raises ValueError for output before the first command."""
         steps: list[Step] = []
         for line in self.text.splitlines():
             if line.startswith("$ "):
@@ -52,12 +52,12 @@ class Block:
 
 
 def blocks(markdown: str) -> tuple[Block, ...]:
-    """The fenced blocks of a text, in order."""
+    """Return the fenced blocks of a text, in order."""
     return tuple(Block(*match.groups()) for match in FENCE.finditer(markdown))
 
 
 def run(block: Block, cwd: Path, env: Mapping[str, str], timeout_s: float) -> list[tuple[Step, str, int]]:
-    """Run the block's commands in one shell, as somebody types them; each with what it printed and its exit code."""
+    """Run the block's commands in one shell. Return each command with its output and its exit code."""
     steps = block.steps()
     script = "\n".join(f"{step.command}\nprintf '\\n%s %s\\n' {shlex.quote(END)} $?" for step in steps)
     done = subprocess.run(
@@ -75,7 +75,7 @@ def run(block: Block, cwd: Path, env: Mapping[str, str], timeout_s: float) -> li
 
 
 def differs(shown: tuple[str, ...], printed: str) -> str | None:
-    """The first line shown that was not printed where it should be; None if all were. Numbers are not compared."""
+    """Return the first shown line that is missing in the output, or None. Numbers are not compared."""
     lines = [_plain(line) for line in printed.splitlines()]
     at, jump = 0, True
     for line in shown:

@@ -1,4 +1,4 @@
-"""ROS domains for tests: processes that test on one machine at the same time never share one."""
+"""ROS domains for tests: two test processes on one machine never share a domain."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ FIRST, LAST = 2, 101
 """Domain 1 is root's own, where the machine's user may be at work; above 101 a domain's ports would lie among those
 that Linux gives to anybody."""
 MOST = 8
-"""So many a process keeps, beside its default one; then it takes the one again that it has not used for longest."""
+"""A process keeps this many domains besides its default one. Then it reuses the one that was unused for longest."""
 _held: dict[int, IO[str]] = {}
 _own: list[int] = []
 
 
 @cache
 def default_domain() -> int:
-    """The default domain of the processes that this process starts."""
+    """Return the default domain of the processes that this process starts."""
     deadline = time.monotonic() + HANG_S
     while (domain := _free()) is None:
         assert time.monotonic() < deadline, "all ROS domains are in use by other tests"
@@ -32,18 +32,18 @@ def default_domain() -> int:
 
 
 def own_domain() -> int:
-    """Another domain of this process's own each time; after the last of them, the first again."""
+    """Return another domain of this process at each call; after the last one, the first one again."""
     default_domain()
     domain = _free() if len(_own) < MOST else None
     if domain is None:
-        # None is free: the default one is better than one of somebody else.
+        # No domain is free. The default one is better than one that another process uses.
         domain = _own.pop(0) if _own else default_domain()
     _own.append(domain)
     return domain
 
 
 def _free() -> int | None:
-    """A domain that no process tests in, and that is this one's until it ends; None where there is no such."""
+    """Return a domain that no process tests in. This process keeps it until it ends. None if no domain is free."""
     for domain in range(FIRST, LAST + 1):
         if domain in _held:
             continue

@@ -1,4 +1,4 @@
-"""Grade cases in this process, and build once what differs in its modules alone."""
+"""Grade cases in this process. Submissions that differ only in their modules share one build."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class Builds:
-    """Stands in for `workspace.build`: colcon runs for the first of all submissions that differ in modules alone."""
+    """A replacement for `runner.build`: colcon runs once for all submissions that differ only in modules."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -47,7 +47,7 @@ class Builds:
         in_cell: bool,
         tell: Callable[[str], None],
     ) -> runner.Built:
-        """Build the submission, with colcon or without."""
+        """Build the submission, with or without colcon."""
         with self._lock:
             kept = self._known.setdefault(_alike(submission), _Kept(threading.Lock()))
         with kept.lock:
@@ -71,7 +71,7 @@ def _alike(submission: Submission) -> object:
 
 
 def grade_here(case: Case, clock: ClockChoice, folder: Path, builds: Builds) -> Graded:
-    """What `grader check` would leave, and what it would print where nobody sees colours."""
+    """Return what `grader check` would report, and what it would print without colours."""
     given = make_submission(case, folder / "in")
     exercise = find_exercise(case.exercise or case.base or EXERCISE)
     try:

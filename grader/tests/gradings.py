@@ -1,4 +1,4 @@
-"""Grade cases by the real command, side by side, and compare what it says with what they expect."""
+"""Grade cases with the real command, side by side, and compare the reports with what the cases expect."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 EXERCISE = "03-circle-publisher"
 GRADER = Path(sys.executable).with_name("grader")
 AT_ONCE = max(1, (os.cpu_count() or 1) // int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")))
-"""Gradings side by side: with the other test processes, as many as there are processors."""
+"""How many gradings run side by side. With the other test processes, there is one for each processor."""
 HANG_S = 300.0
-"""Longer than any limit of the grader's own: beyond it the command hangs."""
+"""Longer than any time limit of the grader: a command that takes longer hangs."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Graded:
 
 
 class Gradings:
-    """Grades the cases that a module asks for, `AT_ONCE` at once."""
+    """Grades the cases that a module needs, `AT_ONCE` at the same time."""
 
     def __init__(self, wanted: list[tuple[Case, str]], folder: Path, pool: ThreadPoolExecutor) -> None:
         self._futures: dict[tuple[Path, str], Future[Graded]] = {
@@ -79,7 +79,7 @@ def grade(case: Case, clock: str, folder: Path) -> Graded:
 
 
 def gradings_of(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gradings]:
-    """The fixture `gradings`: all that the module's tests which use it mark with `clocks`."""
+    """Yield the fixture `gradings`: the gradings of all cases that the module's tests mark with `clocks`."""
     wanted: dict[tuple[Path, str], tuple[Case, str]] = {}
     for item in request.session.items:
         if item.path != request.path:
@@ -94,7 +94,7 @@ def gradings_of(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPat
 
 
 def each(cases: Sequence[Case], *, always: bool = False) -> pytest.MarkDecorator:
-    """The test once a case; those that do not belong to the sample run in `make test-all` only, unless `always`."""
+    """Run the test for each case. Cases outside of the sample run only in `make test-all`, unless `always` is set."""
     return pytest.mark.parametrize(
         "case",
         [
@@ -105,7 +105,7 @@ def each(cases: Sequence[Case], *, always: bool = False) -> pytest.MarkDecorator
 
 
 def check_report(case: Case, graded: Graded) -> None:
-    """The report is the one that the case expects, and nobody sees a traceback of ours."""
+    """Check that the report is as the case expects, and that there is no traceback of ours."""
     assert not [line for line in graded.stderr.splitlines() if line.startswith(("Traceback", '  File "'))], (
         graded.stderr
     )
@@ -139,7 +139,7 @@ def compare(case: Case, graded: Graded) -> None:
 
 
 def all_reported(graded: Graded) -> str:
-    """The checks that did not pass, one line each, for the message of a failed test."""
+    """Return the checks that did not pass, one line each, for the message of a failed test."""
     keys = ("id", "diagnosis", "seen", "expected", "cause")
     lines = [
         " | ".join(str(outcome[key]) for key in keys) + f" | {place_of(outcome)}"
@@ -156,7 +156,7 @@ def place_of(outcome: dict[str, Any]) -> str:
 
 
 def check_clocks_agree(case: Case, gradings: Gradings) -> None:
-    """Simulated time and wall time say the same, word by word where that can be."""
+    """Check that simulated time and wall time give the same statuses, points, diagnoses and causes."""
     keys = ("status", "points", "diagnosis", "cause")
     auto, wall = (
         {id_: tuple(outcome[key] for key in keys) for id_, outcome in gradings.of(case, clock).outcomes().items()}

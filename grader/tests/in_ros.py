@@ -1,7 +1,7 @@
-"""Run a function of a test in a process of its own that has ROS 2: the tests' own process has none.
+"""Run a function of a test in a process with ROS 2. The tests' own process has no ROS 2.
 
-The function is named, since the tests' own process cannot import what it imports. It gets JSON and returns JSON; what
-it raises fails the test.
+The function is passed by name, since the tests' own process cannot import its module. It receives and returns JSON. If
+it raises an exception, the test fails.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _RESULT = "RESULT: "
 
 @dataclass(frozen=True)
 class Ran:
-    """What the function returned, and what the process wrote to standard error."""
+    """The result of the function, and what the process wrote to standard error."""
 
     result: Any
     stderr: str
@@ -33,17 +33,17 @@ class Ran:
 
 @dataclass(frozen=True)
 class InRos:
-    """Starts processes that have ROS 2, each in a domain of its own."""
+    """Starts processes with ROS 2, each in its own domain."""
 
     ros: installation.Ros
     home: Path
 
     def environment(self) -> dict[str, str]:
-        """The environment of one process; processes in other domains do not receive its messages."""
+        """The environment of one process. Processes in other domains do not receive its messages."""
         return installation.environment(self.ros, home=self.home, domain=own_domain())
 
     def run(self, name: str, *arguments: object) -> Ran:
-        """Call a function, named as in "turtlesim.scenarios:graph" from grader.tests, in a process of its own."""
+        """Call a function of grader.tests, named as in "turtlesim.scenarios:graph", in a process of its own."""
         code = "import sys; from grader.tests import in_ros; in_ros.call(*sys.argv[1:])"
         done = subprocess.run(
             [self.ros.python, "-c", code, name, json.dumps(arguments)],
@@ -60,7 +60,7 @@ class InRos:
 
 
 def call(name: str, arguments: str) -> None:
-    """What runs inside."""
+    """Run in the process with ROS 2."""
     module, function = name.split(":")
     result = getattr(importlib.import_module(f"grader.tests.{module}"), function)(*json.loads(arguments))
     print(_RESULT + json.dumps(result))

@@ -1,4 +1,4 @@
-"""Thermometer and heater in one process: the small system whose graph step 05 shows. Runs until it is stopped."""
+"""Thermometer and heater in one process: the small system whose graph step 05 shows. It runs until it is stopped."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from std_msgs.msg import Bool, Float64
 
 
 def main() -> None:
-    """Start both nodes, say so in one line, and wait."""
+    """Start both nodes, print one line when they run, and wait."""
     rclpy.init()
     thermometer, heater = Node("thermometer"), Node("heater")
     thermometer.create_publisher(Float64, "/kitchen/temperature", 5)

@@ -9,7 +9,7 @@ import pytest
 
 
 def give_up(program: str, package: str) -> NoReturn:
-    """Skip the test with the reason; under CI, where the set-up installs the program, fail it."""
+    """Skip the test with the reason. In CI, where the set-up installs the program, the test fails."""
     reason = f"there is no {program}: apt-get install {package}"
     if os.environ.get("CI") == "true":
         pytest.fail(f"this cannot be tested, since {reason}")

@@ -1,4 +1,4 @@
-"""Gradings without ROS 2, for tests whose builds and trials are made up."""
+"""Gradings without ROS 2, for tests with invented builds and trials."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ NO_ROS = Ros("wheels", "0", Path("/"), (), Path("python3"), (), ())
 
 
 def hide_ros(cache: Path) -> None:
-    """As `without_ros`, for the rest of this process."""
+    """The same as `without_ros`, until this process ends."""
     os.environ["XDG_CACHE_HOME"] = str(cache)
     vars(grade)["find_ros"] = lambda: NO_ROS
     vars(underlay)["ensure"] = lambda *_: None
 
 
 def without_ros(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Do not look for a ROS 2, and do not wait for other gradings on this machine."""
+    """Do not search for a ROS 2, and do not wait for other gradings on this machine."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(cache))
     monkeypatch.setattr(grade, "find_ros", lambda: NO_ROS)
     monkeypatch.setattr(underlay, "ensure", lambda *_: None)

@@ -1,11 +1,10 @@
-"""A host that is looked at before and after: a namespace with its own /tmp, home, shared memory, processes and network.
+"""A host that is examined before and after a command: a namespace with its own /tmp, home, processes and network.
 
-What a submission leaves behind shows here and nowhere else, so an attack can also be run undefended: then bubblewrap
-and prlimit are replaced by programs that do nothing, usage.py sees nothing, and the real command finds that it has no
-sandbox.
+Everything that a submission leaves behind stays in this host. So an attack can also be run without defence: programs
+that do nothing replace bubblewrap and prlimit, usage.py sees nothing, and the command finds no sandbox.
 
-Run as a script, this file is what is inside: it offers what an attacker would like to reach (services, secrets), runs
-the command, and tells what is left.
+This file also runs inside the host, as a script. There it offers what an attacker would like to reach (services,
+secrets), runs the command, and reports what is left.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).parent.parent.parent
 SECRET = "what-only-the-caller-knows"
 USER = 65531
-"""An ordinary user, where root runs the tests."""
+"""An ordinary user, for tests that root runs."""
 HANG_S = 400.0
 SETTLE_S = 0.5
 """How long to wait for processes that outlive the grading (s)."""
@@ -38,20 +37,20 @@ SETTLE_S = 0.5
 
 @dataclass(frozen=True)
 class Left:
-    """What one command left: `exit_code` is None where even the observer inside was ended."""
+    """What one command left. `exit_code` is None if the attack ended even the observer inside."""
 
     exit_code: int | None
     stdout: str
     stderr: str
     files: frozenset[str]
-    """Below /tmp, /home and /dev/shm, but for the work folder."""
+    """Files below /tmp, /home and /dev/shm, without the work folder."""
     processes: tuple[str, ...]
     sockets: tuple[str, ...]
     seconds: float
 
 
 class Host:
-    """A host with a scratch folder; /tmp/work in it is the folder `work` outside."""
+    """A host with a scratch folder. Its /tmp/work is the folder `work` outside."""
 
     def __init__(self, scratch: Path, interfaces: Path | None, *, as_user: bool = False) -> None:
         self._scratch = scratch
@@ -61,7 +60,7 @@ class Host:
         self.work = scratch / "tmp/work"
         for path in _ours():
             if path.is_relative_to("/tmp"):
-                # Where it will be mounted; not to be taken for something left behind.
+                # The work folder is mounted here, so the attack did not leave it behind.
                 (scratch / path.relative_to("/")).mkdir(parents=True)
         (scratch / "caller/.secret").write_text(SECRET)
         (scratch / "other/student/submission.txt").write_text(SECRET)
@@ -73,10 +72,10 @@ class Host:
         _program(scratch / "shims/prlimit", 'while [ "$1" != "--" ]; do shift; done; shift; exec "$@"')
 
     def run(self, command: list[str], *, defended: bool = True) -> Left:
-        """Run a command to its end."""
+        """Run a command until it ends."""
         if self._as_user:
             subprocess.run(["chown", "-R", f"{USER}:{USER}", str(self._scratch)], check=True)
-        # Not above: what runs inside has no ROS 2 to find.
+        # This is not imported above, because there is no ROS 2 inside.
         from grader.tests.both_worlds import SOURCED_ENV
 
         before = self._files()
@@ -117,7 +116,7 @@ class Host:
         if ordinary:
             command += ["--unshare-user"]
         elif not defended:
-            # Nothing undefended as root, not even here.
+            # Nothing runs undefended as root, not even in this host.
             command += ["--unshare-user", "--uid", str(USER), "--gid", str(USER)]
         command += ["--dev-bind", "/", "/", "--remount-ro", "/", "--tmpfs", "/home", "--tmpfs", "/run"]
         for inside, outside in {
@@ -156,7 +155,7 @@ class Host:
 
 
 def _ours() -> list[Path]:
-    """Where the grader and its interpreter lie."""
+    """Return the folders of the grader and its interpreter."""
     found = [ROOT, Path(sys.prefix), Path(sys.base_prefix)]
     return [
         path
@@ -174,7 +173,7 @@ def _program(path: Path, body: str) -> None:
 
 
 def inside(command: list[str]) -> None:
-    """Offer services, run the command, tell what is left."""
+    """Offer services, run the command, and report what is left."""
     if os.geteuid() == 0:
         subprocess.run(["mount", "-t", "proc", "proc", "/proc"], check=True)
     with _services():
@@ -193,7 +192,7 @@ def inside(command: list[str]) -> None:
 
 @contextlib.contextmanager
 def _services() -> Iterator[None]:
-    """A name server and a web server, of sorts, and two sockets by name: all say the secret to whoever asks."""
+    """A simple name server, a web server and two named sockets. All of them tell the secret to every client."""
     datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     datagrams.bind(("127.0.0.1", 5353))
     threading.Thread(target=_answer_datagrams, args=(datagrams,), daemon=True).start()
@@ -235,7 +234,7 @@ def _processes() -> list[tuple[int, str]]:
 
 
 def _listening() -> set[str]:
-    """Sockets that wait for others, by inode."""
+    """Return the listening sockets, by inode."""
     found = set()
     for name, state in (("tcp", "0A"), ("udp", "07")):
         for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]:

@@ -1,4 +1,4 @@
-"""Programs that write down how they were called, in place of ones that would change this machine."""
+"""Programs that only write down their calls, instead of those that would change this machine."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StandIns:
-    """A folder for PATH. Each call is a line of the file `calls`: the program's name and its arguments."""
+    """A folder for PATH. Each line of the file `calls` is one call: the program's name and its arguments."""
 
     folder: Path
 
     @property
     def path(self) -> str:
-        """A PATH with only the stand-ins and the programs that their scripts need."""
+        """Return a PATH with only the stand-ins and the programs that their scripts need."""
         return str(self.folder)
 
     def add(self, name: str, then: str = "") -> None:
-        """Add a program; `then` is what it does next, lines of a shell with the real programs on PATH."""
+        """Add a program. `then` are lines of shell code that it runs, with the real programs on PATH."""
         self.folder.mkdir(parents=True, exist_ok=True)
         program = self.folder / name
         note = f'echo "{name} $*" >> "{self.folder}/calls"'
@@ -29,6 +29,6 @@ class StandIns:
         program.chmod(0o755)
 
     def calls(self) -> list[str]:
-        """All calls so far."""
+        """Return all calls so far."""
         file = self.folder / "calls"
         return file.read_text("utf-8").splitlines() if file.exists() else []

@@ -1,8 +1,8 @@
-"""Each diagnosis has a case in which it is true, and a right package close to that case which keeps it away.
+"""Each diagnosis has a case in which it is true, and a correct package that is close to the case and must not get it.
 
-A case is laid over a right package by few edits. So a diagnosis that ignored the mistake, and was printed for whatever
-looks like the case, would be printed for the right package, too. Those packages pass: the solutions in `test_course`,
-the packages in bases/ as cases of `unusual/`.
+A case is a correct package with a few edits. If a diagnosis ignored the mistake itself and appeared for everything
+that looks like the case, the correct package would get it, too. But the correct packages pass: `test_course` tests the
+solutions, and `unusual/` has cases for the packages in bases/.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from grader.tests.case import BASES, CASES, Case, make_submission, read_cases
 from grader.tests.catalogue import cases
 
 MOST_LINES = 13
-"""A right package is close to a case if at most so many lines were removed and added."""
+"""A correct package is close to a case if at most this many lines were removed and added."""
 FAR = {
     "answers-empty": "every line of the answers is missing",
     "empty-file": "every line of the file is missing",
@@ -26,7 +26,7 @@ FAR = {
     "spin-once": "whether the first event is the timer depends on the machine; the case was written for both",
     "timer-in-callback": "thousands of timers slow a machine down; the case has a limit of its own",
 }
-"""Diagnosis -> why no right package is close to a case of it."""
+"""Diagnosis -> why no correct package is close to one of its cases."""
 
 
 def test_a_right_package_is_close_to_a_case_of_each_diagnosis() -> None:
@@ -43,7 +43,7 @@ def test_the_packages_that_cases_are_laid_over_are_right() -> None:
 
 @cache
 def closest() -> dict[str, int]:
-    """Diagnosis -> the number of lines by which the closest case of it differs from a right package."""
+    """Return diagnosis -> the number of lines by which its closest case differs from a correct package."""
     found: dict[str, int] = {}
     bases: dict[str, dict[str, list[str]]] = {}
     with TemporaryDirectory() as name:
@@ -59,14 +59,14 @@ def closest() -> dict[str, int]:
 
 
 def contents(case: Case, folder: Path) -> dict[str, list[str]]:
-    """The lines of each file of what is handed in."""
+    """Return the lines of each file of the submission."""
     make_submission(case, folder)
     files = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
     return {path.relative_to(folder).as_posix(): path.read_bytes().decode("latin-1").splitlines() for path in files}
 
 
 def distance(right: dict[str, list[str]], wrong: dict[str, list[str]]) -> int:
-    """The number of removed and added lines; a file that is there in one of them alone counts as one."""
+    """Return the number of removed and added lines. A file that only one of them has counts as one."""
     lines = len(right.keys() ^ wrong.keys())
     for path in right.keys() & wrong.keys():
         if right[path] != wrong[path]:

@@ -26,12 +26,12 @@ PACKAGE = ROOT / "solutions" / STEP / "my_robot_controller"
 SUBMISSIONS = ("cases", "hostile", "mistakes", "unusual")
 STEPS = [name for name in catalogue() if find_exercise(name).package]
 BROKEN = "exercises", "04-package-files"
-"""The learner repairs this package, which colcon cannot read at first."""
+"""The learner repairs this package, which colcon cannot read before."""
 PACKAGES = [pair for pair in itertools.product(("exercises", "solutions"), STEPS) if pair != BROKEN]
 
 
 def colcon_list(folder: Path) -> list[str]:
-    """The folders of the packages that colcon finds from `folder`; a message of colcon's fails the test."""
+    """Return the folders of the packages that colcon finds from `folder`. A message of colcon fails the test."""
     done = subprocess.run(
         [COLCON, "--log-base", "/dev/null", "list", "--paths-only"],
         cwd=folder,
@@ -45,7 +45,7 @@ def colcon_list(folder: Path) -> list[str]:
 
 
 def marker_maker(folder: Path) -> Path:
-    """A submission in `folder`, and the file that is there once somebody has run its setup.py."""
+    """Return a submission in `folder`, and a file that exists as soon as its setup.py has run."""
     shutil.copytree(PACKAGE, folder / "my_robot_controller", dirs_exist_ok=True)
     trace = folder / "setup.py was run"
     setup = folder / "my_robot_controller/setup.py"
@@ -62,7 +62,7 @@ def tracked() -> list[PurePosixPath]:
 
 
 def test_no_package_of_a_test_can_be_found_by_colcon(tracked: list[PurePosixPath]) -> None:
-    """Said of the files, since a colcon that does find them runs setup.py's that attack the machine."""
+    """The files are checked, because colcon itself would run each setup.py that it finds. Some attack the machine."""
     packages = {path.parent for path in tracked if path.name in PACKAGE_FILES and path.is_relative_to("grader/tests")}
     assert len(packages) > 100
     above = {folder for package in packages for folder in package.parents if folder.is_relative_to("grader/tests")}
@@ -88,7 +88,7 @@ def test_nothing_that_is_copied_to_students_hides_their_package(tracked: list[Pu
 
 
 def test_a_workspace_that_holds_the_course_has_no_package_twice(tmp_path: Path) -> None:
-    """With the course cloned into src/, colcon builds the learner's own package and none of the course's."""
+    """If the course is cloned into src/, colcon builds the learner's own package and no package of the course."""
     shutil.copytree(PACKAGE, tmp_path / "src/my_robot_controller")
     hand_out(tmp_path / "src/course")
     assert colcon_list(tmp_path) == ["src/my_robot_controller"]

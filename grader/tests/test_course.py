@@ -1,4 +1,4 @@
-"""The course's own solutions: right under either clock and from any start, and judged again as they were."""
+"""The course's own solutions pass with both clocks and from any start, and their recordings are judged alike."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_a_solution_passes_from_any_start(step: str, seed: int) -> None:
 
 @pytest.mark.parametrize("step", ["02-discover-topics", pytest.param("07-challenges", marks=pytest.mark.exhaustive)])
 def test_a_recording_is_judged_again(step: str, tmp_path: Path) -> None:
-    """One step without a package, one with several trials."""
+    """One step has no package, and the other one has several trials."""
     first, again, kept = tmp_path / "first.json", tmp_path / "again.json", tmp_path / "kept"
     assert grader("check", f"solutions/{step}", "--json", first, "--recording", kept).returncode == 0
     done = grader("regrade", kept, "--json", again)

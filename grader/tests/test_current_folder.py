@@ -1,4 +1,4 @@
-"""Commands that are typed in a folder full of traps: nothing of it is loaded or run, and the marks are right."""
+"""Commands in a current folder full of traps: they load and run nothing from it, and the points are right."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no san
 
 
 class Folder:
-    """The current folder: a solution and a starting point among the traps, the results outside of it."""
+    """The current folder: a solution and a starting point among the traps. The results are outside of it."""
 
     def __init__(self, folder: Path) -> None:
         self.here, self.out = folder / "clone", folder / "out"
@@ -38,7 +38,7 @@ class Folder:
         copy_solution(STEP, self.here / "package")
         copy_solution(STEP, self.here / "class" / "anna")
         shutil.copytree(ROOT / "exercises" / STEP, self.here / "class" / "ben")
-        # As a shell has them after `export PYTHONPATH=$PYTHONPATH:...` with nothing in it before.
+        # The value after `export PYTHONPATH=$PYTHONPATH:...` if the variable was empty before.
         listed = {name: f":{os.environ.get(name, '')}:relative" for name in SEARCHED}
         places = {"PYTHONSTARTUP": "trap.py", "PYTHONUSERBASE": ".", "PYTHONPYCACHEPREFIX": "cache"}
         self.env = {
@@ -51,7 +51,7 @@ class Folder:
         }
 
     def run(self, *command: object, code: int = 0, cwd: Path | None = None, **env: str) -> str:
-        """Type a command here; what it said, after it has ended with this code and touched no trap."""
+        """Run a command in the folder. Check its exit code and that it touched no trap. Return its output."""
         done = subprocess.run(
             [*map(str, command)],
             cwd=cwd or self.here,
@@ -77,7 +77,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Folder]:
 
 
 def points(out: Path) -> dict[str, float]:
-    """Student -> points, of a graded class."""
+    """Return student -> points of a graded class."""
     return {student: float(report["points"]) for student, report in reports(out).items()}
 
 

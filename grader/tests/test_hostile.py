@@ -70,7 +70,7 @@ class Graded:
 
 
 class Runs:
-    """Run the attacks that this session needs, as many at once as there are processors."""
+    """Run the attacks that this session needs, one per processor at the same time."""
 
     def __init__(self, wanted: list[tuple[Attack, str]], folder: Path, pool: ThreadPoolExecutor) -> None:
         self._futures: dict[tuple[str, str], Future[Graded]] = {
@@ -138,7 +138,7 @@ def test_an_attack_is_stopped_for_an_ordinary_user(attack: Attack, runs: Runs) -
 
 def assert_held(attack: Attack, done: Graded) -> None:
     left = done.left
-    # A machine that others keep busy says so; what an attacker does must not make it say so.
+    # If others keep the machine busy, the report may say so. The attacker alone must not be able to cause it.
     if not (done.too_busy and os.getloadavg()[0] > 2.0 * (os.cpu_count() or 1)):
         assert left.exit_code in (0, 1), left.stdout + left.stderr
     assert (sorted(left.files), left.processes, left.sockets) == ([], (), ())

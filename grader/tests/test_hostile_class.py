@@ -1,4 +1,4 @@
-"""A class with attacks in it: the others get the reports that they get alone, and the command ends with 0."""
+"""A class with attacks: the other submissions get the same reports as without them, and the command ends with 0."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ HONEST = (
     "mistakes/329-one-hertz",
     "mistakes/332-clockwise",
 )
-"""What the honest students hand in: our solution, or a case."""
+"""The submissions of the honest students: our solution, or a case."""
 ATTACKS = read_attacks()
 SAMPLE = tuple(attack for attack in ATTACKS if attack.sample)[:4]
 EACH = CLASS - len(HONEST)
@@ -84,7 +84,7 @@ def test_a_class_with_some_attacks(tmp_path: Path) -> None:
 @pytest.mark.exhaustive
 @pytest.mark.parametrize("first", range(0, len(ATTACKS), EACH))
 def test_a_class_of_forty_with_every_attack(first: int, tmp_path: Path) -> None:
-    """The last of these classes is filled up with the first attacks."""
+    """The last of these classes also gets the first attacks, so that each class has forty submissions."""
     attacks = (*ATTACKS, *ATTACKS)[first : first + EACH]
     assert len(attacks) + len(HONEST) == CLASS
     assert_untouched(tmp_path, HONEST, attacks)

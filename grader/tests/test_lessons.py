@@ -1,4 +1,4 @@
-"""What the lessons show is true: commands are run, recorded answers are ROS 2's own, code works, pictures are there."""
+"""The lessons tell the truth: commands and code work, recorded answers are those of ROS 2, and pictures exist."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ENDS = re.compile(r"\n\[exit \d+\].*", re.DOTALL)
 
 
 def blocks_of(language: str, about: str) -> list[object]:
-    """The blocks of this kind in all lessons, each as a parameter named after its lesson."""
+    """Return the blocks of this kind in all lessons. Each is a parameter named after its lesson."""
     return [
         pytest.param(block, id=f"{lesson.parent.name}-{number}")
         for lesson in LESSONS
@@ -72,7 +72,7 @@ def test_every_block_says_what_it_is(lesson: Path) -> None:
 
 
 def home_of_a_reader(folder: Path) -> dict[str, str]:
-    """The variables of a home in which the course is where the lessons say."""
+    """Return the variables of a home folder in which the course is at the place that the lessons name."""
     (folder / "home/ros2-course").mkdir(parents=True)
     (folder / "home/ros2-course/.venv").symlink_to(sys.prefix)
     cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
@@ -81,7 +81,7 @@ def home_of_a_reader(folder: Path) -> dict[str, str]:
 
 @pytest.mark.parametrize("block", [*blocks_of("console", ""), *blocks_of("console", "solved")])
 def test_commands_print_what_the_lesson_shows(block: Block, tmp_path: Path, request: pytest.FixtureRequest) -> None:
-    """A reader has started the step in a workspace, and, where the lesson says so, solved it."""
+    """A reader has started the step in a workspace, and solved it where the lesson says so."""
     step = request.node.callspec.id.rpartition("-")[0]
     env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", **home_of_a_reader(tmp_path)}
     env.pop("XDG_STATE_HOME", None)
@@ -97,18 +97,18 @@ def test_commands_print_what_the_lesson_shows(block: Block, tmp_path: Path, requ
 def test_answers_of_ros2_are_those_that_were_recorded(block: Block) -> None:
     recorded = [path.read_text("utf-8") for path in sorted(GOLDEN.glob("*.txt"))]
     for step in block.steps():
-        # The same question may have been asked several times, in different situations.
+        # The same question may have been recorded several times, in different situations.
         answers = [ENDS.sub("", text).splitlines() for text in recorded if text.startswith(f"$ {step.command}\n")]
         assert [f"$ {step.command}", *step.printed] in answers
 
 
 def test_no_command_stands_outside_of_a_block(lesson: Path) -> None:
-    """It would be run by no test."""
+    """No test would run such a command."""
     assert re.findall(r"^ +\$ .*", lesson.read_text("utf-8"), re.MULTILINE) == []
 
 
 def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
-    """Build, run, Ctrl-C; another speed without another build; the graph of what runs."""
+    """Build, run and stop the node. Change the speed without another build. Show the graph."""
     shown = blocks((ROOT / "course/05-build-and-run/lesson.md").read_text("utf-8"))
     build = next(block for block in shown if block.language == "console")
     start, said = next((s.command, s.printed[0]) for b in shown if b.about == "running" for s in b.steps())
@@ -143,7 +143,7 @@ def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
 
 @pytest.fixture
 def kitchen(tmp_path: Path) -> Iterator[dict[str, str]]:
-    """Thermometer and heater run; the environment of a shell in which they can be asked about."""
+    """Thermometer and heater run. Yields the environment of a shell that can ask about them."""
     ros, domain = find_ros(), own_domain()
     with subprocess.Popen(
         [ros.python, Path(__file__).with_name("kitchen.py")],
@@ -166,7 +166,7 @@ def test_questions_about_the_kitchen_have_the_answers_shown(
 ) -> None:
     shell = replace(block, text=f"$ source <(grader env)\n{block.text}")
     answers = run(shell, tmp_path, kitchen, 120.0)
-    for _ in range(5):  # On a busy machine programs may find each other late; then ask again.
+    for _ in range(5):  # On a busy machine, programs may find each other late. Then the commands run again.
         if all(differs(step.printed, printed) is None for step, printed, _ in answers):
             break
         answers = run(shell, tmp_path, kitchen, 120.0)
@@ -176,7 +176,7 @@ def test_questions_about_the_kitchen_have_the_answers_shown(
 
 @pytest.mark.parametrize("block", blocks_of("python", "part"))
 def test_parts_of_files_are_in_the_step(block: Block) -> None:
-    """A part is quoted from the solution, which is where it would change."""
+    """A lesson quotes a part of the solution, so a change there must change the lesson."""
     assert any(block.text in path.read_text("utf-8") for path in (ROOT / "solutions").glob("*/**/*.py"))
 
 
@@ -205,7 +205,7 @@ def test_examples_of_files_can_be_read(block: Block) -> None:
 @pytest.mark.parametrize("block", blocks_of("python", ""))
 def test_the_thermometer_runs_on_the_real_rclpy(block: Block, tmp_path: Path) -> None:
     ros = find_ros()
-    # What `main` would do in the time of the example's timer.
+    # These calls replace `main`, which would not end.
     calls = (
         "rclpy.init()\nnode = ThermometerNode()\nnode.announce()\nprint(node.get_name(), node.timer.timer_period_ns)"
     )

@@ -1,4 +1,4 @@
-"""The right answers of step 02 come from a running simulator: another simulator, other right answers."""
+"""A running simulator gives the right answers of step 02: if the simulator differs, the answers differ."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SCENARIO = "[[trial]]\n"
 @pytest.fixture
 def judged(tmp_path: Path) -> Callable[[str, dict[str, str]], Report]:
     def judge(scenario: str, answers: dict[str, str]) -> Report:
-        """The report on the solution with some answers changed, in a scenario with these lines added."""
+        """Return the report on the solution with some answers changed, in a scenario with additional lines."""
         shutil.copytree(ROOT / "course" / STEP, tmp_path / STEP)
         file = tmp_path / STEP / "exercise.toml"
         file.write_text(file.read_text().replace(SCENARIO, SCENARIO + scenario))

@@ -1,4 +1,4 @@
-"""Every mistake in mistakes/ is called by its name, at its place, in words that a beginner understands."""
+"""Every mistake in mistakes/ gets its diagnosis, at its place, in words that a beginner understands."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ CASES = tuple(replace(case, sample=number % EVERY == 0) for number, case in enum
 JUDGED = [case for case in CASES if case.result != "usage"]
 MOST_WORDS = 60
 MOST_CASES = 12
-"""Cases about one diagnosis: a rule of Python is broken in more ways than a file can be missing."""
+"""The maximum number of cases about one diagnosis. There are more ways to break a rule than to lose a file."""
 LONG = 12
-"""Characters: a shorter line of a solution, such as `pass`, gives nothing away."""
+"""Characters. A shorter line of a solution, such as `pass`, gives nothing away."""
 NOWHERE = frozenset({"node-name", "no-answers", "no-numbers", "rejected-file"})
-"""What may be about no file at all."""
+"""These diagnoses may refer to no file."""
 
 
 @pytest.fixture(scope="module")
 def graded(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grade]:
-    """The grading of a case under a clock; all that this session asks for is graded side by side."""
+    """Return the function that grades a case with a clock. All gradings of this session run side by side."""
     folder, builds = tmp_path_factory.mktemp("mistakes"), Builds()
     futures: dict[tuple[str, str], Future[Graded]] = {}
     with ThreadPoolExecutor(AT_ONCE) as pool:
@@ -161,7 +161,7 @@ def text_of(outcome: dict[str, Any]) -> str:
 
 @cache
 def solution_lines() -> frozenset[str]:
-    """The lines that a student is to write, in all solutions."""
+    """Return the lines in all solutions that a student has to write."""
     found: set[str] = set()
     for path in sorted((ROOT / "solutions").rglob("*")):
         if path.is_file() and path.suffix in (".py", ".xml", ".toml", ".cfg"):

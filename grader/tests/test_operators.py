@@ -1,4 +1,4 @@
-"""The mistakes that the benchmark of causes makes: each can be made, and is the same for the same seed."""
+"""The mistakes of the benchmark of causes: each can be made, and the same seed makes the same mistake."""
 
 from __future__ import annotations
 

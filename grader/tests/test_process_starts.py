@@ -1,4 +1,4 @@
-"""Every place in the source that starts a process is known, and those that start a Python do so through one door."""
+"""Every place that starts a process is known, and every Python is started through interpreter()."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ OTHERS = {
     ("underlay", "_run"): "cmake and what the door made, in a folder of our own",
     ("watch", "_save_s"): "our command grader",
 }
-"""Functions that start something else than `NAME.argv`, where the door made NAME, and what that is."""
+"""Functions that do not start the `argv` of interpreter(), and what they start."""
 NAMED = {
     ("doctor", "look_at_node"): "shown",
     ("doctor", "look_at_python"): "shown",
@@ -75,7 +75,7 @@ NAMED = {
     ("underlay", "_build"): "cmake is told which, and starts it in a folder of our own",
     ("underlay", "_key_of_sources"): "part of a key",
 }
-"""Functions that name an interpreter outside of the argument `python` of the door, and what for."""
+"""Functions that name an interpreter elsewhere than in the argument `python` of interpreter(), and the reason."""
 
 
 def sources() -> Iterator[tuple[Path, ast.Module]]:
@@ -85,7 +85,7 @@ def sources() -> Iterator[tuple[Path, ast.Module]]:
 
 
 def in_functions(tree: ast.AST, function: str = "") -> Iterator[tuple[str, ast.AST]]:
-    """Every node, with the name of the function around it."""
+    """Yield every node with the name of the function around it."""
     for node in ast.iter_child_nodes(tree):
         inner = node.name if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) else function
         yield inner, node
@@ -93,7 +93,7 @@ def in_functions(tree: ast.AST, function: str = "") -> Iterator[tuple[str, ast.A
 
 
 def process_starts(tree: ast.Module) -> Iterator[tuple[str, ast.Call]]:
-    """Calls that start a process, whatever their module is imported as."""
+    """Yield the calls that start a process, whatever name their module has."""
     names: dict[str, str] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -109,7 +109,7 @@ def process_starts(tree: ast.Module) -> Iterator[tuple[str, ast.Call]]:
 
 
 def is_made_by_the_door(call: ast.Call, tree: ast.Module) -> bool:
-    """Whether the command is `NAME.argv`, where NAME is what the door returned."""
+    """Return whether the command is `NAME.argv`, where interpreter() returned NAME."""
     assigned = [node for node in ast.walk(tree) if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call)]
     made = {
         ast.unparse(node.targets[0])
@@ -144,12 +144,12 @@ def test_no_other_place_names_an_interpreter() -> None:
 
 
 def names_an_interpreter(node: ast.AST) -> bool:
-    """Whether it is `sys.executable` or the interpreter of a Ros."""
+    """Return whether it is `sys.executable` or the interpreter of a Ros."""
     return isinstance(node, ast.Attribute) and ast.unparse(node) in ("sys.executable", "here.python", "ros.python")
 
 
 def is_harmless(node: ast.AST, tree: ast.Module) -> bool:
-    """Whether it goes to the door, or into the description of a ROS 2, or is only where our own commands are."""
+    """Return whether it is passed to interpreter() or to a Ros, or only locates our own commands."""
     for outer in ast.walk(tree):
         if isinstance(outer, ast.Assign) and ast.unparse(outer.targets[0]) == "python" and node in ast.walk(outer):
             return True
@@ -172,7 +172,7 @@ def test_a_new_process_start_would_be_found(code: str) -> None:
 
 
 IN_THE_COURSES_FOLDER = {"-Es -m grader.setup.bootstrap", "-m pytest"}
-"""Where nothing is installed yet, and what is for developers: with the course as the current folder."""
+"""For machines without an installation, and for developers: the course is the current folder."""
 
 
 def test_scripts_and_workflows_start_python_isolated() -> None:

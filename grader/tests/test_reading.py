@@ -1,4 +1,4 @@
-"""Nothing of ours reads what a student wrote but in the process made for that: submission/reader.py."""
+"""Only one process of ours reads what a student wrote: the one of submission/reader.py."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ READS = {
     "read_payloads", "tarfile.open", "tokenize.tokenize", "tomllib.loads", "ast.parse", "json.loads", "json.load",
     "ET.fromstring", "yaml.safe_load", "pickle.load", "pickle.loads",
 }  # fmt: skip
-"""Functions that read what they are given, as the source calls them."""
+"""Functions that read their argument, with their names in the source."""
 NO_SUBMISSIONS = {"benchmarks", "exercise", "graph", "ros", "ros2", "setup", "turtlesim", "view"}
-"""Rooms that no submission comes into."""
+"""Rooms that never get a submission."""
 INSIDE = {"checks", "evidence", "submission"}
-"""Rooms in which the process reads that the door makes."""
+"""Rooms whose code runs in the reading process."""
 BEHIND_THE_DOOR = {
     ("budget", "_read"): "relay: a process of its own, with limits",
     ("clues", "wall_clues"): "judging",
@@ -45,7 +45,7 @@ BEHIND_THE_DOOR = {
     ("runner", "_described"): "runner",
     ("runner", "_entry_points"): "runner",
 }
-"""Other functions that read there, and the module that calls `read` for them."""
+"""Other functions that read a submission, and the module that calls `read` for them."""
 OURS = {
     ("archives", "_why"): "what unpack.py says",
     ("bridge", "main"): "an order of the relay",
@@ -72,11 +72,11 @@ OURS = {
     ("runner", "_pack"): "our own stream, written",
     ("workspace", "add_missing"): "a starting point",
 }
-"""Functions that read what is no student's, and what that is."""
+"""Functions that read something that is not a student's, and what it is."""
 
 
 def reading(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """The functions that read, and what they call for that."""
+    """Yield the functions that read, and what they call to do so."""
     for function, node in in_functions(tree):
         if isinstance(node, ast.Call):
             name = ast.unparse(node.func)

@@ -1,4 +1,4 @@
-"""The order of the rooms: which may import which, and no import in a circle; lazy and type-only ones count."""
+"""The order of the rooms: imports go in one direction and never in a circle. Lazy and type-only imports count."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A folder full of traps: whatever a program loads from the current folder leaves its name in a file outside."""
+"""A folder full of traps: if a program loads anything from its current folder, a file outside gets the name."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ CONFIGURATIONS = (
 
 
 class Traps:
-    """Fills `folder`; `touched` are the names of those that were loaded or run since."""
+    """Fills `folder` with traps. `touched` are the names of those that were loaded or run since then."""
 
     def __init__(self, folder: Path, marker: Path) -> None:
         self.folder, self._marker = folder, marker
@@ -78,7 +78,7 @@ class Traps:
 
 
 def _modules() -> set[str]:
-    """Every module that something of ours may import: Python's, those of all that is installed, and ours."""
+    """Return every module that our programs may import: Python's, our own, and those of all installed packages."""
     installed = {name.partition("/")[0].partition(".")[0] for name in metadata.packages_distributions()}
     known = {*sys.stdlib_module_names, *installed, "sitecustomize", "usercustomize", "trap", "turtlesim"}
     return {name for name in known if name.isidentifier()} - {"grader"}

@@ -1,4 +1,4 @@
-"""Wait for what a test has set going: for the event, with a deadline beyond which something hangs."""
+"""Wait for an event that a test has caused. If it does not come before a deadline, the test hangs and fails."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _POLL_S = 0.05
 
 
 def until(there: Callable[[], bool]) -> None:
-    """Wait for something to be seen."""
+    """Wait until the condition holds."""
     deadline = time.monotonic() + HANG_S
     while not there():
         assert time.monotonic() < deadline
@@ -23,7 +23,7 @@ def until(there: Callable[[], bool]) -> None:
 
 
 def until_gone(pid: int) -> None:
-    """Wait for the end of a process that is not a child of ours."""
+    """Wait until a process ends that is not our child."""
     try:
         descriptor = os.pidfd_open(pid)
     except ProcessLookupError:

@@ -26,7 +26,7 @@ else:
     import tomli as tomllib
 
 WITHOUT_UNIT = {"turns", "first", "nth", "goes_on", "red", "green", "blue", "at_least", "at_most", "value"}
-"""Parameters that are numbers without a unit, or with the unit of the parameter or field that they are about."""
+"""Parameters that are numbers and have no unit, or have the unit of the parameter or field that they refer to."""
 
 
 def sections() -> dict[str, str]:

@@ -46,7 +46,7 @@ def url(book: Path) -> Iterator[str]:
 
 @pytest.fixture
 def requests() -> list[str]:
-    """What the tab has requested and what it has complained about."""
+    """The URLs that the tab has requested, and the errors that it has reported."""
     return []
 
 

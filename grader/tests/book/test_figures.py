@@ -1,4 +1,4 @@
-"""The figures that a reader changes: they move like the simulator, and say in words what they show."""
+"""The figures that a reader can change: they move like the simulator, and they describe in words what they show."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The package of the tutorial, changed by hand, and the builds that go with it."""
+"""The tutorial's package with changes, and the builds of it."""
 
 from __future__ import annotations
 

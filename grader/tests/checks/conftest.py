@@ -1,4 +1,4 @@
-"""Hypothesis without deadlines: how busy the machine is must not decide a test."""
+"""Hypothesis without deadlines, so that a busy machine does not decide a test."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Crashes made by hand: a node's source, the line where it crashed, and Python's own words for that."""
+"""Invented crashes: a node's source, the line where it crashed, and Python's message."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from grader.checks.outcome import Finding
 
 CRASHED, LOOK = "# crashed", "# look"
-"""Comments in a source: the line of the exception; the line that the learner is to be led to, if it is another one."""
+"""Comments in a source that mark the line of the exception, and the line that the report must name if it differs."""
 
 DRIVER = """\
 from rclpy.node import Node
@@ -32,12 +32,12 @@ class Driver(Node):
 def outside():
     pass
 """
-"""A node with one line to fill in, which crashes."""
+"""A node that crashes, with one line to fill in."""
 
 
 @dataclass(frozen=True)
 class Reported:
-    """The report of a crash: the diagnosis, the line to look at, the cause in words."""
+    """The report of a crash: the diagnosis, the line to look at, and the cause in words."""
 
     diagnosis: str | None
     line: int | None
@@ -45,24 +45,24 @@ class Reported:
 
 
 def line_with(comment: str, source: str) -> int | None:
-    """The line (from 1) that ends with this comment."""
+    """Return the number of the line that ends with this comment, counted from 1."""
     lines = [number for number, line in enumerate(source.splitlines(), 1) if line.endswith(comment)]
     return lines[0] if lines else None
 
 
 def to_look_at(source: str) -> int | None:
-    """The line that is marked to be looked at, else the one that crashed."""
+    """Return the line that is marked to be looked at, or else the line that crashed."""
     return line_with(LOOK, source) or line_with(CRASHED, source)
 
 
 def reported(source: str, error: str, files: dict[str, str] | None = None) -> Reported:
-    """The report of a node with this source that ended with this error; `files` lie beside it."""
+    """Return the report of a node with this source that ended with this error. `files` lie beside it."""
     finding = _finding(source, error, files)
     return Reported(finding.diagnosis, None if finding.where is None else finding.where.line, finding.cause)
 
 
 def fixed(source: str, error: str) -> str | None:
-    """The source after the fix of the reported cause; None if there is none that fits."""
+    """Return the source after the fix of the reported cause, or None if there is no fix."""
     changed = applied({NODE_FILE: source.encode()}, _finding(source, error, None).fix)
     return None if changed is None or changed[NODE_FILE] == source.encode() else changed[NODE_FILE].decode()
 

@@ -1,4 +1,4 @@
-"""Evidence made by hand: recordings by the simulator's own motion, submissions from a few lines of text."""
+"""Invented evidence: recordings with the simulator's own motion, and submissions made of a few lines."""
 
 from __future__ import annotations
 
@@ -128,10 +128,10 @@ BUILD = Build(
 STOPPED = ProcessEnd(by="SIGINT", exit_code=0, t_s=DURATION_S, stop_s=0.1)
 
 TICK_S = 6 * FRAME_S
-"""A timer's period that is a whole number of frames: every part of a way lasts exactly as long as it was meant to."""
+"""A timer period that is a whole number of frames, so that each part of a path lasts exactly as long as intended."""
 
 Timed = tuple[float, float, float]
-"""A command: when it arrives (s), linear.x (m/s), angular.z (rad/s)."""
+"""A command: its arrival time (s), linear.x (m/s) and angular.z (rad/s)."""
 
 
 @cache
@@ -140,7 +140,7 @@ def exercise() -> Exercise:
 
 
 def submission(files: Mapping[str, str | bytes | None] | None = None, rejected: tuple[str, ...] = ()) -> Submission:
-    """The good package with these files put in place of its own; None takes one away."""
+    """Return the good package with these files in place of its own. None removes a file."""
     given = {**FILES, **(files or {})}
     data = {path: text.encode() if isinstance(text, str) else text for path, text in given.items() if text is not None}
     digest = hashlib.sha256(repr(sorted(data.items())).encode()).hexdigest()
@@ -148,7 +148,7 @@ def submission(files: Mapping[str, str | bytes | None] | None = None, rejected: 
 
 
 def node(*changes: tuple[str, str]) -> Submission:
-    """The good package with pieces of the node's text replaced."""
+    """Return the good package with parts of the node's source replaced."""
     text = NODE
     for old, new in changes:
         assert old in text, old
@@ -159,7 +159,7 @@ def node(*changes: tuple[str, str]) -> Submission:
 def every(
     period_s: float, linear: float, angular: float, until_s: float = DURATION_S, first_s: float | None = None
 ) -> list[Timed]:
-    """The same command again and again, first after one period; times on the grid of frames."""
+    """Return the same command, repeated with this period on the grid of frames. The first comes after one period."""
     first = period_s if first_s is None else first_s
     count = max(0, int((until_s - 1e-9 - first) / period_s) + 1)
     return [(round((first + k * period_s) / FRAME_S) * FRAME_S, linear, angular) for k in range(count)]
@@ -171,7 +171,7 @@ def as_command(timed: Timed) -> Command:
 
 
 class NoPaper:
-    """For a turtle whose trail does not matter."""
+    """Paper for a turtle whose trail does not matter."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         """Draw nothing."""
@@ -181,7 +181,7 @@ class NoPaper:
 
 
 def frames(commands: Iterable[Command], start: Pose, duration_s: float) -> Frames:
-    """The motion that the simulator computes from the commands, frame by frame."""
+    """Return the motion that the simulator computes from the commands, frame by frame."""
     turtle, paper = Turtle(Start(start.x, start.y, start.theta)), NoPaper()
     waiting = sorted(commands, key=lambda command: command.t_s)
     rows = []
@@ -198,7 +198,7 @@ def frames(commands: Iterable[Command], start: Pose, duration_s: float) -> Frame
 def graph(
     nodes: tuple[str, ...] = ("/draw_circle",), topic: str | None = TOPIC, type_: str = TWIST, t_s: float = 0.0
 ) -> Graph:
-    """The ROS graph with the simulator and these nodes, the first of which publishes on the topic."""
+    """Return the ROS graph with the simulator and these nodes. The first node publishes on the topic."""
     endpoints = [Endpoint("subscription", "/turtlesim", TOPIC, TWIST)]
     if topic is not None:
         endpoints.append(Endpoint("publisher", nodes[0], topic, type_))
@@ -206,7 +206,7 @@ def graph(
 
 
 def recording(commands: Iterable[Command | Timed], start: Pose | None = None, **changes: Any) -> Recording:  # noqa: ANN401
-    """A trial in which these commands arrived; `changes` are fields of Recording."""
+    """Return a trial in which these commands arrived. `changes` are fields of Recording."""
     begin = start or Pose(*Start())
     given = tuple(each if isinstance(each, Command) else as_command(each) for each in commands)
     made = Recording(
@@ -231,14 +231,14 @@ def recording(commands: Iterable[Command | Timed], start: Pose | None = None, **
 
 
 def legs(*parts: tuple[int, float, float], rest_s: float = DURATION_S) -> list[Timed]:
-    """Command after command, TICK_S apart: so many (ticks) of these speeds (m/s, rad/s), and zeros until `rest_s`."""
+    """Return commands TICK_S apart: each speed (m/s, rad/s) for a number of ticks, then zeros until `rest_s`."""
     speeds = [(linear, angular) for ticks, linear, angular in parts for _ in range(ticks)]
     speeds += [(0.0, 0.0)] * (int(rest_s / TICK_S) - 1 - len(speeds))
     return [((index + 1) * TICK_S, linear, angular) for index, (linear, angular) in enumerate(speeds)]
 
 
 def good() -> Recording:
-    """What the solution does."""
+    """Return the commands of the solution."""
     return recording(every(0.5, 2.0, 1.0))
 
 
@@ -254,12 +254,12 @@ def evidence(
 
 
 def finding(check: str, given: Evidence) -> Finding:
-    """The finding of the exercise's check with this id, without the other checks."""
+    """Return the finding of the exercise's check with this id. The other checks are not run."""
     spec = next(each for each in exercise().checks if each.id == check)
     alone = replace(given.exercise, checks=(replace(spec, needs=()),))
     return judge(replace(given, exercise=alone))[0].finding
 
 
 def found(kind: Kind[Any], given: Evidence, **values: Param) -> Finding:
-    """The finding of a check of this kind with these parameters and otherwise the defaults."""
+    """Return the finding of a check of this kind. Parameters that are not given have their defaults."""
     return kind.judge(given, {**kind.defaults(), **values})

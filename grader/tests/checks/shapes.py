@@ -1,4 +1,4 @@
-"""Runs that a learner's node might make, by name: what arrived, and so what the turtle did."""
+"""Runs of a learner's node, by name: the commands that arrived, and how the turtle moved."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def fields(linear: tuple[float, float, float], angular: tuple[float, float, floa
 
 
 def polygon(sides_s: float, turns_s: float, angle: float, speed: float) -> list[Timed]:
-    """At 2 Hz: ahead for some commands, turn on the spot for some commands."""
+    """At 2 Hz: some commands that drive straight on, then some that turn on the spot."""
     pattern = [(speed, 0.0)] * round(sides_s / 0.5) + [(0.0, angle / turns_s)] * round(turns_s / 0.5)
     return [(t_s, *pattern[index % len(pattern)]) for index, (t_s, _, _) in enumerate(every(0.5, 0.0, 0.0))]
 
@@ -49,7 +49,7 @@ def uneven() -> list[Timed]:
 
 
 def teleported(given: Recording, *, at_s: float = 5.0, name: str = "teleport_absolute") -> Recording:
-    """The same run, in which the turtle was put half a metre further to the left at some time."""
+    """The same run, but at some time the turtle is moved half a metre to the left."""
     frames = given.frames
     moved = replace(frames, x=frames.x - 0.5 * (frames.t_s > at_s))
     return replace(given, frames=moved, interventions=(name,))
@@ -112,4 +112,4 @@ SHAPES: dict[str, Callable[[], Recording]] = {
         [*map(as_command, every(0.5, 2.0, 1.0)), Command(10.1, 10.1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
     ),
 }
-"""Name -> how to make the recording."""
+"""Name -> a function that makes the recording."""

@@ -1,4 +1,4 @@
-"""Edits of a copy: where they apply, and what stays unchanged."""
+"""Edits of a copy: where they apply, and what they leave unchanged."""
 
 from __future__ import annotations
 

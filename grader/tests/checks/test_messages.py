@@ -1,4 +1,4 @@
-"""Every failure of the catalogue below, read as a beginner reads it."""
+"""Every failure of the catalogue below, checked for words that a beginner understands."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SOLUTION = (
     'create_publisher(Twist, "/turtle1/cmd_vel"',
     "publish(msg)",
 )
-"""Lines of the solution, which no message may contain."""
+"""Lines of the solution. No message may contain one of them."""
 
 
 def catalogue() -> dict[str, Outcome]:

@@ -1,4 +1,4 @@
-"""Reading source without running it: setup.py, constants, calls, tracebacks."""
+"""Source code that is read without running it: setup.py, constants, calls, tracebacks."""
 
 from __future__ import annotations
 

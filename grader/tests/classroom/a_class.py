@@ -18,7 +18,7 @@ from grader.tests.case import ROOT, copy_solution
 STEP = "03-circle-publisher"
 GRADER = str(Path(sys.executable).with_name("grader"))
 ACTS = "::error::owned ##[error]"
-"""The name of a folder that a CI could read as a command."""
+"""The name of a folder that a CI could take for a command."""
 POINTS = {
     "anna": 100.0,
     "ben": 100.0,

@@ -26,7 +26,7 @@ STEP = "03-circle-publisher"
 
 
 class Scripted:
-    """An engine that ends each student's submission as planned: one end per try, and the last one again and again."""
+    """An engine that ends each submission as planned: one planned end for each try. The last one is repeated."""
 
     def __init__(self, ends: dict[str, list[str]]) -> None:
         self.graded: Counter[str] = Counter()

@@ -122,7 +122,7 @@ def test_a_tar_bomb_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
     archive = tmp_path / "a.tar.gz"
     if kind == "files":
         tar(archive, *((member(f"f{number}"), MANY) for number in range(4)))
-    else:  # a name that tarfile reads completely, whatever its length
+    else:  # tarfile reads a name completely, however long it is
         info = member("long")
         info.pax_headers = {"path": "a" * 4 * len(MANY)}
         with tarfile.open(archive, "w:gz", format=tarfile.PAX_FORMAT) as packed:

@@ -1,4 +1,4 @@
-"""What a run does when workers die: real workers, killed by their submissions."""
+"""What a run does when its workers die. The workers are real, and the submissions kill them."""
 
 from __future__ import annotations
 

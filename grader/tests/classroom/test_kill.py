@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 Blow = Literal["grader", "worker", "disk"]
 LONGEST_S = 600.0
 NO_ROOM = 4096
-"""Bytes. Every report is larger."""
+"""Bytes. Every report is larger than this."""
 
 
 class Killer:
@@ -79,7 +79,7 @@ class Killer:
 
 
 def until(child: subprocess.Popen[bytes], observed: Callable[[], bool], seconds: float) -> None:
-    """Wait until a condition holds, the child has ended, or the time is over."""
+    """Wait until a condition holds, the child has ended, or the time is up."""
     end = time.monotonic() + seconds
     while child.poll() is None and time.monotonic() < end and not observed():
         time.sleep(0.01)
@@ -92,7 +92,7 @@ def has_workers(pid: int) -> bool:
 def workers_of(pid: int) -> list[int]:
     """Return the worker processes. For a moment the grader may have other children too."""
     found: list[int] = []
-    with suppress(OSError):  # it has ended
+    with suppress(OSError):  # the process has ended
         for task in Path(f"/proc/{pid}/task").iterdir():
             found += map(int, (task / "children").read_text().split())
     return [child for child in found if b"grader.classroom.worker" in command_line(child)]

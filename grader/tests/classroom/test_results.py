@@ -1,4 +1,4 @@
-"""Results on disk: one per submission, complete or not there at all."""
+"""Results on disk: one per submission, either complete or absent."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ SHOW = (
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The current folder, whose modules say that they were loaded; `other` holds one that prints what it finds."""
+    """The current folder: its modules report when they are loaded. `other` holds one that prints what it finds."""
     (tmp_path / "other" / "module_of_ours").mkdir(parents=True)
     (tmp_path / "other" / "module_of_ours" / "__init__.py").touch()
     (tmp_path / "other" / "module_of_ours" / "show.py").write_text(SHOW)

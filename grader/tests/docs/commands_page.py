@@ -33,12 +33,12 @@ NOT_USED = ("component", "daemon", "launch", "lifecycle", "multicast", "security
 
 
 def page() -> str:
-    """The text of the page."""
+    """Return the text of the page."""
     return "\n".join([HEAD, *grader_tables(), *ros2_table()]) + "\n"
 
 
 def grader_tables() -> list[str]:
-    """One table per panel of `grader --help`."""
+    """Return one table for each panel of `grader --help`."""
     group = typer.main.get_command(app)
     lines = []
     for panel in PANELS:
@@ -53,7 +53,7 @@ def grader_tables() -> list[str]:
 
 
 def ros2_table() -> list[str]:
-    """The verbs of `ros2`."""
+    """Return the verbs of `ros2`."""
     lines = ["## ros2", "", "| command | what it does |", "| --- | --- |"]
     for group, about in sorted(GROUPS.items()):
         if group in NOT_USED:

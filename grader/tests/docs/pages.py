@@ -1,4 +1,4 @@
-"""The pages of the documentation, and how their headings become anchors."""
+"""The pages of the documentation, and the anchors of their headings."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ _HEADING = re.compile(r"^#+ +(.*)$", re.MULTILINE)
 
 
 def text_of(page: str) -> str:
-    """The page's text."""
+    """Return the page's text."""
     return (ROOT / page).read_text("utf-8")
 
 
 def prose_of(page: str) -> str:
-    """The page's text without its fenced blocks."""
+    """Return the page's text without its fenced blocks."""
     return FENCE.sub("", text_of(page))
 
 
 def anchors_of(path: Path) -> set[str]:
-    """The anchors of the headings of a Markdown file, as GitHub and MyST make them."""
+    """Return the anchors of the headings of a Markdown file, as GitHub and MyST create them."""
     headings = _HEADING.findall(FENCE.sub("", path.read_text("utf-8")))
     return {re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-") for heading in headings}

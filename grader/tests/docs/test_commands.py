@@ -19,14 +19,14 @@ from grader.tests.docs.pages import BESIDE_THE_CODE, PAGES, ROOT, prose_of, text
 
 CONSOLE = {page: [block for block in blocks(text_of(page)) if block.language == "console"] for page in PAGES}
 SET_UP = re.compile(r"make \w+|source \.venv/bin/activate")
-"""The set-up has already run; running it from them would run them again."""
+"""The set-up has already run, so these commands are left out."""
 FAILS = re.compile(r"grader check exercises/\S+|grader check$")
-"""A starting point does not pass; every other command ends with 0."""
+"""A starting point does not pass. Every other command ends with exit code 0."""
 ELSEWHERE = {
     *("--security-opt", "--privileged", "--ros-args", "--params-file"),
-    # Of benchmarks.
+    # Options of the benchmarks.
     *("--again", "--keep"),
-    # Of the real `ros2 bag`: docs/ros2-differences.md says that ours does without them.
+    # Options of the real `ros2 bag`: docs/ros2-differences.md says that ours does not have them.
     *(f"--{name.replace('_', '-')}" for name in NOT_HERE),
     *("--clock-topics", "--publish-service-requests"),
 }
@@ -35,7 +35,7 @@ ELSEWHERE = {
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    """A copy of the repository in which the commands of the pages may leave files."""
+    """A copy of the repository. The commands of the pages may leave files in it."""
     for name in ("course", "exercises", "solutions"):
         shutil.copytree(ROOT / name, tmp_path / name)
     (tmp_path / "home").mkdir()
@@ -56,11 +56,11 @@ def test_commands_do_what_the_page_shows(page: str, number: int, checkout: Path)
     environment = {
         **os.environ,
         "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
-        # A reader's workspace and progress are not those of whoever runs the tests; what is built once is.
+        # A reader's workspace and progress are separate from those of the user. The cache is shared.
         "HOME": str(checkout / "home"),
         "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache"),
     }
-    for earlier in CONSOLE[page][:number]:  # a reader has done what stands above
+    for earlier in CONSOLE[page][:number]:  # a reader has already run the blocks above
         copies = [f"$ {step.command}" for step in earlier.steps() if step.command.startswith(("cp ", "mkdir "))]
         run(Block("console", "", "\n".join(copies)), checkout, environment, 60.0)
     for step, printed, exit_code in run(without_set_up(CONSOLE[page][number]), checkout, environment, 300.0):
@@ -110,5 +110,5 @@ def options_of(commands: dict[str, object]) -> set[str]:
 
 @pytest.mark.parametrize("page", PAGES)
 def test_no_command_with_a_prompt_stands_outside_of_a_block(page: str) -> None:
-    """It would be run by no test."""
+    """No test would run such a command."""
     assert re.findall(r"^ *\$ .*", prose_of(page), re.MULTILINE) == []

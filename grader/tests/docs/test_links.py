@@ -1,4 +1,4 @@
-"""No link of the documentation leads nowhere, no page is out of reach, and README is short."""
+"""Every link of the documentation leads somewhere, every page can be reached, and README is short."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The maps of README and docs/development.md show what the repository holds."""
+"""The maps in README and docs/development.md agree with the repository."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MAPS = ("README.md", "docs/development.md")
 
 
 def map_of(page: str) -> dict[str, int]:
-    """Path -> how deep it is indented, from the block below "Map of the repository"."""
+    """Return path -> depth of its indentation, from the block below "Map of the repository"."""
     text = text_of(page).split("## Map of the repository", 1)[1]
     paths: dict[str, int] = {}
     folder = ""

@@ -29,7 +29,7 @@ def build(source: Path, to: Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture
 def source(tmp_path: Path) -> Path:
-    """A copy of the files of the site, which may be changed."""
+    """A copy of the site's files that a test may change."""
     copy = tmp_path / "source"
     left_out = shutil.ignore_patterns("__pycache__", "bases", "cases", "golden", "hostile", "mistakes", "unusual")
     for name in ("docs", "course", "grader"):

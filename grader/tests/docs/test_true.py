@@ -27,10 +27,10 @@ KEYS = {
     "[[check]]": '[[check]]\nkind = "builds"\nwrong = 1\n',
     "[[hint]]": "[[hint]]\nwrong = 1\n",
 }
-"""Table -> a file with a wrong key in it: the message lists the right ones."""
+"""Table -> a file with an unknown key in it. The error message lists the valid keys."""
 
 TABLES = {"call", "drive", "parameters", "params_file", "set"}
-"""Keys that are tables of their own."""
+"""Keys that are tables themselves."""
 
 
 def row(words: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""The page of all commands is what the commands say, and the glossary has the words of the lessons."""
+"""The page of all commands agrees with their help, and the glossary has the words of the lessons."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from grader.tests.docs.pages import ROOT, text_of
 BOLD = re.compile(r"\*\*([^*]+)\*\*")
 PART_ONE = [name for name in catalogue() if name < "08"]
 NO_TERMS = re.compile(r"\d|=|^in (each|a) |^(one|comma|seconds|talk|waits|method)$|'s tools$|^every")
-"""Bold for another reason: a number of the task, or a word that must not be overlooked."""
+"""Words that are bold for another reason: a number of the task, or a word that must not be overlooked."""
 
 
 def terms() -> dict[str, str]:
-    """Word -> the step that explains it."""
+    """Return word -> the step that explains it."""
     rows = re.findall(r"^\| (.+?) \| .+ \| (\d\d) \|$", text_of("docs/glossary.md"), re.MULTILINE)
     return dict(rows)
 
 
 def stem(word: str) -> str:
-    """A word without the ending of its plural or its verb."""
+    """Return a word without its plural or verb ending."""
     return re.sub(r"(e?s|e?d|e)$", "", " ".join(word.lower().split()))
 
 
 def test_the_page_of_commands_is_made_from_their_help() -> None:
-    """If this fails: python -m grader.tests.docs.commands_page."""
+    """If this test fails, run: python -m grader.tests.docs.commands_page."""
     assert commands_page.PAGE.read_text("utf-8") == commands_page.page()
 
 

@@ -1,4 +1,4 @@
-"""The circle fit: pure numbers, so properties for any circle rather than examples."""
+"""The circle fit uses only numbers, so properties of any circle are tested, not examples."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 CENTRES = st.floats(-20.0, 20.0)
 RADII = st.floats(0.05, 20.0)
 ARCS = st.floats(0.5, 12.0)
-"""How far along the circle the points go (rad)."""
+"""How long the arc with the points is (rad)."""
 
 
 def arc(

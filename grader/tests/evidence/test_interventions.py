@@ -1,4 +1,4 @@
-"""What counts as moved by something other than commands: what happened, and not which service was called."""
+"""Which movements count as interventions: the movement decides, not the service that was called."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ RECORDING = Recording(
 
 
 def same(one: Recording, other: Recording) -> bool:
-    """Arrays and NaN do not compare by themselves."""
+    """Arrays and NaN need a comparison of their own."""
     return repr(to_json(one)) == repr(to_json(other))
 
 

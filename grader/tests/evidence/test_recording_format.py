@@ -1,4 +1,4 @@
-"""A graded submission as a folder: every trial comes back as it was."""
+"""A graded submission stored as a folder: every trial is read back without a change."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CHALLENGES = find_exercise("07-challenges")
 
 
 def some_trials() -> Evidence:
-    """Two trials that were run, one in which the node broke the simulator, and one that was not run."""
+    """Three trials: two were run, and in one of these the node broke the simulator. The third was not run."""
     runs = {
         "circle": Run(good()),
         "eight": Run(recording(every(0.1, 1.0, 1.0))),

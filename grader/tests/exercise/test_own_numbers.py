@@ -65,7 +65,7 @@ def test_any_id_survives_the_file(student: str) -> None:
     try:
         student.encode()
     except UnicodeEncodeError:
-        return  # (no file can hold it, nor can a terminal give it)
+        return  # (neither a file nor a terminal can contain it)
     numbers = draw_numbers(SPEC, student)
     assert from_toml(SPEC, to_toml(numbers).encode()) == numbers
 

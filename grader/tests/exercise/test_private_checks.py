@@ -1,4 +1,4 @@
-"""An instructor's private checks: laid over the course's, and hidden from students."""
+"""An instructor's private checks: they are merged with the course's checks and hidden from students."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def test_students_see_of_a_hidden_check_whether_it_passed_and_no_more(tmp_path: 
     assert done.returncode == 0, done.stderr
     report = reports(out)["anna"]
     found = {outcome["id"]: (outcome["status"], outcome["hidden"]) for outcome in report["outcomes"]}
-    # The instructor sees it all: the solution drives at 2 Hz, in a circle of 2 m.
+    # The instructor sees the failure and the solution's values: 2 Hz and a circle of 2 m.
     assert found["secret-radius"] == ("failed", True)
     assert found["rate"] == ("failed", True)
     assert found["open"] == ("passed", False)

@@ -1,4 +1,4 @@
-"""What happens to the node in a trial, as exercise.toml says it."""
+"""The scenario in exercise.toml: what happens to the node in a trial."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Run a command of ours while the system refuses one kind of call from a certain function on."""
+"""Run one of our commands while the system refuses one kind of call, from a certain function on."""
 
 from __future__ import annotations
 
@@ -63,14 +63,14 @@ LIMIT_S = 300
 
 @dataclass(frozen=True)
 class Fault:
-    """The `nth` call of this kind and those after it fail with an errno, from a function on ("module:name")."""
+    """The `nth` call of this kind and all later ones fail with an errno, from a function on ("module:name")."""
 
     call: str
     number: int
     nth: int
     since: str
     in_rooms: bool = False
-    """Whether the function is called by a conductor."""
+    """Return whether a conductor calls the function."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,8 @@ class Done:
 
 
 def environment(folder: Path, shim: Path, fault: Fault) -> dict[str, str]:
-    """The variables with which a command of ours meets the fault; `folder` holds what that takes."""
-    observed = folder / "seen"  # by rooms too
+    """Return the variables that make a command meet the fault. `folder` holds the files for it."""
+    observed = folder / "seen"  # the rooms see it, too
     observed.mkdir(exist_ok=True)
     (observed / "sitecustomize.py").write_text(ARMED)
     preloaded = shutil.copy(shim, observed)
@@ -101,7 +101,7 @@ def environment(folder: Path, shim: Path, fault: Fault) -> dict[str, str]:
 def run(
     command: Sequence[str], folder: Path, shim: Path, fault: Fault, settings: Mapping[str, str] | None = None
 ) -> Done:
-    """Run one of our commands, named without its folder."""
+    """Run one of our commands. Messages show its name without its folder."""
     program = str(Path(sys.prefix, "bin", command[0]))
     env = {**environment(folder, shim, fault), **(settings or {})}
     done = subprocess.run(
@@ -113,12 +113,12 @@ def run(
 
 
 def failures(folder: Path) -> int:
-    """How many calls failed so far."""
+    """Return how many calls have failed so far."""
     log = folder / "failures"
     return len(log.read_text("utf-8").splitlines()) if log.exists() else 0
 
 
 def no_traceback(done: Done) -> None:
-    """The output has no traceback and no fault of the grader."""
+    """Check that the output has no traceback and reports no fault of the grader."""
     for trace in (*TRACES, "GRADER_DEBUG=1"):
         assert trace not in done.said, done.said

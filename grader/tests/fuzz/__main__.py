@@ -17,7 +17,7 @@ SECONDS, MEBIBYTES = 20, 3072
 
 
 def main() -> None:
-    """Run it."""
+    """Run a target."""
     parser = argparse.ArgumentParser(prog="python -m grader.tests.fuzz")
     parser.add_argument("target", help="what to fuzz")
     parser.add_argument("--minutes", type=float, default=60.0)
@@ -30,8 +30,8 @@ def main() -> None:
     with atheris.instrument_imports(include=["grader", "catkin_pkg", "tomllib", "zipfile", "tarfile", "rosbags"]):
         from grader.submission import reader
 
-        # In this process: a child's paths through the code would not be seen. The limits are atheris's. Before the
-        # modules are imported that know it by its name.
+        # The target runs in this process: atheris does not see a child's paths, and sets the limits itself. This comes
+        # before the import of the modules that use the function by its name.
         reader.read = inline.read
         from grader.tests.fuzz.targets import TARGETS
         from grader.tests.no_ros import hide_ros

@@ -1,4 +1,4 @@
-"""Decisions drawn from bytes, so that other bytes lead to other decisions."""
+"""Decisions made from bytes: other bytes lead to other decisions."""
 
 from __future__ import annotations
 
@@ -11,30 +11,30 @@ T = TypeVar("T")
 
 
 class Choices:
-    """Takes decisions from the front of `data`; 0 and nothing when there is none left."""
+    """Takes decisions from the front of `data`. When no data are left, the decisions are 0 or empty."""
 
     def __init__(self, data: bytes) -> None:
         self._data = data
         self._at = 0
 
     def __bool__(self) -> bool:
-        """Whether there is something left."""
+        """Return whether any data are left."""
         return self._at < len(self._data)
 
     def take(self, most: int) -> bytes:
-        """The next bytes, at most so many."""
+        """Return the next bytes, at most this many."""
         taken = self._data[self._at : self._at + most]
         self._at += len(taken)
         return taken
 
     def below(self, end: int) -> int:
-        """A number from 0 to `end` - 1."""
+        """Return a number from 0 to `end` - 1."""
         return int.from_bytes(self.take(1 if end <= 256 else 2), "little") % end
 
     def one_of(self, values: Sequence[T]) -> T:
-        """One of the values."""
+        """Return one of the values."""
         return values[self.below(len(values))]
 
     def rest(self) -> bytes:
-        """All that is left."""
+        """Return all remaining bytes."""
         return self.take(len(self._data))

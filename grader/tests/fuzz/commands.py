@@ -1,4 +1,4 @@
-"""The commands of the grader with a submission whose code does not run: build and trials are made up."""
+"""The commands of the grader with a submission whose code does not run. Builds and trials are invented."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ if TYPE_CHECKING:
 STEP = "03-circle-publisher"
 KEY = Key("submission", "student", "exercise", "grader", "ros", "options")
 WRITTEN = 8
-"""One in so many reports is written in every form: that takes longer than to read a submission."""
+"""One in this many reports is written in every format, since that takes longer than reading a submission."""
 
 
 class Trials:
-    """Stands in for the class of trials: each of them sees this recording."""
+    """A replacement for the class of trials: each trial returns this recording."""
 
     def __init__(self, recording: Recording) -> None:
         self._recording = recording
@@ -55,10 +55,10 @@ class Trials:
         pass
 
     def await_ready(self) -> None:
-        """It is."""
+        """Do nothing: the trial is ready."""
 
     def run(self, *_: object) -> Recording:
-        """What it saw."""
+        """Return the recording."""
         return self._recording
 
     run_alone = run
@@ -72,7 +72,7 @@ def graded(
     clock: ClockChoice = "wall",
     unjudged: Collection[str] = (),
 ) -> Report:
-    """The report, some written in every form that there is; no check of it but those `unjudged` is an `error`."""
+    """Return the report. Some are written in every format. Only the checks `unjudged` may have the status `error`."""
     options = Options(in_cell=False, clock=clock, trials_at_once=1)
     trials = Trials(recording or good())
     done = grade(find_exercise(step), given, options, build=lambda *_, **__: Built(build, b""), trial=trials)
@@ -87,7 +87,7 @@ def graded(
 
 
 def write(student: str, report: Report, page: str) -> None:
-    """Write all that `grade` writes of it, and read it again."""
+    """Write everything that `grade` writes about the report, and read it again."""
     with tempfile.TemporaryDirectory() as folder:
         results = Results(Path(folder))
         result = results.save(student, report, KEY, page.encode("utf-8", "replace"))
@@ -98,7 +98,7 @@ def write(student: str, report: Report, page: str) -> None:
 
 
 def regraded(folder: Path) -> None:
-    """Run `regrade` with the recording in the folder, with all of its options."""
+    """Run `regrade` on the recording in the folder, with all of its options."""
     from typer.testing import CliRunner
 
     from grader.cli import app
@@ -110,13 +110,13 @@ def regraded(folder: Path) -> None:
 
 
 def graded_files(files: dict[str, bytes], step: str = STEP, **more: Any) -> Report:  # noqa: ANN401
-    """The report on our package with these files in it."""
+    """Return the report on our package with these files in it."""
     ours = submission()
     return graded(type(ours)("anna", ours.package_dir, {**ours.files, **files}, (), "0" * 64), step, **more)
 
 
 def graded_class(folder: Path) -> None:
-    """Every submission found in the folder is graded or refused."""
+    """Check that every submission found in the folder is graded or refused."""
     try:
         found = find_submissions([folder], STEP, folder / "grades")
         passed_over([folder], folder / "grades")

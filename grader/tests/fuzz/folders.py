@@ -1,4 +1,4 @@
-"""Folders and archives of odd names, kinds and modes."""
+"""Folders and archives with odd names, kinds and modes."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ NAMES = (
 )
 MODES = (0o755, 0o644, 0, 0o111, 0o444, 0o7777)
 MOST = 40
-"""Entries."""
+"""The number of entries."""
 
 
 def fill(folder: Path, choices: Choices) -> None:
-    """Put in it what is chosen: files, folders, links, pipes, with any names and modes."""
+    """Fill the folder with files, folders, links and pipes, with any names and modes."""
     at = [os.fsencode(folder)]
     for _ in range(MOST):
         if not choices:
@@ -36,7 +36,7 @@ def fill(folder: Path, choices: Choices) -> None:
         try:
             _make(place, choices, at)
         except OSError:
-            continue  # there already, too long, "." and the like
+            continue  # the name exists already, is too long, is "." or the like
 
 
 def _make(place: bytes, choices: Choices, folders: list[bytes]) -> None:
@@ -49,7 +49,7 @@ def _make(place: bytes, choices: Choices, folders: list[bytes]) -> None:
     elif kind == 4:
         os.mkfifo(place)
     elif os.path.lexists(place):
-        # ".." and links lead out of the folder, to /tmp and /etc: their modes are the machine's.
+        # ".." and links lead out of the folder, to /tmp and /etc. The machine decides about the modes there.
         if os.path.basename(place) not in (b".", b"..") and not os.path.islink(place):  # noqa: PTH114, PTH119
             os.chmod(place, choices.one_of(MODES))  # noqa: PTH101
     else:
@@ -59,7 +59,7 @@ def _make(place: bytes, choices: Choices, folders: list[bytes]) -> None:
 
 
 def archive(choices: Choices) -> bytes:
-    """A zip archive of odd members, with some of its bytes changed."""
+    """Return a zip archive with odd members and with some bytes changed."""
     packed = BytesIO()
     with zipfile.ZipFile(packed, "w") as file:
         for _ in range(choices.below(6)):

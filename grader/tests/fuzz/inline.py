@@ -1,4 +1,4 @@
-"""Read in this process instead of a child. It prints where an error that is not ours came from."""
+"""Read in this process instead of a child. Print where an error that is not ours came from."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 P = ParamSpec("P")
 T = TypeVar("T")
 ODD: set[str] = set()
-"""Where errors that are not ours came from."""
+"""The places where errors that are not ours came from."""
 
 
 class _Depth:
@@ -22,7 +22,7 @@ class _Depth:
 
 
 def read(function: Callable[P, T], *arguments: P.args, **keywords: P.kwargs) -> T:
-    """As `reader.read`."""
+    """The same as `reader.read`."""
     if _Depth.inside:
         return function(*arguments, **keywords)
     _Depth.inside = True

@@ -1,4 +1,4 @@
-"""The targets: for each reader of what students hand in a function of bytes, and bytes to begin with."""
+"""The targets: a function of bytes for each reader of what students hand in, and some bytes to start with."""
 
 from __future__ import annotations
 
@@ -40,21 +40,21 @@ ROOT = course_folder().parent
 
 @dataclasses.dataclass(frozen=True)
 class Target:
-    """`run` does what a command does with the bytes; it is through when it returns. `seeds`: bytes to vary."""
+    """`run` does with the bytes what a command does, and returns when it has finished. `seeds` are bytes to vary."""
 
     run: Callable[[bytes], object]
     seeds: Callable[[], Iterable[bytes]]
 
 
 def names(data: bytes) -> None:
-    """`grade` of a folder with anything in it."""
+    """Run `grade` on a folder with any content."""
     with tempfile.TemporaryDirectory() as folder:
         fill(Path(folder), Choices(data))
         graded_class(Path(folder))
 
 
 def archives(data: bytes) -> None:
-    """Unpacking: the first byte says whether the rest is an archive, or what it is made of."""
+    """Unpack: the first byte says whether the rest is an archive, or describes how to make one."""
     made = odd_archive(Choices(data[1:])) if data[:1] == b"z" else data[1:]
     said = io.StringIO()
     with tempfile.TemporaryDirectory() as folder, redirect_stdout(said):
@@ -65,28 +65,28 @@ def archives(data: bytes) -> None:
 
 
 def sources(data: bytes) -> None:
-    """`check` of a package with this node."""
+    """Run `check` on a package with this node."""
     graded_files({NODE_FILE: data}, clock="auto")
 
 
 def setup_py(data: bytes) -> None:
-    """`check` of a package with this setup.py."""
+    """Run `check` on a package with this setup.py."""
     graded_files({"setup.py": data})
 
 
 def package_xml(data: bytes) -> None:
-    """`check` of a package with this package.xml."""
+    """Run `check` on a package with this package.xml."""
     graded_files({"package.xml": data}, step="04-package-files")
 
 
 def answers(data: bytes) -> None:
-    """`check` of these answers."""
-    # The trial that is made up has none of the messages that one question is about.
+    """Run `check` on these answers."""
+    # The invented trial has none of the messages that one question is about.
     graded_files({"answers.toml": data}, step="02-discover-topics", unjudged=("pose-rate",))
 
 
 def install_tree(data: bytes) -> None:
-    """`check` of a package that built to this: a line of the build's log, and a tar stream."""
+    """Run `check` on a package with this result of its build: a line of the log, and a tar stream."""
     log, _, tree = data.partition(b"\n")
     done = Finished(0, tree, _READY + log.replace(b"\r", b"\n"), 1.0)
     try:
@@ -97,14 +97,14 @@ def install_tree(data: bytes) -> None:
 
 
 def output(data: bytes) -> None:
-    """`check` of a node that prints this."""
+    """Run `check` on a node that prints this."""
     text = data.decode("utf-8", "replace")
     recording = dataclasses.replace(good(), stderr=Output(text), stdout=Output(text))
     graded_files({}, recording=recording)
 
 
 def notebooks(data: bytes) -> None:
-    """`gradebook sync` of this notebook, with nothing else or a package beside it."""
+    """Run `gradebook sync` on this notebook, alone or with a package beside it."""
     if data[:1] == b"j":
         data = odd_json(next(iter(TARGETS["notebooks"].seeds())), Choices(data[1:]))
     with tempfile.TemporaryDirectory() as folder:
@@ -119,7 +119,7 @@ def notebooks(data: bytes) -> None:
 
 
 def recordings(data: bytes) -> None:
-    """`regrade` of a recording with one of its files changed: the first byte says which, the second how."""
+    """Run `regrade` on a recording with one file changed: the first byte says which file, the second one how."""
     files = _recording()
     changed = sorted(files)[data[0] % len(files)] if data else ""
     content = data[1:]
@@ -134,7 +134,7 @@ def recordings(data: bytes) -> None:
 
 
 def reports(data: bytes) -> None:
-    """`class-page` of this report beside a good one; of a good one with odd values, where the first byte says so."""
+    """Run `class-page` on this report and a good one. The first byte may select a good report with odd values."""
     data = odd_json(_report(), Choices(data[1:])) if data[:1] == b"j" else data
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "anna.json").write_bytes(data)

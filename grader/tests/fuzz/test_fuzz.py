@@ -1,4 +1,4 @@
-"""Some of what atheris would try, the same every time: through the real door, with its process and its limits."""
+"""Some of what atheris would try, the same each time, through the real child process with its limits."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MOST = 4000
-"""Bytes of an input that is made up; changed ones are as long as what was changed."""
+"""The length of an invented input (bytes). A changed seed keeps about its length."""
 
 
 @pytest.fixture(autouse=True)
@@ -24,7 +24,7 @@ def no_ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def changed(seed: bytes) -> st.SearchStrategy[bytes]:
-    """The seed with some bytes in its middle replaced, cut out or doubled."""
+    """Return the seed with some bytes in its middle replaced, removed or doubled."""
 
     def change(start: int, length: int, new: bytes) -> bytes:
         return seed[:start] + new + seed[start + length :]

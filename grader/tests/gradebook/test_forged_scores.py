@@ -38,7 +38,7 @@ def check(step):
 """
 """Points that autograde believes, because each is at most what its cell is worth."""
 ANOTHERS = "homework"
-"""An assignment in the same gradebook that is not an exercise of this course."""
+"""An assignment in the same gradebook that does not belong to this course."""
 
 
 def forge(folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""nbgrader on folders and notebooks that attack it: it reads no more than what passed, and the others are graded."""
+"""nbgrader with folders and notebooks that attack it: it reads only what was accepted, and the others are graded."""
 
 from __future__ import annotations
 
@@ -177,7 +177,7 @@ def hand_in(term: Term, student: str, change: Callable[[Path, Path], object], se
 
 
 TITLE = "\x1b]0;a title of a student\x07"
-"""A name that changes the title of the terminal that prints it."""
+"""A name that changes the title of a terminal that prints it."""
 MARKDOWN = "<script>steal()</script> [a](javascript:steal()) <div onclick=steal()>x</div> <style>*{color:red}</style>"
 
 

@@ -1,4 +1,4 @@
-"""Kernels that attack nbgrader are ended with a reason. nbgrader stays small, and the notebook can be written."""
+"""Kernels that attack nbgrader are stopped with a reason. nbgrader stays small, and the notebook can be written."""
 
 from __future__ import annotations
 

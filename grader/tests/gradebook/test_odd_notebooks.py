@@ -30,7 +30,7 @@ ODD = {
 
 @dataclass(frozen=True)
 class Folders:
-    """As gradebook.folders.ClassFolders has them."""
+    """The folders, named as in gradebook.folders.ClassFolders."""
 
     root: Path
 

@@ -1,4 +1,4 @@
-"""The pages of nbgrader show what a student wrote, and run no script of it in the browser of the grader."""
+"""The pages of nbgrader show what a student wrote, and the grader's browser runs no script in it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The relay: it passes on what comes through the pipe of a cell, and ends with the cell or with nbgrader."""
+"""The relay passes on what comes through the pipe of a cell. It ends when the cell or nbgrader ends."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""nbgrader's own commands with our notebooks: generate_assignment makes what we release, and validate accepts it."""
+"""nbgrader's own commands with our notebooks: generate_assignment and `grader release` agree, and validate works."""
 
 from __future__ import annotations
 

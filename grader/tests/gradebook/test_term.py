@@ -1,4 +1,4 @@
-"""A term with the real nbgrader and its real database: the exported CSV has exactly the scores that were earned."""
+"""A term with the real nbgrader and its database: the exported CSV has exactly the scores that the students earned."""
 
 from __future__ import annotations
 

@@ -27,11 +27,11 @@ SLEEPS = WallTimeNeeded("the node sleeps on wall time")
 
 @dataclass
 class Trials:
-    """Stands in for the class of trials: each of those in simulated time ends with the next doubt, if there is one."""
+    """A replacement for the class of trials: each trial in simulated time ends with the next doubt, if there is one."""
 
     doubts: list[WallTimeNeeded]
     clocks: list[str] = field(default_factory=list)
-    """The clocks of the trials that were run."""
+    """The clock of each trial that was run."""
 
     def __call__(self, plan: Plan, *_: object, in_cell: bool) -> Any:  # noqa: ANN401 - a Trial
         assert not in_cell

@@ -1,4 +1,4 @@
-"""Causes are proved by trying to fix them; the runs are made up."""
+"""Causes are proved by trying a fix. The runs are invented."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def right(id_: str) -> Outcome:
 def tries(
     source: str, judged: Callable[[str], Sequence[Outcome]], build_s: float = LONG_S
 ) -> tuple[Tries, dict[str, Outcome]]:
-    """What is tried of a source whose outcomes `judged` makes up; and the outcomes as they are told."""
+    """Return what is tried for a source, and the reported outcomes. `judged` invents the outcomes of a source."""
     evidence = Evidence(exercise(), submission({NODE_FILE: source}))
     outcomes = tuple(judged(source))
 
@@ -138,7 +138,7 @@ def test_a_wrong_topic_is_proved_by_a_run_in_the_cell(tmp_path: Path) -> None:
     options = Options(bubblewrap.usable(), clock="simulated", explain=True)
     graded = grade(exercise(), open_submission(make_submission(case, tmp_path / "in")), options)
     topic = next(outcome for outcome in graded.report.outcomes if outcome.id == "topic").finding
-    # Where the machine is so slow that there is no time for a try, that is told.
+    # The machine is so slow that there is no time for a try. The report must say so.
     assert topic.tried == PASSES or graded.evidence.tries.stopped == TOO_LONG
     assert "/turtle1/cmd_vel" not in topic.cause + topic.tried
 

@@ -1,4 +1,4 @@
-"""Whole gradings of the solution by the real command: judged again, on a broken machine, under load, many at once."""
+"""Gradings of the solution with the real command: regraded, on a broken machine, under load, and many at once."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def broken(tmp_path: Path, sitecustomize: str) -> subprocess.CompletedProcess[str]:
-    """Grade on a machine with a fault, which a sitecustomize of the grader's own process brings about."""
+    """Grade on a machine with a fault. A sitecustomize in the grader's own process causes it."""
     (tmp_path / "sitecustomize.py").write_text(sitecustomize)
     return grader("check", SOLUTION, "--json", tmp_path / "report.json", env={"PYTHONPATH": str(tmp_path)})
 

@@ -1,4 +1,4 @@
-"""An exercise's trials: begun beside its build, run side by side, and those by the wall's clock after the others."""
+"""The trials of an exercise start during its build and run side by side. Those in wall time run after the others."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ LONGEST = {"own_circle", "go_to_goal"}
 
 @dataclass
 class Trials:
-    """Stands in for the class of trials; of those that ran, `begun` are the nodes and `ended` the clocks, in order."""
+    """A replacement for the class of trials. `begun` are the nodes that ran and `ended` the clocks, in order."""
 
     open: int = 0
     begun: list[str] = field(default_factory=list)
@@ -73,7 +73,7 @@ class _Made:
         if executable in LONGEST:
             self.trials.both.wait(HANG_S)
         elif executable == "draw_square":
-            time.sleep(0.1)  # it is the last, unless somebody does not wait for it
+            time.sleep(0.1)  # it ends last, unless somebody does not wait for it
         self.trials.ended.append(self.clock)
         return replace(good(), clock=self.clock)
 
@@ -84,7 +84,7 @@ def nobody_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def graded(trials: Trials, at_once: int, build: Any, more: bytes = b"") -> Graded:  # noqa: ANN401
-    """The solution of step 07; its eight has `more` at the end."""
+    """Return the solution of step 07, with `more` at the end of its eight."""
     given = open_submission(ROOT / "solutions" / STEP)
     eight = f"{PACKAGE}/figure_eight.py"
     given = replace(given, files={**given.files, eight: given.files[eight] + more})
@@ -108,7 +108,7 @@ def test_all_are_begun_where_they_may_run_side_by_side(at_once: int, begun: int)
 
 
 def built_solution() -> Built:
-    """The build of the solution, without its files."""
+    """Return the build of the solution without its files."""
     scripts = (ROOT / "solutions" / STEP / PACKAGE / PACKAGE).glob("*.py")
     build = replace(
         BUILD,
@@ -142,7 +142,7 @@ def test_each_check_is_judged_once_when_its_stage_is_done(monkeypatch: pytest.Mo
 
         return replace(kind, check=check)
 
-    monkeypatch.setattr("grader.submission.reader._Child.inside", True)  # (a child could not count for us)
+    monkeypatch.setattr("grader.submission.reader._Child.inside", True)  # (a child could not increase our counter)
     monkeypatch.setattr("grader.checks.judge.KINDS", {name: counted(kind) for name, kind in KINDS.items()})
     graded(Trials(), 2, lambda *_, **__: built_solution())
     assert set(+judged) >= {("node_starts", f"{trial.id} NoParams()") for trial in find_exercise(STEP).trials}

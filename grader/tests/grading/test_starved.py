@@ -29,11 +29,11 @@ WRONG = recording(every(0.25, 2.0, 1.0), clock="wall")
 
 @dataclass
 class Trials:
-    """Stands in for the class of trials: each of them sees the next recording."""
+    """A replacement for the class of trials: each trial returns the next recording."""
 
     recordings: list[Recording]
     alone: list[bool] = field(default_factory=list)
-    """Of each trial that was made: whether it had the machine to itself."""
+    """For each trial that was made: whether no other grading could run at the same time."""
 
     def __call__(self, *_: object, in_cell: bool) -> Any:  # noqa: ANN401 - a Trial to whoever makes it
         assert not in_cell
@@ -54,7 +54,7 @@ class Trials:
 
 
 def _is_taken(lock: Path) -> bool:
-    """Whether no other process can share it."""
+    """Return whether no other process can share the lock."""
     with lock.open("ab") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -82,7 +82,7 @@ def statuses(of: Graded) -> set[Status]:
 
 
 def stalls(of: Graded) -> tuple[tuple[float, float], ...]:
-    """Those of the recording that counts."""
+    """Return the stalls of the recording that counts."""
     assert of.evidence.run.recording is not None
     return of.evidence.run.recording.stalls
 

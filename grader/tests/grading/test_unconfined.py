@@ -1,4 +1,4 @@
-"""Grading one's own work on a machine without bubblewrap."""
+"""Grading your own work on a machine without bubblewrap."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A submission that breaks the grader while it is read has failed; only the machine's own faults are errors."""
+"""A submission that breaks the grader while it is read has failed. Only the machine's own faults are errors."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_what_the_trial_has_observed_and_nobody_can_read_has_failed(error: Excep
 
 @pytest.mark.parametrize(
     "error",
-    # What is read has budgets: a MemoryError is the machine's, and an `error` that repeats is told as suspicious.
+    # Reading has limits, so a MemoryError is the machine's fault. An `error` that repeats is reported as suspicious.
     [MachineError("The disk is full."), OSError(errno.EMFILE, "Too many open files"), MemoryError()],
 )
 @pytest.mark.parametrize("where", ["build", "trial"])
@@ -121,11 +121,11 @@ def test_what_takes_its_reader_along_fails_every_check_and_nothing_more_is_read(
     assert (first.diagnosis, found.report.points, found.report.max) == ("unreadable", 0.0, 100.0)
     assert why in first.observed
     assert found.evidence.runs == {}
-    assert judge(found.evidence) == found.report.outcomes  # as `regrade` does, without reading it
+    assert judge(found.evidence) == found.report.outcomes  # like `regrade`, which does not read the submission
 
 
 def _in_a_child(how: Callable[..., NoReturn]) -> Callable[..., Any]:
-    """The same there; here the real one, which reads nothing of what could not be read."""
+    """The same for `regrade`. Here the judge is the real one, which does not read what could not be read."""
     return lambda *given: how() if reader._Child.inside else judge_so_far(*given)
 
 

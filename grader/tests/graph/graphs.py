@@ -1,4 +1,4 @@
-"""Graphs to draw: the tutorial's, and one with ten nodes."""
+"""Graphs to draw: the tutorial's graph, and one with ten nodes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def subscription(node: str, topic: str) -> Endpoint:
 
 
 def tutorial() -> Graph:
-    """draw_circle drives turtlesim, as `ros2 node info` tells both."""
+    """draw_circle drives turtlesim. The data are as `ros2 node info` shows them."""
     return Graph(
         t_s=1.0,
         nodes=("/turtlesim", "/draw_circle"),
@@ -37,7 +37,7 @@ def tutorial() -> Graph:
 
 
 def ten_nodes() -> Graph:
-    """A closed loop, two nodes of one name, one that talks to nobody, long names, a topic called like a node."""
+    """A closed loop, two nodes with one name, a node without connections, long names, a topic named like a node."""
     return Graph(
         t_s=1.0,
         nodes=(

@@ -1,4 +1,4 @@
-"""Pictures as Graphviz draws them: the text is read from the SVG and measured with the font that it names."""
+"""Pictures made by Graphviz: the text is read from the SVG and measured with the font that the SVG names."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def test_a_png_is_a_picture_of_the_same_shape() -> None:
     png = Image.open(io.BytesIO(render(drawn(tutorial()), "png")))
     svg = ET.fromstring(render(drawn(tutorial()), "svg"))
     width, height = (float(svg.get(side, "0").removesuffix("pt")) for side in ("width", "height"))
-    # 144 pixels an inch, 72 points an inch.
+    # 144 pixels per inch, 72 points per inch
     assert png.width == pytest.approx(2 * width, abs=4)
     assert png.height == pytest.approx(2 * height, abs=4)
 

@@ -21,7 +21,7 @@ GRADER = str(Path(sys.executable).with_name("grader"))
 LAST = list(catalogue())[-1]
 FIRST_TO_COPY = "03-circle-publisher"
 PATIENCE_S = 300
-"""The time for one verdict on a busy machine (s). A screen that takes longer hangs."""
+"""The time for one verdict on a busy machine (s). A command that takes longer hangs."""
 
 
 class Learner:
@@ -61,7 +61,7 @@ class Learner:
         mine = work_folder(exercise, self.home / "ros2_ws")
         for file in sorted((solution / exercise.package).rglob("*") if exercise.package else solution.rglob("*")):
             place = mine / file.relative_to(solution / exercise.package)
-            # The learner keeps their own numbers.
+            # The learner keeps their own numbers of this step.
             own = exercise.numbers
             if file.is_file() and not (own is not None and place.name == own.file):
                 place.parent.mkdir(parents=True, exist_ok=True)
@@ -84,7 +84,7 @@ OWN = {
     "pausable_circle.py": {"RADIUS = 1.2": "RADIUS = {radius_m}"},
     "tunable_circle.py": {"1.8,": "{radius_m},", "1.0,": "{speed_m_s},"},
 }
-"""Where our solutions hold own numbers: file -> text -> the same text for a learner."""
+"""Where our solutions contain own numbers: file -> string -> the string with a learner's numbers."""
 
 
 def with_numbers(text: str, name: str, own: OwnNumbers) -> str:

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[3]
 STEP = "03-circle-publisher"
 PATIENCE_S = 180.0
-"""Longer than anything in this module takes, unless it hangs (s)."""
+"""A wait that takes longer than this hangs (s)."""
 
 
 @pytest.fixture
@@ -117,7 +117,7 @@ def test_a_save_is_noticed_with_every_kind_of_editor(package: Path, how: str) ->
     events = Events(None)
     events.watch(package)
     heard = iter(events)
-    assert next(heard).kind == "saved"  # from now on no save is missed
+    assert next(heard).kind == "saved"  # from now on, every save is noticed
     saves[how]()
     assert next(heard).kind == "saved"
     events.close()
@@ -130,9 +130,9 @@ def test_watching_follows_the_path_when_another_folder_takes_it(package: Path) -
     assert next(happened).kind == "saved"
     kept = package.with_name("kept-aside")
     package.rename(kept)
-    assert next(happened).kind == "saved"  # it is gone
+    assert next(happened).kind == "saved"  # the file is gone
     shutil.copytree(kept, package.with_name("another")).rename(package)
-    assert next(happened).kind == "saved"  # another one is there
+    assert next(happened).kind == "saved"  # another file has its name
     node_of(package).write_text("x = 1\n")
     assert next(happened).kind == "saved"
     events.close()
@@ -209,7 +209,7 @@ def test_a_package_that_was_missing_for_a_while_is_graded_again(package: Path, m
 
 
 def test_the_first_of_several_trials_is_prepared_early(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The next grading begins with it."""
+    """The next grading starts with the latest save."""
     first, second = (Plan("simulated", Pose(1.0, 1.0, 0.0), None, duration_s) for duration_s in (12.0, 9.0))
     begun: list[Plan] = []
 

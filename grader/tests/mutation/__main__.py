@@ -1,4 +1,4 @@
-"""python -m grader.tests.mutation [FILE...]: what the cases do not notice, and how much that is."""
+"""python -m grader.tests.mutation [FILE...]: print the changes that the cases do not notice, and their share."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
 CHECKS = ROOT / "grader" / "checks"
 MAKES_DIAGNOSES = re.compile(r"\b(failed|Cause)\(|diagnosis")
 NOT_THESE = frozenset({"judge.py", "kind.py", "kinds.py"})
-"""They carry diagnoses from one place to another, and make none."""
+"""These modules pass diagnoses on and do not make any."""
 ALIKE_CASES, ALIKE_TESTS = 3, 12
-"""So many of those that run the same lines of a file are asked about its mutants; tests differ more than cases do."""
+"""How many of the tests that run the same lines are asked about a mutant. Tests differ more than cases do."""
 WORST = 0.10
-"""More survivors than this share fail the run."""
+"""If a larger share survives, the run fails."""
 
 
 def diagnosis_files() -> list[Path]:
-    """The files of the checks that make diagnoses."""
+    """Return the files of the checks that make diagnoses."""
     return [
         file
         for file in sorted(CHECKS.rglob("*.py"))
@@ -42,7 +42,7 @@ def diagnosis_files() -> list[Path]:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run it; the exit code is 1 where more than a tenth survives."""
+    """Run it. The exit code is 1 if more than a tenth survives."""
     requested = _arguments(argv)
     begun = time.monotonic()
     files = [path.resolve() for path in requested.files] or diagnosis_files()
@@ -70,9 +70,9 @@ def _unnoticed_by_cases(
 
 
 def _materials(*, make: bool) -> dict[str, judging.Material]:
-    """The cases by name, without those that do not get from their recording what they expect.
+    """Return the cases by name, without those whose recording does not give the expected report.
 
-    A recording of which that is so may have been made while the machine was busy: with `make`, it is made once more.
+    Such a recording may have been made while the machine was busy. With `make`, it is made once more.
     """
     recorded = recordings(all_cases(), _tell, make=make)
     good, stale = _judged(recorded)
@@ -87,7 +87,7 @@ def _materials(*, make: bool) -> dict[str, judging.Material]:
 
 
 def _judged(recorded: Sequence[Recorded]) -> tuple[dict[str, judging.Material], list[Recorded]]:
-    """Those that get what they expect, by name; and the others."""
+    """Return the cases that get the expected report, by name, and the others."""
     good = {each.name: each for each in judging.load(recorded) if not judging.fails(each)}
     judging.forget()
     return good, [each for each in recorded if each.name not in good]
@@ -104,7 +104,7 @@ def _unnoticed(
     notice: Callable[[Iterable[str]], bool],
     at_once: int,
 ) -> list[Mutant]:
-    """The mutants that no test notices. `alike` tests are tried of those that run the same lines."""
+    """Return the mutants that no test notices. Of the tests that run the same lines, `alike` are tried."""
 
     def job(mutant: Mutant) -> judging.Job:
         names = judging.requested(mutant, lines, alike)

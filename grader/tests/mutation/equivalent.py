@@ -1,4 +1,4 @@
-"""Mutants that are known to change nothing: equivalent.toml lists them, each with its reason."""
+"""Mutants that are known to have no effect: equivalent.toml lists them, each with its reason."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FILE = Path(__file__).with_name("equivalent.toml")
 
 @dataclass(frozen=True)
 class Known:
-    """Changes of a line: `code` is a part of the line, `change` a part of the change; `why` they change nothing."""
+    """Changes of a line. `code` is part of the line, `change` is part of the change, and `why` is the reason."""
 
     file: str
     code: str
@@ -31,7 +31,7 @@ class Known:
 
 
 def read(file: Path = FILE) -> tuple[Known, ...]:
-    """The list. Raises TypeError where an entry lacks something, or has a reason of no words."""
+    """Return the list. Raises TypeError if an entry is incomplete or has an empty reason."""
     table = tomllib.loads(file.read_text("utf-8")).get("mutant", [])
     known = tuple(Known(**entry) for entry in table)
     for each in known:
@@ -42,7 +42,7 @@ def read(file: Path = FILE) -> tuple[Known, ...]:
 
 
 def is_known(mutant: Mutant, known: Iterable[Known]) -> bool:
-    """Whether the mutant is on the list."""
+    """Return whether the mutant is on the list."""
     code = mutant.file.read_text("utf-8").splitlines()[mutant.line - 1 : mutant.end_line]
     return any(
         each.file == mutant.file.name and any(each.code in line for line in code) and each.change in mutant.change

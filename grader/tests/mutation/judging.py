@@ -1,7 +1,7 @@
-"""Judge recorded cases again, by the grader's checks as they are or with one file of them changed.
+"""Judge recorded cases again, with the grader's checks as they are or with one changed file.
 
-The checks are imported in a child of this process, after it was forked: so each mutant is the only one that its process
-ever knew, and whatever it does ends with it.
+The checks are imported in a child of this process, after the fork. So a process knows only one mutant, and all effects
+of the mutant end with the process.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ if TYPE_CHECKING:
     from grader.tests.mutation.recordings import Recorded
 
 Lines = dict[tuple["Path", int], set[str]]
-"""Who runs a line (from 1) of a file."""
+"""Who runs a line of a file. Lines are counted from 1."""
 
 PACKAGE = "grader.checks"
 SHARED = "grader.checks.outcome"
-"""What reports are made of, by everybody: no mutants are made of it, and its Status must stay the same object."""
+"""Everybody makes reports from this module. It has no mutants, and its Status must remain the same object."""
 SURVIVED, KILLED = 0, 1
 LIMIT_S = 60
-"""CPU time after which a mutant is one that never ends, which is noticed as well; a loaded machine changes nothing."""
+"""A mutant that uses more CPU time than this never ends, and so it is noticed. A busy machine makes no difference."""
 
 
 @dataclass(frozen=True)
 class Material:
-    """A case and what it is judged from; `observed` is Evidence of the checks that were imported first."""
+    """A case and its evidence. `observed` is Evidence of the checks that were imported first."""
 
     name: str
     case: Case
@@ -53,14 +53,14 @@ class Material:
 
 @dataclass(frozen=True)
 class Job:
-    """A mutant, and who may notice it: a function that is called where the mutant is installed."""
+    """A mutant and its possible witnesses. A witness is a function that is called with the mutant installed."""
 
     mutant: Mutant
     notices: Callable[[], bool]
 
 
 def load(recorded: Iterable[Recorded]) -> list[Material]:
-    """Read recordings; then forget the checks, so that whoever imports them next gets them fresh."""
+    """Read recordings. Then forget the checks, so that the next import loads them again."""
     from grader.checks.exercises import load_exercise
     from grader.evidence.recording_format import load as open_archive
 
@@ -68,7 +68,7 @@ def load(recorded: Iterable[Recorded]) -> list[Material]:
     for each in recorded:
         archived = open_archive(each.folder, load_exercise)
         loaded.append(Material(each.name, each.case, archived.evidence, archived.ros))
-    # What checks import late is imported here, once for all mutants.
+    # Checks import this late. It is imported here once for all mutants.
     import catkin_pkg.package  # type: ignore[import-untyped]  # noqa: F401
 
     forget()
@@ -82,10 +82,10 @@ def forget() -> None:
 
 
 def fails(material: Material) -> bool:
-    """Whether the case no longer gets the report that it expects, by the checks as they are imported now."""
+    """Return whether the case no longer gets its expected report from the checks that are imported now."""
     try:
         compare(material.case, _graded(material))
-    except Exception:  # (an AssertionError of the case, or whatever a mutant made break)
+    except Exception:  # (an AssertionError of the case, or any exception that a mutant causes)
         return True
     return False
 
@@ -111,7 +111,7 @@ def _graded(material: Material) -> Graded:
 
 
 def _anew(observed: Evidence) -> Evidence:
-    """The same, made of the classes as they are imported now, with nothing kept from an earlier judging."""
+    """Return the same evidence, made of the classes that are imported now, without anything cached."""
     from grader.evidence.evidence import Evidence as Anew
     from grader.evidence.evidence import Fault
 
@@ -121,7 +121,7 @@ def _anew(observed: Evidence) -> Evidence:
 
 
 def touched(materials: Iterable[Material], files: Collection[Path]) -> Lines:
-    """The names of the cases that run each line (from 1) of these files, as far as any does."""
+    """Return the names of the cases that run each line of these files. Lines are counted from 1."""
     from coverage import Coverage
 
     measured = Coverage(data_file=None, include=[str(file) for file in files], config_file=False)
@@ -135,7 +135,7 @@ def touched(materials: Iterable[Material], files: Collection[Path]) -> Lines:
 
 
 def lines_of(measured: Coverage, files: Iterable[Path]) -> Lines:
-    """Who ran which line, of what was measured with a context each."""
+    """Return which context ran which line, from a measurement with one context for each."""
     data = measured.get_data()
     return {
         (file, line): {name for name in names if name}
@@ -145,7 +145,7 @@ def lines_of(measured: Coverage, files: Iterable[Path]) -> Lines:
 
 
 def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
-    """Who runs the mutant's lines; of what is run when the file is imported, whoever runs anything of the file."""
+    """Return who runs the mutant's lines. If they run at import, everybody who runs a line of the file counts."""
     if mutant.at_import:
         return {name for (file, _), names in lines.items() if file == mutant.file for name in names}
     numbers = range(mutant.line, mutant.end_line + 1)
@@ -153,10 +153,10 @@ def who_runs(mutant: Mutant, lines: Lines) -> set[str]:
 
 
 def requested(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
-    """Of those who run the mutant's lines, at most so many that are alike: that run the same lines of its file.
+    """Return those who run the mutant's lines. Of those that run the same lines of the file, return only so many.
 
-    Hundreds of cases pass a check in the same way. So a mutant may seem to survive that one of the others would notice,
-    never the other way round.
+    Hundreds of cases pass a check in the same way. So a mutant may seem to survive although one of the others would
+    notice it. The opposite is not possible.
     """
     names = sorted(who_runs(mutant, lines))
     if mutant.at_import:
@@ -173,7 +173,7 @@ def requested(mutant: Mutant, lines: Lines, alike: int) -> list[str]:
 
 
 def install(mutant: Mutant) -> None:
-    """Import the changed file in place of the grader's own."""
+    """Import the changed file instead of the grader's own."""
     name = ".".join(mutant.file.relative_to(ROOT).with_suffix("").parts)
     spec = importlib.util.spec_from_loader(name, loader=None, origin=str(mutant.file))
     assert spec is not None
@@ -184,7 +184,7 @@ def install(mutant: Mutant) -> None:
 
 
 def in_children(jobs: Iterable[Job], at_once: int) -> Iterator[tuple[Mutant, bool]]:
-    """Run each job in a child that has installed its mutant; yields whether it was noticed, as they end."""
+    """Run each job in a child that has its mutant installed. Yield whether it was noticed, in order of the ends."""
     waiting = iter(jobs)
     running: dict[int, Mutant] = {}
     while True:

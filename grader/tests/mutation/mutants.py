@@ -1,8 +1,9 @@
-"""Mutants: one file of the grader, changed in one place; by the operators of mutmut and some of our own.
+"""Mutants: one file of the grader, changed in one place, by the operators of mutmut and some of our own.
 
-What decides is changed, and what is only said is not: no text, no choice between two texts, no number that is shown.
-Left alone are also declarations, the parameters of a kind of check with their defaults, the `strict` of zip, and what
-tells a value near an edge, which decides about the clock; the tests of these are in grader/tests/checks.
+Code that decides is changed. Code that only makes words is not: strings, a choice between two strings, numbers that
+are printed. Other code that is not changed: declarations, the parameters of a kind of check with their defaults, the
+`strict` of zip, and the code that finds values near an edge, which decides about the clock. grader/tests/checks has
+tests for these.
 """
 
 from __future__ import annotations
@@ -34,26 +35,26 @@ LEFT_OUT = {
     mutators.operator_arg_removal,
     mutators.operator_match,
 }
-"""What a finding says in words is not what it diagnoses, and is tested elsewhere; a match goes over several lines."""
+"""The words of a finding do not change its diagnosis, and other tests check them. A match covers several lines."""
 IDS = frozenset(DIAGNOSES)
-"""A text that is one of them is no mere text."""
+"""One of these strings is more than words."""
 WORDS = frozenset({"shorten", "a_list", "count", "shown"})
-"""Functions that make words: numbers in their arguments change no diagnosis."""
+"""Functions that make words. Numbers in their arguments do not change a diagnosis."""
 STRINGS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
 MAKERS = {"failed": None, "Cause": 2}
-"""What makes a diagnosis of its id, its first argument; and where the place to look at may stand without a keyword."""
+"""Calls that make a diagnosis of their first argument, its id, and the index of the place if it has no keyword."""
 OTHER = cst.SimpleString('"another"')
 KINDS = OUT, ALWAYS, NAME, PLACE, DETAIL = ("taken out", "always", "other name", "no place", "detail")
-"""What a change does to the code of a diagnosis; a detail is what mutmut's operators change."""
+"""How a change affects a diagnosis. A "detail" is a change by one of mutmut's operators."""
 Change = tuple[str, cst.CSTNode, cst.CSTNode]
-"""Its kind, what is there, and what comes instead."""
+"""Its kind, the old code and the new code."""
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A file with one change: `line` and `end_line` are those of the statement, from 1; `change` is told to people.
+    """A file with one change. `line` and `end_line` are the statement's, counted from 1; `change` is shown to people.
 
-    `kind` is one of KINDS. `at_import`: the statement is run when the file is imported, and by nobody later.
+    `kind` is one of KINDS. `at_import` says that the statement runs only when the file is imported.
     """
 
     file: Path
@@ -69,7 +70,7 @@ class Mutant:
 
 
 def mutants_of(file: Path) -> list[Mutant]:
-    """Every mutant of a file, in the order of its lines; what does nothing when it is run is left alone."""
+    """Return every mutant of a file, in the order of its lines. Code that has no effect is not changed."""
     text = file.read_text("utf-8")
     wrapper = MetadataWrapper(cst.parse_module(text), unsafe_skip_copy=True)
     positions, parents = wrapper.resolve(PositionProvider), wrapper.resolve(ParentNodeProvider)
@@ -96,7 +97,7 @@ def mutants_of(file: Path) -> list[Mutant]:
 
 
 def _says_nothing(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool:
-    """Whether it is the `return None` at the end of a function, which it would return all the same."""
+    """Return whether it is a `return None` at the end of a function, which changes nothing."""
     if not (isinstance(node, cst.Return) and isinstance(node.value, cst.Name) and node.value.value == "None"):
         return False
     line = parents[node]
@@ -107,7 +108,7 @@ def _says_nothing(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode])
 
 
 def _changes(node: cst.CSTNode) -> Iterator[Change]:
-    """What of this node may become what."""
+    """Yield the possible changes of this node."""
     for kind, operator in mutators.mutation_operators:
         if (
             isinstance(node, kind)
@@ -128,14 +129,14 @@ def _changes(node: cst.CSTNode) -> Iterator[Change]:
 
 
 def _places(call: cst.Call, index: int | None) -> Iterator[cst.BaseExpression]:
-    """The arguments of a call that are the place to look at: by their name, or at this index."""
+    """Return the arguments of a call that are the place to look at, by their keyword or at this index."""
     for number, argument in enumerate(call.args):
         if number == index if argument.keyword is None else argument.keyword.value == "where":
             yield argument.value
 
 
 def _is_words(assignment: cst.Assign) -> bool:
-    """Whether a name gets a text, or nearness to an edge, which decides about the clock and not what is diagnosed."""
+    """Return whether a name holds words, or the nearness to an edge, which decides about the clock only."""
     return _is_nearness(assignment) or _is_text(assignment.value) or _chooses_text(assignment.value)
 
 
@@ -145,7 +146,7 @@ def _is_nearness(assignment: cst.Assign) -> bool:
 
 
 def _is_text(value: cst.CSTNode) -> bool:
-    """Whether it is a text to be read, and no diagnosis."""
+    """Return whether it is a string for readers and not a diagnosis."""
     return isinstance(value, STRINGS) and not _is_id(value)
 
 
@@ -158,7 +159,7 @@ def _chooses_text(value: cst.CSTNode) -> bool:
 
 
 def _statement(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> cst.CSTNode | None:
-    """The statement that the node belongs to."""
+    """Return the statement to which the node belongs."""
     here: cst.CSTNode | None = node
     while here is not None and not isinstance(here, cst.SimpleStatementLine | cst.BaseCompoundStatement):
         here = parents.get(here)
@@ -166,7 +167,7 @@ def _statement(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) ->
 
 
 def _idle(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode]) -> bool:
-    """Whether the node only declares something, or only says it in words."""
+    """Return whether the node only declares something or only makes words."""
     if _is_docstring(node, parents) or _chooses_text(node):
         return True
     before, here = node, parents.get(node)
@@ -201,7 +202,7 @@ def _is_docstring(node: cst.CSTNode, parents: Mapping[cst.CSTNode, cst.CSTNode])
 
 
 def _lines(statement: cst.CSTNode, positions: Mapping[cst.CSTNode, CodeRange]) -> tuple[int, int]:
-    """The lines of a statement; of a compound one, those of its head."""
+    """Return the lines of a statement. For a compound statement, these are the lines of its head."""
     where = positions[statement]
     body = getattr(statement, "body", None)
     if isinstance(statement, cst.BaseCompoundStatement) and isinstance(body, cst.IndentedBlock):
@@ -210,6 +211,6 @@ def _lines(statement: cst.CSTNode, positions: Mapping[cst.CSTNode, CodeRange]) -
 
 
 def _reported(module: cst.Module, node: cst.CSTNode) -> str:
-    """A node's code on one line, so short that two fit on it."""
+    """Return a node's code on one line, short enough for two of them on a line."""
     text = " ".join(module.code_for_node(node).split())
     return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,4 +1,4 @@
-"""Recordings of cases: each is graded once, and judged again and again from what was recorded."""
+"""Recordings of cases: each case is graded once, and its recording is judged many times."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ class Recorded:
 
     @property
     def name(self) -> str:
-        """As in mistakes/316-syntax-error: the number alone may be in two folders."""
+        """A name such as mistakes/316-syntax-error, since two folders may use the same number."""
         return f"{self.case.folder.parent.name}/{self.case.name}"
 
 
 def cache() -> Path:
-    """Where recordings are kept from one run to the next."""
+    """The folder where recordings are kept from one run to the next."""
     return xdg.cache() / "mutation"
 
 
 def all_cases() -> Iterator[Case]:
-    """The cases of all folders that get a report."""
+    """Return the cases of all folders that get a report."""
     for name in FOLDERS:
         folder = CASES.parent / name
         yield from (case for case in (read_cases(folder) if folder.is_dir() else ()) if case.result != "usage")
@@ -54,9 +54,9 @@ def all_cases() -> Iterator[Case]:
 def recordings(
     cases: Iterable[Case], tell: Callable[[str], None], below: Path | None = None, *, make: bool = True
 ) -> list[Recorded]:
-    """The recordings of these cases; `make` those that are missing, as many at once as there are processors.
+    """Return the recordings of these cases. `make` creates the missing ones, one per processor at the same time.
 
-    A case whose submission or exercise has changed is recorded again; a change of the trial wants an empty cache.
+    A case is recorded again if its submission or its exercise has changed. Empty the cache after a change of the trial.
     """
     kept = below or cache()
     with ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -88,7 +88,7 @@ def _recorded(case: Case, below: Path, tell: Callable[[str], None], *, make: boo
 
 
 def _key(submission: Path, *more: str | Path) -> str:
-    """A digest of all that is graded."""
+    """Return a digest of everything that is graded."""
     digest = hashlib.sha256()
     for path in sorted(submission.rglob("*"), key=os.fsencode):
         digest.update(os.fsencode(path.relative_to(submission)) + b"\0")

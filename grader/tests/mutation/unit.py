@@ -1,4 +1,4 @@
-"""What the tests of single checks notice: those in grader/tests/checks that run a mutant's lines."""
+"""The tests in grader/tests/checks as witnesses: those that run a mutant's lines are asked."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ QUIET = ("-q", "-p", "no:cacheprovider", "-W", "ignore", "--rootdir", str(ROOT))
 
 
 def touched(files: Collection[Path]) -> Lines:
-    """The tests that run each line (from 1) of these files, as far as any does."""
-    # In a child: whatever the tests import must be imported anew for each mutant.
+    """Return the tests that run each line of these files. Lines are counted from 1."""
+    # This runs in a child, since each mutant needs new imports of everything that the tests import.
     with multiprocessing.get_context("fork").Pool(1) as pool:
         return pool.apply(_measured, (sorted(files),))
 
 
 def fail(tests: Iterable[str]) -> bool:
-    """Whether one of these tests fails, or cannot even be collected."""
+    """Return whether one of these tests fails or cannot be collected."""
     names = [f"{ROOT / test}" for test in sorted(tests)]
     return bool(names) and pytest.main([*QUIET, "-x", *names]) != pytest.ExitCode.OK
 
@@ -45,7 +45,7 @@ def _measured(files: Iterable[Path]) -> Lines:
 
 
 class _Contexts:
-    """Tells the measurement which test runs."""
+    """Tells the measurement which test is running."""
 
     def __init__(self, measured: object) -> None:
         self._measured = measured

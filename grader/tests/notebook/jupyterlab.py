@@ -36,7 +36,7 @@ def serving(folder: Path, home: Path) -> Iterator[str]:
     }
     argv = [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1", "--port=0"]
     argv += [f"--IdentityProvider.token={token}", f"--ServerApp.root_dir={folder}"]
-    # JupyterLab would look for news on the network.
+    # JupyterLab would request news from the network.
     argv += ["--LabApp.news_url=", "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
     server = subprocess.Popen(argv, env=env, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     address: list[str] = []
@@ -68,7 +68,7 @@ def serving(folder: Path, home: Path) -> Iterator[str]:
 
 
 def type_cell(page: Page, begins: str, text: str) -> None:
-    """Replace the text of the cell that begins with `begins`, by typing."""
+    """Replace the text of the cell that starts with `begins`, by typing."""
     cell = page.locator(".jp-CodeCell", has_text=begins).first
     cell.scroll_into_view_if_needed()
     cell.locator(".cm-content").click()

@@ -48,7 +48,7 @@ def notebook(folder: Path) -> Iterator[Notebook]:
 
 
 def marked_processes(mark: str) -> set[int]:
-    """Return the processes with the mark of a notebook."""
+    """Return the processes of a notebook, which carry its mark."""
     found = set()
     for entry in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
@@ -88,7 +88,7 @@ def test_the_canvas_moves_below_the_cell_and_the_simulator_ends_with_the_kernel(
         "with simulator() as sim:\n"
         "    before = sim.picture()\n"
         "    sim.start('draw_circle')\n"
-        # The daemon of the real one would go on.
+        # The real command would leave its daemon running.
         "    %ros2 node list --no-daemon\n"
         "    while sim.picture() == before: sim.wait(0.1)"
     )
@@ -98,7 +98,7 @@ def test_the_canvas_moves_below_the_cell_and_the_simulator_ends_with_the_kernel(
     assert notebook.run("sim.picture() == before") == "False"
 
     mark = notebook.run(f"import os; print(os.environ[{guardian.VARIABLE!r}])").strip()
-    assert marked_processes(mark) == set()  # it ended with the `with` statement
+    assert marked_processes(mark) == set()  # it ended at the end of the `with` statement
     notebook.run("sim = simulator(); sim.__enter__(); sim.start('draw_circle')")
     notebook.run("import subprocess; subprocess.Popen(['setsid', 'sleep', '1000'])")
     assert len(marked_processes(mark)) >= 3
@@ -115,7 +115,7 @@ def test_no_work_of_a_student_is_lost(notebook: Notebook, folder: Path, home: Pa
     (own / "draw_circle.py").write_text("# my own, from the workspace\n")
     notebook.run(BEGIN)
     assert (folder / NODE).read_text() == "# my own, from the workspace\n"
-    assert (folder / "my_robot_controller" / "package.xml").is_file()  # the rest comes from the starting point
+    assert (folder / "my_robot_controller" / "package.xml").is_file()  # the rest is the starting point's
 
     # The released cell does not undo the work. A cell that was changed replaces the file and keeps a copy.
     assert "stays unchanged" in notebook.run("%%node draw_circle.py\n" + START)

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 class StartedError(Exception):
-    """Another program would have replaced this process."""
+    """Keep the command line. The real function would replace this process by another program."""
 
 
 @pytest.fixture
 def started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
-    """The commands that are started, with a set-up for a ROS 2 in `tmp_path`/jazzy that is not sourced."""
+    """The commands that are started, with the set-up of a ROS 2 in `tmp_path`/jazzy that is not sourced."""
     commands: list[list[str]] = []
 
     def execve(_program: str, argv: list[str], _env: dict[str, str]) -> None:

@@ -1,4 +1,4 @@
-"""`grader open` as a learner starts it, in a home of its own."""
+"""`grader open` as a learner starts it, with a home folder of its own."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ GRADER = Path(sys.prefix, "bin/grader")
 
 @dataclass
 class Course:
-    """A home with a workspace, and the server that was started last."""
+    """A home folder with a workspace, and the server that was started last."""
 
     home: Path
     processes: list[subprocess.Popen[str]] = field(default_factory=list)
@@ -56,7 +56,7 @@ class Course:
         return {**os.environ, **cache, **own}
 
     def start(self) -> str:
-        """Start the server; returns the address that it prints."""
+        """Start the server. Return the address that it prints."""
         process = subprocess.Popen(
             [str(GRADER), "open", "--no-browser"],
             env=self.env,
@@ -76,21 +76,21 @@ class Course:
         return self.url
 
     def end(self, number: int = signal.SIGINT) -> int:
-        """Send a signal to the server that was started last; returns the exit code."""
+        """Send a signal to the server that was started last. Return its exit code."""
         process = self.processes[-1]
         if process.poll() is None:
             process.send_signal(number)
         return process.wait(HANG_S)
 
     def run(self, *arguments: str) -> str:
-        """Type another command of the grader in the same home."""
+        """Run another command of the grader with the same home folder."""
         done = subprocess.run(
             [str(GRADER), *arguments], env=self.env, cwd=self.home, capture_output=True, text=True, check=True
         )
         return done.stdout
 
     def save(self, old: str = "", new: str = "") -> None:
-        """Save the solution of step 03 with this change, as an editor does that writes a new file and renames it."""
+        """Save the solution of step 03 with this change. Like some editors, write a new file and rename it."""
         text = (ROOT / "solutions" / CIRCLE / "my_robot_controller/my_robot_controller/draw_circle.py").read_text()
         assert old in text
         new_file = self.home / "draw_circle.py.tmp"
@@ -98,7 +98,7 @@ class Course:
         new_file.replace(self.node)
 
     def opened(self, browser: Browser, path: str = "", width: int = 1400) -> Page:
-        """Open a page in a new window that knows nothing of other windows."""
+        """Open a page in a new window that shares nothing with other windows."""
         tab = browser.new_page(viewport={"width": width, "height": 900})
         tab.set_default_timeout(HANG_S * 1000)
         tab.goto(f"http://{self.host}/{path}#{self.token}")

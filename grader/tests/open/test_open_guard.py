@@ -1,4 +1,4 @@
-"""Nobody but the page itself reads the learner's work or starts anything."""
+"""Only the page itself can read the learner's work or start anything."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ HEADER = "X-Course-Token"
 
 
 def answer(course: Course, method: str, path: str, headers: dict[str, str], body: bytes = b"") -> tuple[int, str]:
-    """Send a request exactly as it is given: no path is made normal, no header is added but the length."""
+    """Send a request exactly as given: the path is not normalized, and only the header with the length is added."""
     link = HTTPConnection("127.0.0.1", int(course.host.partition(":")[2]), timeout=HANG_S)
     link.putrequest(method, path, skip_host="Host" in headers, skip_accept_encoding=True)
     for name, value in headers.items():
@@ -162,7 +162,7 @@ def test_clients_that_never_finish_do_not_stop_the_page(begun: Course) -> None:
     for each in slow[20:]:
         each.sendall(f"POST /do/rerun HTTP/1.1\r\n{head}Content-Length: 100\r\n\r\n{{".encode())
     assert answer(begun, "GET", "/verdict", own(begun))[0] == 200
-    # A request whose body does not come is answered, too.
+    # A request whose body never arrives gets a response, too.
     assert b" 408 " in slow[-1].recv(65536)
     for each in slow:
         each.close()

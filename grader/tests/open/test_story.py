@@ -59,7 +59,7 @@ def test_the_story_of_step_03(learner: Course, browser: Browser) -> None:
     page.get_by_role("article").filter(has_text="The turtle drives a circle").get_by_text("radius").first.wait_for()
     assert page.locator("#hints li").count() == 1
     stays(page, "run-1")
-    # A save that changes nothing leaves the verdict in place, and so does a comment for what it does not touch.
+    # If a save changes nothing, the verdict stays in place. A comment changes only what it concerns.
     learner.save("2.0", "3.0  # fast")
     page.locator(".line.marked").get_by_text("# fast").first.wait_for()
     assert stayed(page, "run-1")
@@ -84,7 +84,7 @@ def test_the_story_of_step_03(learner: Course, browser: Browser) -> None:
 def test_the_files_are_judged_before_the_trial(begun: Course, browser: Browser) -> None:
     page = begun.opened(browser)
     verdict(page, "Not passed yet")
-    # The list shows what is certain from the files while the package is still being built and run.
+    # While the package is built and run, the list already shows what the files alone prove.
     page.evaluate(
         """() => {
             globalThis.early = false;

@@ -1,4 +1,4 @@
-"""What people do to a page: reload, two tabs, a folder that is renamed, a server that is killed and started again."""
+"""What people do to a page: they reload it, open two tabs, rename a folder, kill the server and start it again."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_the_page_survives_what_people_do(own: Course, browser: Browser) -> None
         page.evaluate(f"window.open('/{CIRCLE}/index.html', '_blank', 'noopener')")
     verdict(second.value, "15 of 100")
 
-    # The folder is renamed by `start --fresh`, and another one takes its place.
+    # `start --fresh` renames the folder, and a new one takes its place.
     own.save()
     verdict(page, "Passed: 100")
     own.run("start", CIRCLE, "--fresh")
@@ -58,7 +58,7 @@ def test_the_page_survives_what_people_do(own: Course, browser: Browser) -> None
     verdict(page, "50 of 100 points")
     second.value.close()
 
-    # Killed and started again: the same address and token, and the open page goes on.
+    # The server is killed and started again. The address and the token stay the same, and the open page continues.
     before = own.url
     assert own.end(signal.SIGKILL) == -signal.SIGKILL
     page.get_by_text("Not running: type grader open").wait_for()
@@ -67,7 +67,7 @@ def test_the_page_survives_what_people_do(own: Course, browser: Browser) -> None
     own.save()
     verdict(page, "Passed: 100")
 
-    # Another step is started in a terminal.
+    # A terminal starts another step.
     own.run("start", "04")
     page.get_by_text("Verdict on step 04").wait_for()
 

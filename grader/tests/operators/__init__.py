@@ -1,1 +1,1 @@
-"""Operators: what makes a right package wrong in one known place, as learners do."""
+"""Operators: each makes a correct package wrong in one known place, as learners do."""

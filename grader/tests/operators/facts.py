@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 WORD = re.compile(r"[A-Za-z_]\w*|\d+(?:\.\d+)?|[^\w\s]")
 COMMON = frozenset({"self", "msg", "my_robot_controller", "py", "def", "import", "from", "name", "node"})
-"""Words that are on so many lines that they identify nothing."""
+"""Words on so many lines that they identify nothing."""
 SIGNS = {
     ":": "colon",
     ",": "comma",
@@ -50,7 +50,7 @@ SIGNS = {
 
 @dataclass(frozen=True)
 class Hunk:
-    """Lines of the correct package, and those in their place from `line` on. `moved` is set for a whole file."""
+    """Lines of the correct package, and the lines that replace them from `line` on. `moved` is set for a whole file."""
 
     file: str
     old: tuple[str, ...]
@@ -59,7 +59,7 @@ class Hunk:
     moved: bool = False
 
     def is_at(self, where: Where) -> bool:
-        """Whether a report that points there points at the change. What was removed can be pointed at nowhere."""
+        """Return whether a report that points there points at the change. Removed lines have no place, so all count."""
         removed = Counter(WORD.findall("\n".join(self.old))) - Counter(WORD.findall("\n".join(self.new)))
         opened_elsewhere = bool(removed) and set(removed) <= set("()[]{}")
         only_removed = not "".join(self.new).replace("pass", "").strip()
@@ -68,7 +68,7 @@ class Hunk:
         return where.file == self.file and (where.line is None or 0 <= where.line - self.line < len(self.new))
 
     def is_in(self, text: str) -> bool:
-        """Whether a text speaks of the change."""
+        """Return whether a string speaks of the change."""
         before, after = (Counter(WORD.findall("\n".join(lines))) for lines in (self.old, self.new))
         words = {*(before - after), *(after - before)}
         if self.moved:
@@ -89,7 +89,7 @@ def _speaks_of(word: str, text: str) -> bool:
 
 @dataclass(frozen=True)
 class Facts:
-    """A correct package, the wrong one that was made of it, and the evidence about the wrong one."""
+    """A correct package, the wrong one that was made from it, and the evidence about the wrong one."""
 
     right: Mapping[str, str]
     wrong: Mapping[str, str]
@@ -97,7 +97,7 @@ class Facts:
 
     @cached_property
     def changes(self) -> tuple[Hunk, ...]:
-        """The changed places."""
+        """Return the changed places."""
         found: list[Hunk] = []
         for path in sorted(self.right.keys() | self.wrong.keys()):
             old, new = (files.get(path, "").split("\n") for files in (self.right, self.wrong))
@@ -109,12 +109,12 @@ class Facts:
 
     @cached_property
     def changed(self) -> frozenset[str]:
-        """The changed files."""
+        """Return the changed files."""
         return frozenset(change.file for change in self.changes)
 
     @cached_property
     def words(self) -> tuple[Counter[str], Counter[str]]:
-        """The words and signs that were removed, and those that were added."""
+        """Return the words and signs that were removed, and those that were added."""
         both = [Counter[str](), Counter[str]()]
         for path in self.changed:
             for words, files, others in ((both[0], self.right, self.wrong), (both[1], self.wrong, self.right)):
@@ -125,25 +125,25 @@ class Facts:
 
     @cached_property
     def source(self) -> str:
-        """The Python files of the wrong node without comments."""
+        """Return the Python files of the wrong node without comments."""
         used = {module.file for module in self.evidence.code.modules}
         files = (text for path, text in self.wrong.items() if path in used)
         return "\n".join(re.sub(r"(?m)#.*$", "", text) for text in files)
 
     def line(self, outcome: Outcome, number: int) -> str:
-        """The line with this number of the file that an outcome points at."""
+        """Return the line with this number in the file to which an outcome points."""
         where = outcome.finding.where
         lines = self.wrong.get(where.file, "").splitlines() if where is not None else []
         return lines[number - 1] if 0 < number <= len(lines) else ""
 
     def names(self, outcome: Outcome) -> bool:
-        """Whether an outcome points at a change and speaks of what was changed there."""
+        """Return whether an outcome points at a change and speaks of what was changed there."""
         where = outcome.finding.where
         text = f"{outcome.finding.observed} {outcome.finding.cause}"
         return where is not None and any(change.is_at(where) and change.is_in(text) for change in self.changes)
 
     def false(self, outcome: Outcome) -> list[str]:
-        """The sentences of an outcome that contradict a fact."""
+        """Return the sentences of an outcome that contradict a fact."""
         finding = outcome.finding
         text = f"{finding.observed} {finding.cause}"
         found = [
@@ -162,7 +162,7 @@ class Facts:
 
 
 def _is_right_word(facts: Facts, match: re.Match[str], _: Outcome) -> bool:
-    """A suggested name stood in the correct package in the place of a changed one, or is a file that is there."""
+    """Return whether a suggested name replaced a changed one in the correct package, or is an existing file."""
     parts = re.findall(r"\w+", match["word"])
     there = any(path.endswith(f"{match['word'].replace('.', '/')}.py") for path in facts.wrong)
     return there or any(part in facts.words[0] for part in parts)
@@ -207,7 +207,7 @@ def _is_extra(facts: Facts, _: re.Match[str], __: Outcome) -> bool:
 
 
 def _swapped(facts: Facts, _: re.Match[str], outcome: Outcome) -> bool:
-    """The words of the pointed line, or of it and the next one, stand in the correct package in another order."""
+    """Return whether the words of the line, or of it and the next one, have another order in the correct package."""
     where = outcome.finding.where
     if where is None or where.line is None:
         return False
@@ -297,4 +297,4 @@ FACTS: dict[str, Callable[[Facts, re.Match[str], Outcome], bool]] = {
     r"ended by itself|crashed": _ended,
     r"Nothing was built|The node was not run": lambda facts, _, __: facts.evidence.run.recording is None,
 }
-"""The form of a sentence -> whether it is true. `word`, `line`, `count` and `number` are what it speaks of."""
+"""The form of a sentence -> whether it is true. `word`, `line`, `count` and `number` are parts of the sentence."""

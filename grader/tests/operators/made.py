@@ -1,4 +1,4 @@
-"""Right packages, and the wrong ones that the operators make of them."""
+"""Correct packages, and the wrong ones that the operators make from them."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ OPERATORS: tuple[Operator, ...] = (
     *places.OPERATORS,
 )
 STEPS = ("01-first-node", "03-circle-publisher", "04-package-files", "06-pose-subscriber")
-"""The solutions to make wrong; each is used as often as all unusual packages together."""
+"""The solutions to change. Each is used as often as all unusual packages together."""
 TWO_AT_ONCE = 1 / 3
 
 

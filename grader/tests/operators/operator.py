@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Package:
-    """A package as text: path -> content, and the file of the node, which the operators on source code change."""
+    """A package as strings: path -> content, and the path of the node, which the operators on source code change."""
 
     files: Mapping[str, str]
     source: str
@@ -37,7 +37,7 @@ class Change:
 
 
 Make = Callable[[Package, Random], Change | None]
-"""Make the mistake at a random suitable place; None if the package has no such place."""
+"""Make the mistake at a random suitable place. Return None if the package has no such place."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def replace(pattern: str, by: Replacement, *, file: str = "") -> Make:
 
 
 def anywhere(make: Make) -> Make:
-    """The same operator, where a report may name any line of the file."""
+    """Return the same operator, but a report may name any line of the file."""
 
     def made(package: Package, draw: Random) -> Change | None:
         change = make(package, draw)

@@ -51,7 +51,7 @@ def _main_in_class(package: Package, _: Random) -> Change | None:
 
 
 def _main_renamed(package: Package, draw: Random) -> Change | None:
-    """A report names the other side: the line of setup.py that asks for main."""
+    """A report names the other side: the line of setup.py that names main."""
     change = replace(r"^def main\(", "def run(")(package, draw)
     return change and Change(change.files, "setup.py")
 

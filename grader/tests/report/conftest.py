@@ -45,7 +45,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def problems() -> list[str]:
-    """What went wrong in the tab: errors, messages of the console, dialogs, and URLs that it requested."""
+    """What went wrong in the tab: errors, console messages, dialogs, and the URLs that it requested."""
     return []
 
 

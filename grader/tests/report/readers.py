@@ -1,4 +1,4 @@
-"""Read each format of a class as its real reader does: a spreadsheet, Gradescope, the runner of GitHub Actions."""
+"""Read each format of a class like its real reader: a spreadsheet, Gradescope, the runner of GitHub Actions."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class Command:
 
 
 def commands(log: str) -> list[Command]:
-    """Return every workflow command in a log, as the runner finds it; both forms are known.
+    """Return every workflow command in a log, in both forms, as the runner finds it.
 
     The source is "Workflow commands for GitHub Actions" and ActionCommand.cs of actions/runner.
     """

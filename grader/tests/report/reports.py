@@ -1,4 +1,4 @@
-"""Reports for tests: one per status, and a hostile one. The judge makes them from invented evidence."""
+"""Reports for tests: one for each status, and a hostile one. The judge makes them from invented evidence."""
 
 from __future__ import annotations
 

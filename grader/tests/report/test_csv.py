@@ -55,7 +55,7 @@ def test_no_cell_is_a_formula_with_any_separator(sign: str, separator: str) -> N
     names += [f"a{between}{before}{call}{between}b" for between in ";|\t" for before in BEFORE]
     text = to_csv((name, hostile_report(), "0.1.0 abc", f"{name}.json", name) for name in names).removeprefix("\ufeff")
     rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=separator))
-    rows += [line.split(separator) for line in text.split("\r\n")]  # a reader that does not know quotes
+    rows += [line.split(separator) for line in text.split("\r\n")]  # a reader that does not support quotes
     cells = [cell for row in rows for cell in row]
     assert len(cells) > len(names)
     assert [cell for cell in cells if begins_like_a_formula(cell)] == []

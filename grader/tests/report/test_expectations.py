@@ -1,4 +1,4 @@
-"""The required path of an exercise is drawn where the turtle should have driven."""
+"""The report shows the required path of an exercise where the turtle should have driven."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ AHEAD = legs((20, 1.0, 0.0))
 
 
 def in_challenge(trial: str, commands: list[Timed], start: Pose = NORTH) -> Evidence:
-    """Return what a learner drove in one of the trials of step 07."""
+    """Return the path of a learner in one of the trials of step 07."""
     return evidence(recording(commands, start), exercise=find_exercise("07-challenges"), trial_id=trial)
 
 

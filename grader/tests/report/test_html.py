@@ -278,7 +278,7 @@ def test_goals_are_in_a_table_and_on_the_time_line_of_the_replay() -> None:
 
 
 def moments_of(page: str) -> list[list[object]]:
-    """Return what the replay says at which time (s)."""
+    """Return the words of the replay at each time (s)."""
     found = re.search(r'"calls": ?(\[.*?\]\])', page)
     assert found is not None
     moments: list[list[object]] = json.loads(found[1])

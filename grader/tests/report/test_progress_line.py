@@ -1,4 +1,4 @@
-"""On a terminal, what is being done disappears before the report; elsewhere it is plain lines on standard error."""
+"""On a terminal, the progress disappears before the report. Elsewhere it is plain lines on standard error."""
 
 from __future__ import annotations
 

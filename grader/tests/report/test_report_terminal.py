@@ -24,7 +24,7 @@ ESCAPE = "\x1b"
 
 
 class Latin1(io.StringIO):
-    """A stream with few characters, as on an old terminal."""
+    """A stream whose encoding has few characters, as on an old terminal."""
 
     encoding = "latin-1"
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Point:
-    """Looks like a message of rclpy."""
+    """An object that looks like a message of rclpy."""
 
     def __init__(self) -> None:
         self.x = 0.0
@@ -217,7 +217,7 @@ def interfaces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("interfaces")
 def test_shows_what_a_field_consists_of() -> None:
-    # As in the real one, the # of a comment that is left out stays where a space follows it.
+    # Like the real command: a space after the message keeps the # of the comment that is left out.
     side = ["\tfloat64 length 1.5 #", "\tstring<=5 name '#1' #"]
     top = ["int32 MOST=3", "# four of them", "Side[4] sides", "things/Side[] more # too", "bool[<=3] flags"]
     box = [*top[:3], *side, top[3], *side, top[4]]

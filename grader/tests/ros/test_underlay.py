@@ -1,4 +1,4 @@
-"""The turtlesim interfaces are built once, whole or not at all, and found again without starting anything."""
+"""The turtlesim interfaces are built once and completely, or not at all. They are found without starting a process."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def builds(monkeypatch: pytest.MonkeyPatch) -> list[Sequence[str]]:
-    """Let cmake only pretend: the commands that were run; its install makes one file."""
+    """Replace cmake. Returns the list of commands that were run; the install command creates one file."""
     ran: list[Sequence[str]] = []
 
     def run(command: Sequence[str], env: dict[str, str], _: object) -> None:
@@ -73,7 +73,7 @@ def test_two_at_once_build_it_once_and_both_get_it(ros: installation.Ros, tmp_pa
     traces = [path for path in prefix.rglob("*") if path.is_file() and b"/.building-" in path.read_bytes()]
     assert traces == []
 
-    # Usable where it stands, by whoever may only read it.
+    # The folder is usable where it is, and other users can read it.
     closed = [path for path in prefix.rglob("*") if not path.stat().st_mode & stat.S_IROTH]
     assert closed == []
     script = "from turtlesim.srv import Spawn; print(Spawn.Request(x=1.0).x)"

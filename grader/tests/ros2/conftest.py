@@ -9,11 +9,11 @@ if TYPE_CHECKING:
     import pytest
 
 COMPARED = {"test_golden.py"}
-"""What the real `ros2` must do as well. All else is about ours: words that help, speed, how it starts and ends."""
+"""These tests also hold for the real `ros2`. The others concern our own: messages, speed, start and end."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Skip tests of our own `ros2` where the real one is used."""
+    """Skip the tests of our own `ros2` if the real one is used."""
     for item in items:
         if item.path.parent == Path(__file__).parent and item.path.name not in COMPARED:
             item.add_marker(of_our_ros2)

@@ -1,4 +1,4 @@
-"""`ros2 bag`: all messages are in the bag and can be played again, however the recorder ended."""
+"""`ros2 bag`: the bag has all messages and can be played again, however the recorder ended."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ rclpy.spin(node)
 
 @pytest.fixture
 def quiet(tmp_path: Path) -> Iterator[World]:
-    """A domain without nodes; the home has two programs."""
+    """A domain without nodes. The home folder has two programs."""
     for made in world(tmp_path):
         made.home.joinpath("talker.py").write_text(TALKER)
         made.home.joinpath("listener.py").write_text(LISTENER)
@@ -60,14 +60,14 @@ def quiet(tmp_path: Path) -> Iterator[World]:
 
 
 def record(here: World, options: str = "/count", count: int = 300) -> Running:
-    """Start a recording of so many messages; returns the recorder when all have been received."""
+    """Start a recording of this many messages. Return the recorder when it has received all of them."""
     recorder = here.start(f"ros2 bag record -o bag {options}", "Recording...")
     here.start(f"python3 talker.py {count}", "sent")
     return recorder
 
 
 def numbers(folder: Path) -> list[int]:
-    """The content of a bag, read by another library than the one that wrote it."""
+    """Return the content of a bag. Another library reads it than the one that wrote it."""
     (file,) = folder.glob("*.mcap")
     with file.open("rb") as stream:
         found = list(make_reader(stream).iter_messages())
@@ -102,7 +102,7 @@ def test_a_bag_is_played_in_its_rhythm_to_another_topic(quiet: World) -> None:
 def test_a_killed_recording_is_made_whole(quiet: World, storage: str, ending: str) -> None:
     recorder = record(quiet, f"-s {storage} /count")
     recorder.wait_for("All requested topics are subscribed")
-    # What has been handed to the file a second ago outlives the recorder.
+    # Messages that were given to the file one second ago are in it, even if the recorder dies.
     quiet.run("while [ $(stat -c %s bag/bag* | sort -n | tail -1) -lt 10000 ]; do sleep 0.1; done")
     quiet.run("sleep 2")
     recorder.stop(signal.SIGKILL)
@@ -115,7 +115,7 @@ def test_a_killed_recording_is_made_whole(quiet: World, storage: str, ending: st
 
 
 def test_a_disk_that_is_full_is_reported_and_the_bag_can_be_read(quiet: World) -> None:
-    # A limit on the size of a file fails as a full disk does, and needs no disk.
+    # A limit on the file size causes the same error as a full disk, and needs no disk.
     recorder = quiet.start("bash -c 'ulimit -f 8; exec ros2 bag record -o bag /count'", "Recording...")
     quiet.start("python3 talker.py 3000", "sent")
     assert recorder.process.wait(HANG_S) == 1
@@ -156,7 +156,7 @@ def test_space_pauses_and_the_right_arrow_steps(quiet: World) -> None:
 
 def test_a_loop_over_nothing_ends_and_a_wrong_regular_expression_is_reported(quiet: World) -> None:
     record(quiet, count=2).stop()
-    # Beyond the end there is nothing to repeat.
+    # After the end, there is nothing to repeat.
     assert quiet.run("ros2 bag play bag --loop --start-offset 1000").code == 0
     quiet.home.joinpath("options.yaml").write_text("output_bags:\n- {uri: new, regex: '('}\n")
     for command in ("play bag --regex '('", "play bag -x '('", "convert -i bag -o options.yaml"):

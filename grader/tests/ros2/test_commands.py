@@ -1,4 +1,4 @@
-"""The commands where there are no recordings: starting, handing over, ending, and options."""
+"""The commands without recordings: how they start, how they pass on signals, how they end, and their options."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """turtlesim, and no node that drives."""
+    """turtlesim without a node that drives."""
     for made in world(tmp_path_factory.mktemp("still")):
         made.turtlesim()
         yield made
@@ -39,7 +39,7 @@ signal.pause()
 
 
 def package(prefix: Path, name: str, **executables: str) -> None:
-    """Install a package with executables by hand, as a colcon workspace would."""
+    """Install a package with executables by hand, with the same files as in a colcon workspace."""
     marker = prefix / "share/ament_index/resource_index/packages" / name
     marker.parent.mkdir(parents=True)
     marker.touch()
@@ -52,7 +52,7 @@ def package(prefix: Path, name: str, **executables: str) -> None:
 
 @pytest.fixture
 def tools(still: World, tmp_path: Path) -> World:
-    """The same world with a package on top."""
+    """The same world with one more package."""
     said = '#!/bin/sh\nprintf "%s|" "$@"\necho\nexit 7\n'
     waits = "#!/bin/sh\necho waits\nexec sleep 600\n"
     package(tmp_path / "tools", "tools", say=said, wait=waits, broken="#!/no/such\n")
@@ -146,7 +146,7 @@ def test_where_ros2cli_is_installed_its_ros2_is_used(first: bool, still: World, 
 )
 def test_ctrl_c_ends_a_verb_quietly(command: str, ready: str | None, still: World) -> None:
     running = still.start(command, ready)
-    if ready is None:  # it says nothing; it is there once others see its node
+    if ready is None:  # it prints nothing; it runs when others see its node
         while "_ros2cli" not in still.run("ros2 node list -a").stdout.replace("\n/_ros2cli_x", ""):
             assert running.process.poll() is None
     assert running.stop() == 2
@@ -195,7 +195,7 @@ def test_what_is_published_arrives(still: World) -> None:
 
 
 def test_the_last_message_is_kept_for_who_comes_later(still: World) -> None:
-    # A publisher that keeps its last message is asked for it.
+    # A publisher that keeps its last message sends it to a late subscription.
     keeper = still.start(f"python3 -c '{KEEPS}'", "published")
     assert still.run("ros2 topic echo --once /kept").stdout == "data: old news\n---\n"
     keeper.stop()

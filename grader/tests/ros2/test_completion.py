@@ -27,9 +27,9 @@ def beside(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
 @pytest.fixture(scope="module")
 def shell(beside: World) -> Iterator[pexpect.spawn]:
     cache = os.environ.get("XDG_CACHE_HOME", str(Path.home() / ".cache"))
-    # As a new terminal has it; ROS 2 comes from what is sourced.
+    # The environment of a new terminal. ROS 2 comes from the sourced file.
     kept = {name: beside.env[name] for name in ("PATH", "HOME", "LANG", "TERM", "GRADER_ROS2_DAEMON")}
-    # Wide, or bash moves the line that is being typed.
+    # The terminal is wide, so that bash does not move the line.
     size = (24, 500)
     bash = pexpect.spawn(
         "bash",
@@ -77,7 +77,7 @@ def test_tab_completes(shell: pexpect.spawn, typed: str, completed: str) -> None
     try:
         shell.expect(re.escape(completed))
     finally:
-        # Take the line back.
+        # Delete the line.
         shell.send("\x15")
         shell.sendline("echo next''!")
         shell.expect("next!")

@@ -1,6 +1,6 @@
-"""Each recording of the real `ros2` is typed again, and must give the same: output, errors and exit code.
+"""Each recorded command of the real `ros2` is typed again and must give the same output, errors and exit code.
 
-What may differ is named where the comparison is made, with the reason.
+Each comparison names what may differ, with the reason.
 """
 
 from __future__ import annotations
@@ -89,13 +89,13 @@ OF_THEIR_OWN = {
 
 @pytest.fixture(scope="module")
 def empty(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """Nobody is running."""
+    """A domain without nodes."""
     yield from world(tmp_path_factory.mktemp("empty"))
 
 
 @pytest.fixture(scope="module")
 def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """turtlesim, and no node that drives."""
+    """turtlesim without a node that drives."""
     for made in world(tmp_path_factory.mktemp("still")):
         made.turtlesim()
         yield made
@@ -125,12 +125,12 @@ def touched(tmp_path: Path) -> Iterator[World]:
 
 
 def heard_at_once(text: str) -> str:
-    """Take out what the real one says when it hears of a service a moment later."""
+    """Remove the message of the real command that appears when it discovers a service a moment later."""
     return text.replace("waiting for service to become available...\n", "") if REAL_ROS2 else text
 
 
 def same(name: str, where: World, differs: Callable[[str], str] = lambda text: text) -> None:
-    """Type what was typed; `differs` takes out what may differ."""
+    """Type the recorded command. `differs` removes what may differ."""
     expected = golden(name)
     done = where.run(expected.command)
     assert differs(done.stdout) == differs(expected.stdout)
@@ -162,7 +162,7 @@ def test_with_turtlesim_and_draw_circle(name: str, driving: World) -> None:
 
 
 def test_interfaces_of_a_package_come_in_another_order(empty: World) -> None:
-    # The real one keeps the order of a directory; ours are sorted.
+    # The real command keeps the order of the directory. Ours sorts.
     same("interface_package_turtlesim", empty, lambda text: "\n".join(sorted(text.splitlines())))
 
 
@@ -177,7 +177,7 @@ def test_packages_with_interfaces_are_those_that_have_wheels(empty: World) -> No
 
 
 def test_endpoints_have_other_numbers(driving: World) -> None:
-    # A GID is drawn for each endpoint.
+    # Each endpoint has a random GID.
     same(
         "topic_info_cmd_vel_verbose",
         driving,
@@ -190,7 +190,7 @@ def test_verbose_list(driving: World) -> None:
 
 
 def test_a_name_without_its_slash_gets_a_hint_as_well(driving: World) -> None:
-    # The recording has lost what the real one says on standard error; the nearest name is ours.
+    # The recording lacks the standard error of the real command. The nearest name is our addition.
     expected = golden("topic_info_no_slash")
     done = driving.run(expected.command)
     assert (done.stdout, done.code) == (expected.stdout, expected.code)
@@ -199,7 +199,7 @@ def test_a_name_without_its_slash_gets_a_hint_as_well(driving: World) -> None:
 
 
 def test_echo_of_a_moving_turtle(driving: World) -> None:
-    # Where the turtle is depends on when one looks; how fast it drives does not.
+    # The position of the turtle depends on the moment. Its velocity does not.
     expected = golden("topic_echo_pose_once_moving")
     done = driving.run(expected.command)
     number = re.compile(r"^(x|y|theta): -?\d+\.\d+(e-\d+)?$", re.MULTILINE)
@@ -208,7 +208,7 @@ def test_echo_of_a_moving_turtle(driving: World) -> None:
 
 
 def test_echo_until_ctrl_c(driving: World) -> None:
-    # How many messages come before Ctrl-C is a matter of when it is pressed.
+    # The number of messages before Ctrl-C depends on the moment.
     expected = golden("topic_echo_cmd_vel")
     message = expected.stdout[: expected.stdout.index("---\n") + 4]
     assert expected.stdout == message * 4
@@ -221,7 +221,7 @@ def test_echo_until_ctrl_c(driving: World) -> None:
 
 @pytest.mark.parametrize("name", ["topic_hz_cmd_vel", "topic_hz_pose"])
 def test_hz_until_ctrl_c(name: str, driving: World) -> None:
-    # What is measured differs from second to second.
+    # Measured values differ from second to second.
     expected = golden(name)
     running = driving.start(expected.command)
     running.wait_for("window:", times=2)
@@ -253,5 +253,5 @@ def test_set_a_parameter_within_its_range_and_beyond(touched: World) -> None:
 
 
 def test_send_a_goal(touched: World) -> None:
-    # The goal's id is drawn.
+    # The goal has a random id.
     same("action_send_goal", touched, lambda text: re.sub(r"ID: [\da-f]{32}\n", "ID:\n", text))

@@ -13,7 +13,7 @@ from grader.tests.ros2.world import World, environment, golden
 
 @pytest.fixture
 def src(tmp_path: Path) -> Path:
-    """The folder in which the real packages were made, as whom."""
+    """The folder and the user with which the real packages were made."""
     (tmp_path / ".gitconfig").write_text("[user]\nemail = student@example.com\n")
     folder = tmp_path / "ros2_ws/src"
     folder.mkdir(parents=True)
@@ -34,7 +34,7 @@ def test_create_a_package_and_again(src: Path) -> None:
 
 
 def tree(folder: Path) -> set[str]:
-    """Kind, mode and name; the size where it is 0. The texts are ours, and so are the sizes of the others."""
+    """Return kind, mode and name, and the size if it is 0. The texts are our own, so other sizes differ."""
     lines = set()
     for path in [folder, *folder.rglob("*")]:
         mode = path.stat().st_mode
@@ -48,7 +48,7 @@ def test_what_is_in_new_packages(src: Path) -> None:
     parts = re.split(r"^##### (.*)\n", recorded, flags=re.MULTILINE)[1:]
     expected = dict(zip(parts[::2], parts[1::2], strict=True))
     assert create(src, golden("pkg_create_ament_python").command)[2] == 0
-    # The command of ROS 2's own tutorial, which is where the other tree comes from.
+    # The command of ROS 2's own tutorial. The other tree was made with it.
     book = "ros2 pkg create --build-type ament_python --license Apache-2.0 --node-name my_node my_package"
     assert create(src, book)[2] == 0
     for title, text in expected.items():

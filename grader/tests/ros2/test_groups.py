@@ -1,4 +1,4 @@
-"""The groups of `ros2` beside the daily ones: doctor, lifecycle, multicast, component, and what needs a full ROS 2."""
+"""The groups of `ros2` for special uses: doctor, lifecycle, multicast, component, and those that need a full ROS 2."""
 
 from __future__ import annotations
 

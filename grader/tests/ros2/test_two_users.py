@@ -1,4 +1,4 @@
-"""Two users of one machine: each has a turtle, and neither sees nor drives the other's."""
+"""Two users of one machine: each has a turtle, and neither sees or drives the other's turtle."""
 
 from __future__ import annotations
 
@@ -58,17 +58,17 @@ def test_neither_drives_the_others_turtle(users: list[World]) -> None:
     assert one.env["ROS_DOMAIN_ID"] != other.env["ROS_DOMAIN_ID"]
     assert one.run("ros2 node list").stdout == other.run("ros2 node list").stdout == "/turtlesim\n"
     assert one.run(DRIVE).code == 0
-    # The command lasts for a second, and the turtle has moved for good.
+    # The last command counts for one second, and the turtle has moved. This cannot be undone.
     assert one.run(WHERE).stdout != START
     assert other.run(WHERE).stdout == START
-    # With the same domain they would share it: the number is what keeps them apart.
+    # With the same domain they would share the turtle, so the number separates them.
     assert other.run(DRIVE.replace("2.0", "-2.0"), ROS_DOMAIN_ID=one.env["ROS_DOMAIN_ID"]).code == 0
     assert other.run(WHERE).stdout == START
 
 
 @pytest.fixture
 def everybodys_folder() -> Iterator[Path]:
-    """pytest's own are closed to other users."""
+    """Other users cannot open pytest's own folders."""
     with tempfile.TemporaryDirectory() as name:
         Path(name).chmod(0o755)
         yield Path(name)

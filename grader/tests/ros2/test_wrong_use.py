@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """turtlesim, and no node that drives."""
+    """turtlesim without a node that drives."""
     for made in world(tmp_path_factory.mktemp("still")):
         made.turtlesim()
         yield made
@@ -24,7 +24,7 @@ def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
 SPAWN = "ros2 service call /spawn turtlesim/srv/Spawn"
 PUB = "ros2 topic pub --once /turtle1/cmd_vel geometry_msgs/msg/Twist"
 FILES_ONLY = {
-    # command -> exit code, what stands on standard error
+    # command -> exit code, what is on standard error
     "ros2 lst": (2, ["invalid choice: 'lst'"]),
     "ros2 topci list": (2, ["invalid choice: 'topci'", "Did you mean 'topic'?"]),
     "ros2 topic lst": (2, ["invalid choice: 'lst'", "Did you mean 'list'?"]),
@@ -219,7 +219,7 @@ def test_whoever_reads_us_may_go(still: World) -> None:
 
 
 def test_the_reader_of_pkg_create_may_exit(still: World, tmp_path: Path) -> None:
-    # The reader has exited before anything is printed.
+    # The reader exits before anything is printed.
     done = still.run(f"ros2 pkg create --build-type ament_python a --destination-directory {tmp_path} > >(exec true)")
     assert "Traceback" not in done.stderr
     assert "could not be written" not in done.stderr

@@ -1,4 +1,4 @@
-"""A domain of its own for tests of the commands: processes started and commands typed as a user would, in bash."""
+"""A separate domain for tests of commands. Processes are started and commands are typed in bash, as a user does."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Done:
 
 @dataclass
 class Running:
-    """A process with the lines that it has written so far, both streams in one."""
+    """A process with the lines that it has written so far. Both streams are merged."""
 
     process: subprocess.Popen[str]
     lines: list[str] = field(default_factory=list)
@@ -43,7 +43,7 @@ class Running:
     _ended: threading.Event = field(default_factory=threading.Event)
 
     def read(self, stream: IO[str]) -> None:
-        """Keep what it writes, in a thread of its own."""
+        """Collect its output in a separate thread."""
         for line in stream:
             with self._news:
                 self.lines.append(line.rstrip("\n"))
@@ -52,17 +52,17 @@ class Running:
 
     @property
     def program(self) -> int:
-        """The process that `ros2 run` has started, by its id."""
+        """Return the id of the process that `ros2 run` has started."""
         return children(self.process.pid)[0]
 
     def wait_for(self, text: str, times: int = 1) -> None:
-        """Wait until so many lines contain `text`."""
+        """Wait until this many lines contain `text`."""
         with self._news:
             there = self._news.wait_for(lambda: sum(text in line for line in self.lines) >= times, HANG_S)
         assert there, f"no line with '{text}' came:\n" + "\n".join(self.lines)
 
     def stop(self, number: int = signal.SIGINT) -> int:
-        """Send a signal to it and what it started, as a terminal does; returns the exit code, with all lines read."""
+        """Send a signal to the process group, as a terminal does. Return the exit code when all lines are read."""
         if self.process.poll() is None:
             os.killpg(self.process.pid, number)
         code = self.process.wait(HANG_S)
@@ -71,20 +71,20 @@ class Running:
 
 
 def children(pid: int) -> list[int]:
-    """The processes that a process has started and that have not ended, by their ids."""
+    """Return the ids of the running child processes of a process."""
     return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
 
 
 @dataclass
 class World:
-    """A HOME, an environment with ROS 2, and a domain of its own."""
+    """A home folder, an environment with ROS 2, and a separate domain."""
 
     home: Path
     env: dict[str, str]
     running: list[Running] = field(default_factory=list)
 
     def run(self, command: str, *, stdin: str = "", **env: str) -> Done:
-        """Type a command and wait for its end."""
+        """Type a command and wait until it ends."""
         done = subprocess.run(
             ["bash", "-c", command],
             env={**self.env, **env},
@@ -98,7 +98,7 @@ class World:
         return Done(done.stdout, done.stderr, done.returncode)
 
     def start(self, command: str, ready: str | None = None, **env: str) -> Running:
-        """Start a command in a process group of its own, and wait for a line with `ready`."""
+        """Start a command in a process group of its own, and wait for a line that contains `ready`."""
         process = subprocess.Popen(
             ["bash", "-c", f"exec {command}"],
             env={**self.env, **env},
@@ -122,13 +122,13 @@ class World:
         return self.start("ros2 run turtlesim turtlesim_node", "Spawning turtle")
 
     def draw_circle(self, install: Path) -> Running:
-        """Start the tutorial's node from a workspace that was built."""
+        """Start the tutorial's node from a built workspace."""
         return self.start(
             f"bash -c 'source {install}/setup.bash && exec ros2 run my_robot_controller draw_circle'", "Draw"
         )
 
     def end(self) -> None:
-        """Let nothing that was started stay behind."""
+        """Stop everything that was started."""
         for running in self.running:
             running.stop()
         if REAL_ROS2:
@@ -136,17 +136,17 @@ class World:
 
 
 def environment(home: Path, domain: int | None = None) -> dict[str, str]:
-    """The environment after `source <(grader env)`, in a domain of its own."""
+    """Return the environment after `source <(grader env)`, with a separate domain."""
     ros = underlay.with_turtlesim(installation.find_ros())
     own = own_domain() if domain is None else domain
     ours = str(Path(sys.executable).parent)
     user = {
         **SOURCED_ENV,
         "HOME": str(home),
-        # Where a test wants one, it starts it.
+        # A test that needs the daemon starts it.
         "GRADER_ROS2_DAEMON": "0",
         "PATH": f"{PATH}:{ours}" if SOURCED_ENV else f"{ours}:{PATH}",
-        # The window of the real turtlesim needs no screen then.
+        # With this, the window of the real turtlesim needs no screen.
         "QT_QPA_PLATFORM": "offscreen",
         "LANG": "C.UTF-8",
         "TERM": "dumb",
@@ -155,7 +155,7 @@ def environment(home: Path, domain: int | None = None) -> dict[str, str]:
 
 
 def world(home: Path) -> Iterator[World]:
-    """For a fixture: a world that ends with the tests that use it."""
+    """Yield a world for a fixture. It ends when the tests that use it have ended."""
     home.mkdir(parents=True, exist_ok=True)
     made = World(home, environment(home))
     try:
@@ -165,7 +165,7 @@ def world(home: Path) -> Iterator[World]:
 
 
 def build(home: Path, env: dict[str, str]) -> Path:
-    """Build the solution's package in a workspace; returns its install folder."""
+    """Build the solution's package in a workspace. Return its install folder."""
     workspace = home / "ros2_ws"
     shutil.copytree(SOLUTION, workspace / "src/my_robot_controller")
     subprocess.run(["colcon", "build"], cwd=workspace, env=env, check=True, capture_output=True, timeout=HANG_S)
@@ -186,7 +186,7 @@ class Golden:
 
 
 def golden(name: str) -> Golden:
-    """Read a recording."""
+    """Return a recording."""
     text = (_GOLDEN / f"{name}.txt").read_text("utf-8")
     match = re.fullmatch(r"\$ (.*?)\n(.*)\[exit (\d+)\](?: \(after SIGINT at \d+s\))?\n", text, re.DOTALL)
     assert match, name
@@ -196,5 +196,5 @@ def golden(name: str) -> Golden:
 
 
 def all_golden() -> set[str]:
-    """The names of all recordings."""
+    """Return the names of all recordings."""
     return {path.name.partition(".")[0] for path in _GOLDEN.iterdir()}

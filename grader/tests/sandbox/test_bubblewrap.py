@@ -70,7 +70,7 @@ def test_a_room_has_shared_memory_because_lttng_needs_it() -> None:
 
 
 def test_a_cell_sees_only_named_parts_of_a_hidden_folder(tmp_path: Path) -> None:
-    """An installed grader is next to libraries that a node needs. The cell needs only its launcher."""
+    """The libraries of an installed grader are also those of a node. A cell needs only the grader's launcher."""
     package = tmp_path / "site-packages" / "grader"
     for name in ("trial/launcher.py", "trial/rest.py", "solutions/a.py", "fastdds.xml"):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
@@ -89,7 +89,7 @@ print(sorted(str(path.relative_to(below)) for path in below.rglob("*")), (below 
 
 def test_a_cell_inherits_no_descriptor() -> None:
     done = run("import os; print(len([fd for fd in os.listdir('/proc/self/fd') if int(fd) > 2]))")
-    assert int(done.stdout) == 1  # listing itself opens one
+    assert int(done.stdout) == 1  # listing the folder opens one
 
 
 @pytest.mark.parametrize("place", ["/", "/usr", "/etc", "/dev", sys.prefix])

@@ -1,4 +1,4 @@
-"""A course that is to be set up."""
+"""A course without a set-up."""
 
 from __future__ import annotations
 

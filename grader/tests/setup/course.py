@@ -1,4 +1,4 @@
-"""A folder to set up, without running any command."""
+"""A folder for the set-up. No command is really run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LEARNER, TESTS = bootstrap.PARTS["learner"], bootstrap.PARTS["tests"]
 
 
 class Course:
-    """A folder to set up, with the commands that were run instead of being carried out."""
+    """A folder for the set-up. Commands are collected instead of run."""
 
     def __init__(self, root: Path) -> None:
         self.root = root
@@ -31,7 +31,7 @@ class Course:
         self.requested: list[list[str]] = []
         self.offline = False
         self.granted: set[str] = set()
-        """The packages that can be had."""
+        """The packages that can be installed."""
 
     def call(self, command: list[str], **_options: object) -> int:
         self.commands.append(list(map(str, command)))
@@ -44,7 +44,7 @@ class Course:
         return 0
 
     def provide(self, needs: list[Need], *_: object) -> str:
-        """Stands in for the package manager."""
+        """A replacement for the package manager."""
         self.requested.append([need.package for need in needs])
         self.needs = [need for need in self.needs if need.package not in self.granted]
         self.of_tests = [need for need in self.of_tests if need.package not in self.granted]
@@ -52,7 +52,7 @@ class Course:
 
     @property
     def programs(self) -> list[str]:
-        """The command that was run: venv or grader.setup.install."""
+        """Return the name of the command that was run: venv or grader.setup.install."""
         known = ("venv", "grader.setup.install")
         return [next(word for word in command if word in known) for command in self.commands]
 

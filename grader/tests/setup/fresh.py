@@ -1,7 +1,7 @@
 """A fresh clone of the course, with nothing installed.
 
-Each `make` target is tried in one of its own, and one real thing is done with what it brought. These tests need the
-network where the caches of pip and uv lack something; `.ci/doors` runs them, and `make test-all`.
+Each `make` target is run in a clone of its own, and one real task is done with the result. These tests need the network
+if the caches of pip and uv lack something. `.ci/doors` and `make test-all` run them.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[3]
 SET_UP_S = 900
 """Time limit of a command; with a full cache none takes a minute."""
 NETWORK = ("PIP_", "UV_", "SSL_CERT_", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY", "NO_PROXY")
-"""How this machine reaches packages: all that a fresh clone gets of the environment."""
+"""How this machine reaches packages. A fresh clone gets no other part of the environment."""
 
 
 @dataclass(frozen=True)
@@ -31,15 +31,15 @@ class Clone:
     folder: Path
     home: Path
     within: tuple[str, ...] = ()
-    """What each command is started by: another user, another view of the disks."""
+    """A prefix of each command: another user, or another view of the disks."""
     settings: tuple[tuple[str, str], ...] = ()
-    """Variables that it has besides."""
+    """Additional variables."""
 
     def run(self, command: str, *, ends: int = 0, cwd: Path | None = None, **environment: str) -> str:
-        """Run a line of bash; returns all that it printed.
+        """Run a line of bash. Return everything that it printed.
 
         Raises:
-            AssertionError: it did not end with this exit code.
+            AssertionError: it ended with another exit code.
         """
         started = self._start(command, cwd or self.folder, environment)
         try:
@@ -65,10 +65,10 @@ class Clone:
         )
 
     def stop(self, command: str, at: str, number: signal.Signals) -> str:
-        """Run a command and send the signal to it and all its children once it prints `at`; returns what it printed.
+        """Run a command. When it prints `at`, send the signal to it and to all its children. Return what it printed.
 
         Raises:
-            AssertionError: it ended without having printed that.
+            AssertionError: it ended and had not printed `at`.
         """
         started = self._start(command, self.folder, {})
         with started:
@@ -83,17 +83,17 @@ class Clone:
             return printed + (started.stdout.read() if started.stdout else "")
 
     def make(self, target: str) -> str:
-        """Make the target, and see that all that it installed fits together; returns what it printed."""
+        """Run the target, and check that the installed packages fit together. Return what it printed."""
         said = self.run(f"make {target}")
         self.run(".venv/bin/uv pip check --python .venv/bin/python")
         return said
 
     def lacks(self, module: str) -> bool:
-        """Whether its Python does not have a module."""
+        """Return whether its Python lacks a module."""
         return "No module named" in self.run(f".venv/bin/python -c 'import {module}'", ends=1)
 
     def environment(self) -> dict[str, str]:
-        """Next to nothing, as with `env -i`; what was downloaded before is used again."""
+        """An almost empty environment, as with `env -i`. Earlier downloads are used again."""
         network = {name: value for name, value in os.environ.items() if name.upper().startswith(NETWORK)}
         cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
         settings = Path.home() / ".config/pip/pip.conf"
@@ -108,7 +108,7 @@ class Clone:
 
 
 def clone(folder: Path) -> Clone:
-    """Copy what git has of the course, as it stands now, into a home below `folder`. Its path has spaces."""
+    """Copy the current state of all files that git tracks into a home folder below `folder`. Its path has spaces."""
     home = folder / "home of Ada"
     target = home / "ros2 course"
     listed = subprocess.run(
@@ -116,7 +116,7 @@ def clone(folder: Path) -> Clone:
         cwd=ROOT, capture_output=True, text=True, check=True,
     ).stdout  # fmt: skip
     for name in filter(None, listed.split("\0")):
-        if (ROOT / name).is_file():  # not if it was removed and that is not committed yet
+        if (ROOT / name).is_file():  # not if it was removed without a commit
             (target / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, target / name)
     return Clone(target, home)

@@ -24,7 +24,7 @@ JAZZY = machine.SourcedRos("/opt/ros/jazzy", (3, 12), turtlesim=True)
 
 
 USERS = {**os.environ, **({} if SOURCED_ENV else {"ROS_DISTRO": ""})}
-"""Whatever else is sourced, it is not the tests' ROS 2."""
+"""A sourced ROS 2 other than the tests' ROS 2 has no effect."""
 
 
 def states(lines: list[Line]) -> dict[str, str]:
@@ -33,13 +33,13 @@ def states(lines: list[Line]) -> dict[str, str]:
 
 @pytest.fixture
 def wheels() -> Ros:
-    """The ROS 2 of the tests, as the wheels are."""
+    """The ROS 2 of the tests looks like the wheels."""
     return replace(find_ros(), kind="wheels")
 
 
 @pytest.fixture
 def bare(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
-    """Nothing is run, only files are read: each test breaks one thing."""
+    """Only files are read and nothing is run. Each test breaks one thing."""
     monkeypatch.setattr(bubblewrap, "why_unavailable", lambda: None)
     monkeypatch.setattr(underlay, "ensure", lambda _ros, _tell: Path("/cache/turtlesim"))
     monkeypatch.setattr(doctor, "look_at_node", lambda _ros, **_: Line("a node", "starts"))

@@ -1,4 +1,4 @@
-"""Installing python3 from `make`, where there is none; the stand-ins' `python3` comes with the package manager."""
+"""`make` installs python3 if it is missing. The package manager is a stand-in and provides another stand-in."""
 
 from __future__ import annotations
 

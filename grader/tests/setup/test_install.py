@@ -18,7 +18,7 @@ class Installers:
         self.pip: list[str] = []
         self.uv: list[str] = []
         self.failed: dict[str, str] = {}
-        """The output of an installer that fails, by its name."""
+        """Return the output of an installer that fails, selected by its name."""
 
     def run(self, command: list[str], _: dict[str, str]) -> install.Ran:
         if "--editable" in command:

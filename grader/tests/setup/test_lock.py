@@ -63,7 +63,7 @@ def applies(entry: lock.Entry, python: str) -> bool:
 
 
 def applying(python: str) -> dict[str, str]:
-    """Name -> version of each package that the lock file installs for a Python; fails if one name has two versions."""
+    """Return name -> version of each package that the lock file installs for a Python. A name must have one version."""
     found: dict[str, str] = {}
     for entry in ENTRIES:
         if applies(entry, python):
@@ -120,7 +120,7 @@ def named_by_the_project(parts: list[str]) -> list[Requirement]:
 
 
 def resolved(wanted: list[Requirement]) -> set[str]:
-    """The names of all packages that these need, according to the metadata of the installed ones."""
+    """Return the names of all packages that these need, according to the metadata of the installed packages."""
     found: set[tuple[str, str]] = set()
     while wanted:
         need = wanted.pop()
@@ -134,7 +134,7 @@ def resolved(wanted: list[Requirement]) -> set[str]:
 @pytest.mark.parametrize("sourced", [pytest.param(False, marks=of_the_wheels), True], ids=["wheels", "sourced"])
 @pytest.mark.parametrize("parts", bootstrap.PARTS.values(), ids=list(bootstrap.PARTS))
 def test_each_set_up_has_all_that_its_packages_need(parts: list[str], *, sourced: bool) -> None:
-    # For this Python; for the others, setup/test_resolved.py asks uv, which needs the network.
+    # For this Python. setup/test_resolved.py asks uv about the others, which needs the network.
     chosen = [part for part in parts if not (sourced and part == "ros")]
     needed = resolved([need for need in named_by_the_project(chosen) if not need.marker or need.marker.evaluate()])
     assert len(needed) > 70
@@ -143,7 +143,7 @@ def test_each_set_up_has_all_that_its_packages_need(parts: list[str], *, sourced
 
 
 def test_a_part_has_all_versions_of_a_package() -> None:
-    # Which one is installed depends on the Python.
+    # The Python decides which one is installed.
     for part, entries in PARTS.items():
         names = {entry.name for entry in entries}
         if part not in lock.ALWAYS:
@@ -152,7 +152,7 @@ def test_a_part_has_all_versions_of_a_package() -> None:
 
 
 def test_no_two_packages_write_the_same_file() -> None:
-    # uv installs in parallel: which of the two files stays would be chance.
+    # uv installs in parallel, so chance would decide which of the two files remains.
     names = {canonicalize_name(entry.name) for entry in ENTRIES}
     writers: dict[str, set[str]] = {}
     for package in metadata.distributions():
@@ -178,7 +178,7 @@ def test_select_leaves_out_and_picks() -> None:
 
 
 def split(needs: dict[str, str]) -> dict[str, list[str]]:
-    """The packages of each part after `split`, from one letter a package that each part needs."""
+    """Return the packages of each part after `split`. Each letter is a package that the part needs."""
     entries = [lock.Entry(name, "1", f"{name}==1\n") for name in "abcdefg"]
     text = lock.split(entries, needs)
     return {part: [entry.name for entry in found] for part, found in lock.parse(text).items()}

@@ -34,7 +34,7 @@ def closed() -> Iterator[Path]:
 
 
 def fake_python(folder: Path, name: str, version: tuple[int, int, int], path: str | None = None) -> None:
-    """A program that answers the probe as an interpreter would."""
+    """A program that answers the probe like an interpreter."""
     folder.mkdir(parents=True, exist_ok=True)
     answer = {"path": path or str(folder / name), "version": version, "cpython": True, "venv": True, "headers": True}
     (folder / name).write_text(f"#!/bin/sh\necho '{json.dumps(answer)}'\n")
@@ -68,7 +68,7 @@ def test_what_runs_first_reads_under_an_old_python(name: str) -> None:
 
 
 def too_new(tree: ast.Module) -> list[str]:
-    """What parses under Python 3.6 and fails when it runs: types as later versions write them, and later modules."""
+    """Code that Python 3.6 can parse but not run: types in the syntax of later versions, and later modules."""
     found = [node.module or "" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
     found = [name for name in found if name in ("__future__", "collections.abc", "dataclasses")]
     for node in ast.walk(tree):

@@ -25,7 +25,7 @@ STEP = "03-circle-publisher"
 
 @contextmanager
 def cluster(course: Clone) -> Iterator[str]:
-    """A scheduler and a worker, as the instructions for many machines start them; the engine's name."""
+    """A scheduler and a worker, started as the instructions for many machines say. Returns the engine's name."""
     address = course.home / "scheduler.json"
     commands = [
         ["scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(address)],

@@ -1,4 +1,4 @@
-"""`make demo` in a fresh clone, and what it and the lessons say to type next."""
+"""`make demo` in a fresh clone, and the commands that it and the lessons recommend next."""
 
 from __future__ import annotations
 

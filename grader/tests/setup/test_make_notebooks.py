@@ -1,4 +1,4 @@
-"""`make notebooks` in a fresh clone: a student's notebook is run by its kernel, and graded by nbgrader."""
+"""`make notebooks` in a fresh clone: the kernel runs a student's notebook, and nbgrader grades it."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def test_a_notebook_is_run_and_graded(tmp_path: Path) -> None:
     assert following == ["source .venv/bin/activate", f"jupyter lab exercises/{FIRST}/{FIRST}.ipynb"]
     assert (course.folder / "exercises" / FIRST / f"{FIRST}.ipynb").is_file()
     assert course.lacks("distributed")
-    # A student's, by the kernel that was installed, in a folder of their own.
+    # A student's notebook in a folder of their own, run by the installed kernel.
     shutil.copytree(course.folder / "solutions" / STEP, course.home / STEP)
     activate = f"source {shlex.quote(str(course.folder / '.venv/bin/activate'))}"
     course.run(f"{activate} && jupyter execute --inplace {STEP}.ipynb", cwd=course.home / STEP)
     cells = json.loads((course.home / STEP / f"{STEP}.ipynb").read_text("utf-8"))["cells"]
     assert "Passed: 100 of 100 points." in json.dumps(cells)
-    # An instructor's: the same one is handed in.
+    # An instructor collects the same notebook.
     course.run("source .venv/bin/activate && grader class new ~/class")
     course.run(f"{activate} && nbgrader generate_assignment {STEP}", cwd=course.home / "class/course")
     shutil.copytree(course.home / STEP, course.home / "class/class/submitted/ada" / STEP)

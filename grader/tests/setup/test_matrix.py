@@ -1,4 +1,4 @@
-"""The set-up in a fresh clone, really tried: for each Python, as an ordinary user, with little room, interrupted."""
+"""The real set-up in a fresh clone: with each Python, as an ordinary user, on a small disk, and interrupted."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ pytestmark = [pytest.mark.exhaustive, pytest.mark.door]
 PASSED = "Passed: 100 of 100 points."
 MINORS = range(machine.OLDEST[1], machine.NEWEST[1] + 1)
 ORDINARY = 54321
-"""The uid of a user whom the system does not know."""
+"""The uid of a user that the system does not know."""
 STAGES = (
     "Making .venv",
     "Installing the installer",
@@ -37,7 +37,7 @@ STAGES = (
 
 
 def pythons() -> dict[int, str]:
-    """Each Python of the right kind that is here, by its minor version: the system's, pyenv's."""
+    """Return each suitable Python on this machine by its minor version: the system's and pyenv's."""
     versions = sorted(Path.home().glob(".pyenv/versions/*/bin"))
     path = os.pathsep.join([*machine.SYSTEM_PATH, os.environ.get("PATH", ""), *map(str, versions)])
     fit = (python for python in machine.find_pythons(path) if python.cpython and python.venv and python.headers)
@@ -59,7 +59,7 @@ def test_each_python(tmp_path: Path, minor: int) -> None:
 
 @pytest.fixture
 def ordinary(tmp_path: Path) -> Iterator[Clone]:
-    """The clone of an ordinary user, with nothing of root's."""
+    """The clone of an ordinary user. It has nothing that belongs to root."""
     if os.getuid() != 0:
         yield clone(tmp_path)
         return

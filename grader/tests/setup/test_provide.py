@@ -26,14 +26,14 @@ APT = "apt-get install -y -q --no-install-recommends -o DPkg::Lock::Timeout=60 -
 
 
 class Machine:
-    """A machine of stand-ins, and the messages on it."""
+    """A machine with stand-ins, and the messages on it."""
 
     def __init__(self, folder: Path) -> None:
         self.stand_ins = StandIns(folder)
         self.said: list[str] = []
 
     def provide(self, *needs: Need, **env: str) -> str:
-        # The shell itself is this machine's.
+        # The shell itself is the real one.
         given = {"PATH": f"{self.stand_ins.path}:/usr/bin:/bin", **env}
         return provide.provide(needs, given, self.said.append)
 
@@ -156,7 +156,7 @@ needs = [package_managers.Need("cmake", "cmake"), package_managers.Need("bubblew
 print("why:", repr(provide.provide(needs, {{**os.environ, "PATH": "{tmp_path}:/usr/bin:/bin"}}, print)))
 """
     ours, theirs = pty.openpty()
-    # A session of its own, so that this terminal is the one that sudo finds.
+    # The command gets a session of its own, so that sudo finds this terminal.
     command = ["setsid", "--ctty", sys.executable, "-c", code]
     with subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs):
         os.close(theirs)

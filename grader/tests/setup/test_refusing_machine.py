@@ -1,4 +1,4 @@
-"""The set-up on a machine that refuses it something, really tried: one sentence with what to do, and no traceback."""
+"""The real set-up on a machine that refuses something: one sentence says what to do, and there is no traceback."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ NOTHING_KEPT = (("PIP_CACHE_DIR", "/nowhere/pip"), ("UV_CACHE_DIR", "/nowhere/uv
 
 
 def refused(course: Clone, said: str) -> None:
-    """`make demo` ends with this sentence."""
-    printed = course.run("make demo", ends=2)  # make's own, whatever its command ended with
+    """Check that `make demo` ends with this sentence."""
+    printed = course.run("make demo", ends=2)  # make has its own exit code for every failed command
     assert f"Error {MACHINE_BROKEN}" in printed
     (sentence,) = [line for line in printed.splitlines() if said in line]
     assert sentence.endswith(".")
@@ -45,7 +45,7 @@ def test_on_a_full_disk(tmp_path: Path, room: int) -> None:
 
 
 def on_a_disk(course: Clone, room: int) -> Clone:
-    """The clone on a disk of its own with so much room (bytes), anew for each command."""
+    """The clone on its own disk with this much space (bytes). Each command gets a new one."""
     original = course.folder.with_name("original")
     course.folder.rename(original)
     course.folder.mkdir()

@@ -1,6 +1,6 @@
-"""Each part of the lock file is complete for every Python: uv resolves what it lists, and finds nothing missing.
+"""Each part of the lock file is complete for every Python: uv resolves its list and finds nothing missing.
 
-So each set-up is, since it is made of such parts. Needs the network where uv's cache lacks something.
+So each set-up is complete, since it consists of such parts. The test needs the network if uv's cache lacks something.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The course as a wheel, installed outside of any checkout: the same commands, in an empty home."""
+"""The course as a wheel, installed outside of a checkout: the same commands work in an empty home folder."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def installed(tmp_path: Path) -> Path:
     run(UV, "venv", "--python", sys.executable, tmp_path / "venv", cwd=tmp_path)
     install = (UV, "pip", "install", "--python", tmp_path / "venv/bin/python", "--no-deps", "--no-build-isolation")
     text = lock.LOCK_FILE.read_text("utf-8")
-    # setuptools first: what has no wheel is built with it.
+    # setuptools comes first, since it builds packages that have no wheel
     for name, only in (("first", frozenset({"setuptools"})), ("rest", None)):
         file = tmp_path / f"{name}.txt"
         file.write_text(lock.select(text, ["setup", "grader", "ros"], only=only))

@@ -1,4 +1,4 @@
-"""Packages as folders, for tests of reading."""
+"""Packages as folders, for tests of the modules that read them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sources that would take for ever, or all memory, are read in a limited time or reported as too large."""
+"""Sources that would take too much time or memory are read in a limited time or reported as too large."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ except TooLargeError as error:
 
 
 def doubled(join: str, first: str, lines: int = 60) -> bytes:
-    """Each name is made of the one before, several times."""
+    """Each name is the previous one, repeated several times."""
     names = [f"a{number} = {join.format(f'a{number - 1}')}" for number in range(1, lines)]
     return "\n".join([f"a0 = {first}", *reversed(names), f"setup(name=a{lines - 1})"]).encode()
 

@@ -85,7 +85,7 @@ def test_pipes_and_sockets_are_rejected_and_never_waited_for(package: Path) -> N
 
 
 def _may_write(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the process that reads change files, since the swap of these tests happens in it."""
+    """Allow the reading process to change files, because these tests replace a file there."""
     monkeypatch.setattr(reader, "forbid_all_but_reading", lambda: None)
 
 
@@ -130,7 +130,7 @@ def test_an_unreadable_file_is_rejected(package: Path) -> None:
 
 
 def rejected_as_nobody(package: Path) -> str:
-    """To root nothing is unreadable, so look at it as somebody else, from inside: the folders above may be closed."""
+    """root can read everything. So another user looks at it, from inside, since the folders above may be closed."""
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:

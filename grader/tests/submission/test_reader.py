@@ -103,7 +103,7 @@ def test_what_takes_too_much_is_too_large(function: object, monkeypatch: pytest.
     with pytest.raises(TooLargeError, match=r"too large to be read|nested too deeply"):
         read(function)  # type: ignore[arg-type]
     with pytest.raises(ChildProcessError):
-        os.waitpid(-1, os.WNOHANG)  # nobody is left
+        os.waitpid(-1, os.WNOHANG)  # no process is left
 
 
 def test_the_limits_are_of_the_child_alone() -> None:
@@ -117,7 +117,7 @@ def test_the_limits_are_of_the_child_alone() -> None:
 
 def test_it_holds_no_descriptor_of_its_parents() -> None:
     with Path("/dev/null").open("rb"):
-        assert len(read(os.listdir, "/proc/self/fd")) <= 5  # the standard ones, its pipe, and the listing itself
+        assert len(read(os.listdir, "/proc/self/fd")) <= 5  # the standard streams, its pipe, and the listing itself
 
 
 def test_errors_come_back_whatever_others_have_made_of_pickling() -> None:
@@ -189,7 +189,7 @@ FORBIDDEN: dict[str, Callable[[Path], object]] = {
     "a mode": lambda file: file.chmod(0o777),
     "a date": lambda file: os.utime(file),
 }
-"""What the code of an attacker might do in this process, if it found a hole in a parser."""
+"""Code that an attacker could run in this process by a hole in a parser."""
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="the filter is for x86-64")

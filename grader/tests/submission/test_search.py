@@ -126,7 +126,7 @@ def test_a_linked_package_is_named_and_not_followed(tmp_path: Path, package: Pat
 def test_a_folder_that_colcon_ignores_is_named(tmp_path: Path) -> None:
     make(tmp_path / "pkg", {**PACKAGE, "COLCON_IGNORE": ""})
     assert "COLCON_IGNORE" in refused(tmp_path)
-    assert open_submission(tmp_path / "pkg").files  # named outright, it is what the user wants
+    assert open_submission(tmp_path / "pkg").files  # the user has named this package
 
 
 def test_several_packages_are_listed(tmp_path: Path) -> None:

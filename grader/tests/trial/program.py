@@ -1,4 +1,4 @@
-"""A program to look at, for tests of what the kernel tells of programs."""
+"""A running Python program, for tests of what the kernel reports about programs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def python(code: str) -> Iterator[subprocess.Popen[str]]:
-    """A Python that printed "ready"."""
+    """Yield a Python process that has printed "ready"."""
     pipe = subprocess.PIPE
     with subprocess.Popen([sys.executable, "-c", code], stdin=pipe, stdout=pipe, text=True) as process:
         assert process.stdout is not None

@@ -1,4 +1,4 @@
-"""What tests of a trial run where rclpy is (in_ros.py)."""
+"""Functions for tests of a trial. They run in a process that has rclpy (in_ros.py)."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 
 
 def what_one_spin_handles() -> dict[str, Any]:
-    """How many of three commands are kept at once, and what is heard of the log while a request is answered."""
+    """Return how many of three commands are kept at once, and which log lines are received during a request."""
     stage = _stage()
     student = rclpy.create_node("student")
     commands = student.create_publisher(Twist, "/turtle1/cmd_vel", 10)
     spawn = student.create_client(Spawn, "/spawn")
     until(lambda: commands.get_subscription_count() > 0 and spawn.service_is_ready())
     stage.recorder.follow_graph()
-    until(lambda: bool(stage.spin(0.1)) and bool(stage.recorder.log))  # /rosout is heard from here on
+    until(lambda: bool(stage.spin(0.1)) and bool(stage.recorder.log))  # from here on, /rosout is received
     for _ in range(3):
         commands.publish(Twist())
     until(lambda: bool(stage.spin(0.1)) and bool(stage.recorder.commands))
@@ -43,7 +43,7 @@ def what_one_spin_handles() -> dict[str, Any]:
 
 
 def a_line_while_the_graph_is_looked_at() -> list[float]:
-    """When a line is taken in that the node writes during the last look before the clock starts (s)."""
+    """Return when a line is stored that the node writes during the last look before the clock starts (s)."""
     written: list[str] = []
     taken_in_s: list[float] = []
 
@@ -61,7 +61,7 @@ def a_line_while_the_graph_is_looked_at() -> list[float]:
 
 
 def a_node_that_drives_before_it_is_found() -> int:
-    """How many of its commands have come when the clock starts."""
+    """Return how many of its commands have arrived when the clock starts."""
     commands: list[str] = []
     stage: Any = WallTrial.__new__(WallTrial)
     stage.node = SimpleNamespace(ended=lambda: False, read_output=lambda _: 0)
@@ -73,7 +73,7 @@ def a_node_that_drives_before_it_is_found() -> int:
 
 
 def who_may_request() -> bool:
-    """Whether anybody may ask without a client; fails where who has one may not, or may when it is gone."""
+    """Return whether a node without a client can call. A node must be able to call only while it has a client."""
     stage = _stage()
     student = rclpy.create_node("student")
     anybody = stage.may_request()
@@ -95,7 +95,7 @@ def who_may_request() -> bool:
 
 
 def quiet_s() -> float:
-    """How long discovery must be silent (s)."""
+    """Return how long discovery must be silent (s)."""
     return QUIET_S
 
 

@@ -1,4 +1,4 @@
-"""The kernel counts who works and who waits, so real processes are looked at; figures that must be exact are made."""
+"""The kernel counts who works and who waits, so these tests examine real processes. Exact numbers are invented."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 WORK_S = 0.5
-"""CPU time that a program works when it is told to; the kernel counts in steps of 0.01 s or finer."""
+"""The CPU time that a program uses when it is told to work (s). The kernel counts in steps of 0.01 s or finer."""
 WORKS = """
 import os, sys, time
 os.sched_setaffinity(0, {{{processor}}})
@@ -34,7 +34,7 @@ for _ in sys.stdin:
 
 @contextmanager
 def program(work_s: float) -> Iterator[subprocess.Popen[str]]:
-    """A program that works for so long (s of CPU time) whenever it gets a line, all of them on one processor."""
+    """A program that uses this CPU time (s) for each line that it gets. All such programs share one processor."""
     code = WORKS.format(processor=min(os.sched_getaffinity(0)), work_s=work_s)
     with python(code) as process:
         yield process
@@ -92,7 +92,7 @@ def test_stalls_without_other_programs_are_the_nodes_own() -> None:
 
 
 Counts = tuple[tuple[float, float], tuple[float, float], float]
-"""(ran, waited) of the node, (ran, waited) of the simulator, stolen from the machine, all since the last look (s)."""
+"""(ran, waited) of the node, (ran, waited) of the simulator, and stolen time, all since the last look (s)."""
 
 
 @pytest.mark.parametrize(
@@ -142,7 +142,7 @@ def test_what_the_simulator_works_beyond_its_own_share_is_the_nodes(monkeypatch:
 
 
 class Busy:
-    """A node whose processes have worked so long, and a stage whose simulator has, whenever one asks."""
+    """A replacement for a node and a trial: their processes have always worked for these times (s)."""
 
     def __init__(
         self,

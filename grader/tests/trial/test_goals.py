@@ -14,7 +14,7 @@ ACTION = "/turtle1/rotate_absolute"
 
 
 class Theta:
-    """Like the Goal of RotateAbsolute, without ROS 2."""
+    """An object like the Goal of RotateAbsolute, without ROS 2."""
 
     theta = 1.5
 

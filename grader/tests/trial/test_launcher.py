@@ -24,7 +24,7 @@ print(signal.getsignal(signal.SIGINT) is signal.default_int_handler, signal.pthr
 
 
 def deaf_to_ctrl_c() -> None:
-    """As a shell leaves a job that it starts in the background."""
+    """Start it like a shell that starts a job in the background."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
@@ -39,7 +39,7 @@ SIMULATED = ["--ros-args", "-p", "use_sim_time:=true"]
 
 
 def launch(in_ros: InRos, folder: Path, text: str, ros_arguments: list[str]) -> subprocess.CompletedProcess[bytes]:
-    """Run a program as the launcher does."""
+    """Run a program like the launcher."""
     script = folder / "node"
     script.write_text(text, "utf-8")
     tree = io.BytesIO()
@@ -58,7 +58,7 @@ def launch(in_ros: InRos, folder: Path, text: str, ros_arguments: list[str]) -> 
 
 
 def printed(done: subprocess.CompletedProcess[bytes]) -> bytes:
-    """The output of the program itself."""
+    """Return the output of the program itself."""
     return done.stdout.rpartition(b"ready\n")[2]
 
 

@@ -1,4 +1,4 @@
-"""Rest is read from /proc, so real processes are looked at."""
+"""The state of threads is read from /proc, so these tests examine real processes."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def test_the_end_of_a_trial_is_the_end_of_a_child_that_does_not_die_with_its_parent(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # As bubblewrap's own child between its birth and its prctl(PR_SET_PDEATHSIG).
+    # The state of bubblewrap's own child between its start and its prctl(PR_SET_PDEATHSIG).
     said = tmp_path / "pid"
     starter = ["sh", "-c", f"sleep 300 & echo $! > {said}.new; mv {said}.new {said}; wait"]
     monkeypatch.setattr("grader.sandbox.bubblewrap.room", lambda *_, **__: starter)

@@ -1,4 +1,4 @@
-"""What a trial records of pens and of the other turtles."""
+"""What a trial records about pens and the other turtles."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""A driven turtlesim and a client of it, side by side in a process that has ROS 2."""
+"""turtlesim, driven by the test, and a client, both in one process with ROS 2."""
 
-# ruff: noqa: ANN401 - to mypy, what ROS 2 brings is Any
+# ruff: noqa: ANN401 - mypy sees everything of ROS 2 as Any
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ STATUS = {
 
 
 class Rig:
-    """A turtlesim whose frames follow each other as fast as they can, and a client. Times out loudly."""
+    """turtlesim with frames that follow each other as fast as possible, and a client. Long waits raise an error."""
 
     def __init__(self, **hooks_and_start: Any) -> None:
         rclpy.init(args=[])
@@ -47,7 +47,7 @@ class Rig:
         rclpy.shutdown()
 
     def until(self, condition: Callable[[], bool]) -> None:
-        """Let time go on until something holds."""
+        """Let time pass until the condition holds."""
         deadline = time.monotonic() + HANG_S
         while not condition():
             assert time.monotonic() < deadline, "it never came"

@@ -1,4 +1,4 @@
-"""The node turtlesim over the real rclpy, compared with what the real turtlesim was recorded to show."""
+"""The node turtlesim on the real rclpy, compared with recordings of the real turtlesim."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ INTERFACES = Path(__file__).parents[2] / "turtlesim/package"
 
 
 def golden(name: str) -> list[str]:
-    """The recorded lines of output, without the command and its exit code."""
+    """Return the recorded output lines, without the command and its exit code."""
     lines = (GOLDEN / name).read_text().splitlines()
     return [line for line in lines if not line.startswith(("$ ", "[exit "))]
 
 
 def log_of(stderr: str) -> list[str]:
-    """Level and text of each line that the node logged, without its time."""
+    """Return level and text of each line that the node logged, without the time."""
     return re.findall(r"^(\[[A-Z]+\]) \[[0-9.]+\] (\[turtlesim\]: .*)$", stderr, re.MULTILINE)
 
 

@@ -1,4 +1,4 @@
-"""The system that the tests of the page look at, and a browser."""
+"""The programs that the tests of the page use, and a browser."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def system(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """A world with nothing in it but turtlesim and its view."""
+    """A world with only turtlesim and its view."""
     for made in world(tmp_path_factory.mktemp("view")):
         made.start(VIEW, "Spawning turtle")
         yield made
@@ -32,13 +32,13 @@ def system(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
 
 @pytest.fixture
 def fresh(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
-    """A world with nothing in it yet."""
+    """An empty world."""
     yield from world(tmp_path_factory.mktemp("fresh"))
 
 
 @pytest.fixture
 def page(browser: Browser, system: World) -> Iterator[Page]:
-    """The page of a canvas that is clean."""
+    """The page with a clean canvas."""
     tab = opened(browser, address(system))
     tab.get_by_role("button", name="Reset").click()
     tab.get_by_text("turtle1: x 5.54 m, y 5.54 m, heading 0.00 rad").wait_for()

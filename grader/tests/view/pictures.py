@@ -1,6 +1,6 @@
-"""Takes the picture of the live view that README and lessons show: `python -m grader.tests.view.pictures`.
+"""Takes the picture of the live view for README and the lessons: `python -m grader.tests.view.pictures`.
 
-A real turtlesim, the solution of step 03, and the system's Chromium; needs what the tests need.
+It starts turtlesim, the solution of step 03 and the system's Chromium. It needs the same programs as the tests.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ WIDTH, HEIGHT = 1240, 780
 
 
 def main() -> int:
-    """Write the picture; returns the exit code."""
+    """Write the picture. Return the exit code."""
     browser = find_browser()
     if browser is None:
         print("There is no Chromium here: apt-get install chromium", file=sys.stderr)
         return 3
     with tempfile.TemporaryDirectory() as folder:
-        # The domain of a user with id 0, so that the picture is the same wherever it is taken.
+        # User id 0 gives this domain, so the picture is the same on every machine.
         made = World(Path(folder), environment(Path(folder), domain=1))
         try:
             take(made, browser)
@@ -35,7 +35,7 @@ def main() -> int:
 
 
 def take(world: World, browser: str) -> None:
-    """Let the turtle drive most of its circle, then take the picture."""
+    """Wait until the turtle has driven most of its circle, then take the picture."""
     simulator = world.start(f"{OUR_TURTLESIM} --view", "Spawning turtle")
     url = next(word for line in simulator.lines for word in line.split() if word.startswith("http://"))
     world.start(f"python3 {SOLUTION}/my_robot_controller/draw_circle.py", "Draw")
@@ -44,7 +44,7 @@ def take(world: World, browser: str) -> None:
         page.goto(url)
         page.locator(".arrow.flows[data-from='/draw_circle']").wait_for()
         page.locator("[data-topic='/turtle1/cmd_vel'] .rate", has_text="2 Hz").wait_for()
-        # Once round, and on to where the turtle looks to the upper left.
+        # One round, and then on until the turtle faces the upper left.
         page.get_by_text("heading -2.").wait_for()
         page.get_by_text("heading 2.").wait_for()
         page.screenshot(path=FILE)

@@ -21,7 +21,7 @@ PEN = (179, 184, 255)
 
 
 def address(of: World) -> str:
-    """What the last turtlesim that was started has printed."""
+    """Return what the turtlesim that was started last has printed."""
     started = of.running[-1] if len(of.running) == 1 else next(each for each in reversed(of.running) if url(each))
     return url(started)
 
@@ -40,7 +40,7 @@ def opened(browser: Browser, url: str) -> Page:
 
 
 def drawn(page: Page) -> int:
-    """The number of visible pixels of the canvas in the pen's colour."""
+    """Return the number of visible pixels of the canvas in the pen's colour."""
     picture = Image.open(io.BytesIO(page.locator("#sea").screenshot())).convert("RGB")
     return sum(
         count
@@ -50,11 +50,11 @@ def drawn(page: Page) -> int:
 
 
 def turtle(page: Page, name: str = "turtle1") -> str:
-    """Where it is drawn."""
+    """Return where the turtle is drawn."""
     return page.locator(f'.turtle[data-name="{name}"]').get_attribute("transform") or ""
 
 
 def live(of: World) -> tuple[str, str, str]:
-    """The server's host and port, the token, and the address of the connection that reads and drives."""
+    """Return the server's host and port, the token, and the address of the connection."""
     host, _, token = address(of).removeprefix("http://").partition("/#")
     return host, token, f"ws://{host}/live?token={token}"

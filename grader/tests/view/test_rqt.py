@@ -1,4 +1,4 @@
-"""rqt, rqt_console and rqt_plot as a user types them, beside turtlesim, in the system's Chromium."""
+"""rqt, rqt_console and rqt_plot beside turtlesim, in the system's Chromium, started as a user does."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 DRAW_CIRCLE = f"python3 {SOLUTION}/my_robot_controller/draw_circle.py"
 pytestmark = of_the_wheels
-"""A sourced ROS 2 has its own rqt, with windows."""
+"""A sourced ROS 2 has its own rqt with windows."""
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +111,7 @@ def test_rqt_console_shows_what_nodes_log_and_filters_it(driven: World, browser:
         tab.get_by_label("Warn").uncheck()
         warned.first.wait_for(state="detached")
         tab.get_by_label("Text").fill("SPAWNING turtle [anna]")
-        assert log.get_by_role("row").count() == 2  # the header, and one message
+        assert log.get_by_role("row").count() == 2  # the header and one message
         tab.get_by_role("status").get_by_text("hidden by the filters").wait_for()
         assert tab.title() == "rqt_console, live"
 

@@ -1,4 +1,4 @@
-"""The other ways in: `grader sim --view`, and a view that is killed while its simulator goes on."""
+"""Other ways to start the view: `grader sim --view`. A view that is killed does not stop its simulator."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Iterator[World]:
 
 
 def program(of: Running) -> int:
-    """The process that simulates: `grader sim` becomes it, `ros2 run` starts it."""
+    """Return the id of the process that simulates: `grader sim` becomes this process, `ros2 run` starts it."""
     return of.process.pid if REAL_TURTLESIM else of.program
 
 
 def whole(of: Running) -> dict[str, Any]:
-    """What a page is told first."""
+    """Return the first message that a page gets."""
     url = next(word for line in of.lines for word in line.split() if word.startswith("http://"))
     host, _, token = url.removeprefix("http://").partition("/#")
     with connect(f"ws://{host}/live?token={token}", origin=Origin(f"http://{host}")) as page:
@@ -43,7 +43,7 @@ def whole(of: Running) -> dict[str, Any]:
 
 
 def test_grader_sim_shows_its_turtle_and_takes_parameters(alone: World) -> None:
-    # What is built once is.
+    # The cache is shared, because building takes long.
     cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     simulator = alone.start("grader sim --view --ros-args -p background_r:=7", "Spawning turtle", XDG_CACHE_HOME=cache)
     while not (reported := whole(simulator))["turtles"]:

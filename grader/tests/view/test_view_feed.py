@@ -1,4 +1,4 @@
-"""From the simulator to its view over a real socket; also when nobody reads at the other end."""
+"""The simulator sends to its view through a real socket. It continues if the other end does not read."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MIDDLE = Start(5.0, 5.0, 0.0)
 
 
 class Simulator:
-    """A world with its feed, and what arrives at the other end."""
+    """A world with its feed, and the messages at the other end."""
 
     def __init__(self) -> None:
         ours, self.view = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -42,7 +42,7 @@ class Simulator:
             self.feed.show(self.world.turtles, paused=paused)
 
     def reported(self) -> list[dict[str, object]]:
-        """All that can be read now."""
+        """Return everything that can be read now."""
         messages = []
         with suppress(BlockingIOError):
             while True:
@@ -88,13 +88,13 @@ def test_the_view_knows_what_the_simulator_knows(simulator: Simulator) -> None:
 def test_a_turtle_at_rest_costs_no_messages(simulator: Simulator) -> None:
     simulator.run(2)
     simulator.reported()
-    simulator.feed._reported_s = math.inf  # so that the time does not matter
+    simulator.feed._reported_s = math.inf  # the time must not matter
     simulator.run(40)
     assert simulator.reported() == []
 
 
 def test_a_view_that_does_not_read_stops_nobody_and_gets_a_picture(simulator: Simulator) -> None:
-    # So many that the socket is full long before.
+    # This is enough to fill the socket.
     frames = 0
     while len(simulator.feed.canvas.lines) <= MOST_LINES + 100:
         simulator.world.command("turtle1", 1.0, 0.0, 1.5)
@@ -144,7 +144,7 @@ def test_commands_are_heard_by_the_view_until_it_is_gone(simulator: Simulator) -
     simulator.view.close()
     with pytest.raises(ConnectionError):
         simulator.feed.requests()
-    # And what is told to nobody is no error.
+    # A message without a receiver is not an error.
     simulator.run(4)
 
 

@@ -1,4 +1,4 @@
-"""Pages that listen, that are slow, and that sleep."""
+"""Pages that receive, pages that are slow, and pages that sleep."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from grader.view.hub import KEPT, Hub
 
 
 class Page:
-    """What a page was sent; `gate` closed is a page that does not listen."""
+    """The messages that a page was sent. While `gate` is closed, the page receives nothing."""
 
     def __init__(self) -> None:
         self.reported: list[dict[str, object]] = []
@@ -28,7 +28,7 @@ async def settle() -> None:
 
 
 class System:
-    """A hub whose whole is a number that grows with its news."""
+    """A hub whose full state is a number. Each update increases it."""
 
     def __init__(self) -> None:
         self.number = 0
@@ -80,7 +80,7 @@ def test_a_page_that_did_not_listen_gets_the_whole_once_and_no_queue() -> None:
         return page
 
     reported = asyncio.run(run()).reported
-    # The one that was on its way, the whole, and what came after it.
+    # The message that was being sent, the full state, and the messages after it.
     assert [each["kind"] for each in reported] == ["all", "frame", "all", "frame"]
     assert [each["number"] for each in reported] == [0, 1, 1000, 1001]
 

@@ -22,7 +22,7 @@ def circle(count: int, radius: float = 2.0) -> list[tuple[float, float]]:
 
 
 def distance(point: tuple[int, int], points: list[tuple[int, int]]) -> float:
-    """How far a point lies from a line through points."""
+    """Return the distance of a point from a line through points."""
 
     def to_piece(begin: tuple[int, int], end: tuple[int, int]) -> float:
         length = math.dist(begin, end)
@@ -92,7 +92,7 @@ def test_a_trail_without_end_becomes_a_picture_and_goes_on() -> None:
     after = trail.painted(500).getbbox()
     assert before is not None
     assert after is not None
-    # What was there before, and a line that goes higher.
+    # The earlier lines, and a line that is higher.
     assert after[1] < before[1]
     assert (after[0], *after[2:]) == (before[0], *before[2:])
 

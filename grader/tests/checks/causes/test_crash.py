@@ -1,4 +1,4 @@
-"""How a node ended, in words, and the exception that ended it."""
+"""The words for how a node ended, and the exception that ended it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The smallest change that would mend the cause of a crash."""
+"""The smallest change that fixes the cause of a crash."""
 
 from __future__ import annotations
 

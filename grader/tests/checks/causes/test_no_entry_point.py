@@ -1,4 +1,4 @@
-"""Why there is no executable of the exercise's name, or one that leads nowhere."""
+"""Why the exercise's executable is missing, or why it starts nothing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def found(files: Files, build: Build = NOTHING) -> Finding:
 
 
 def setup_py(instead: str, more: str = "") -> Files:
-    """setup.py with this in place of the line of the entry point, and more arguments of setup()."""
+    """Return setup.py with this line in place of the entry point, and with more arguments of setup()."""
     return {"setup.py": SETUP_PY.replace(POINT, instead).replace("    entry_points=", f"{more}    entry_points=")}
 
 

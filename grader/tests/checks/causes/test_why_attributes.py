@@ -1,4 +1,4 @@
-"""Why an attribute was not there."""
+"""The causes of an AttributeError."""
 
 from __future__ import annotations
 

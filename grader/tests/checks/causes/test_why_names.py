@@ -1,4 +1,4 @@
-"""Why a name was not there."""
+"""The causes of a NameError."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why something comes far too often, or ever more often."""
+"""Why messages arrive far too often, or more and more often."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Why a node that runs sends nothing."""
+"""Why a running node sends nothing."""
 
 from __future__ import annotations
 

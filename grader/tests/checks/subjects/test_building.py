@@ -1,4 +1,4 @@
-"""The checks of the build: it succeeds and installs everything that it should."""
+"""The checks of the build: colcon succeeds and installs everything."""
 
 from __future__ import annotations
 

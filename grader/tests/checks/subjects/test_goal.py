@@ -12,7 +12,7 @@ from grader.trial.recording import Pose
 
 Leg = tuple[int, float, float]
 START = Pose(3.0, 5.0, 0.0)
-"""The goal is 4 m to the east of it."""
+"""The goal is 4 m east of the start."""
 QUARTER = math.pi / 2 / (10 * TICK_S)
 
 

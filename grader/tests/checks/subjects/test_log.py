@@ -63,7 +63,7 @@ def test_lines_in_the_format_are_enough_whatever_else_is_logged() -> None:
             f"{OTHER_FORM} In an f-string, {{value:.2f}} writes two decimal places.",
         ),
         (
-            "Hello \u0663",  # a digit, but none of ASCII
+            "Hello \u0663",  # a digit, but not an ASCII digit
             HELLO,
             'The last log line is "Hello \u0663".',
             OTHER_FORM,

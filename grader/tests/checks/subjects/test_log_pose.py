@@ -1,4 +1,4 @@
-"""The lines of step 06 against the way that the turtle drove: ahead to the left, a rest, backwards."""
+"""The lines of step 06 compared with the turtle's trajectory: straight on to the left, a rest, backwards."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ PACKAGE = node(
     ("        msg = Twist()", "        way = math.hypot(1.0, 2.0)\n        self.get_logger().info(f'{way}')")
 )
 LOGS = {"position": 14, "distance": 13}
-"""The lines of that package that each kind of mistake leads to."""
+"""The lines of this package at which each kind of mistake is reported."""
 WAY = legs((40, 1.0, 0.7), (15, 0.0, 0.0), (30, -0.9, 0.5))
 DRIVE = recording(WAY)
 TIMES = np.arange(1.0, 10.0)
 
 Said = tuple["Floats", "Floats", "Floats"]
-"""x, y, distance, one a line."""
+"""One line for each x, y, distance."""
 
 
 def truth(lag_s: float = 0.0) -> Said:
-    """The lines of a right node at TIMES, with the poses of `lag_s` before."""
+    """The lines of a correct node at TIMES, with the poses that are `lag_s` older."""
     frames, start = DRIVE.frames, DRIVE.start
     at = np.searchsorted(frames.t_s, TIMES - lag_s) - 1
     x, y = np.append(start.x, frames.x), np.append(start.y, frames.y)

@@ -1,4 +1,4 @@
-"""Doing without certain functions, where that is the task; advice."""
+"""Functions that a task does not allow, and advice."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SLEEP = ("sleep", "sleep_for", "create_rate")
 
 
 def used(text: str, **files: str) -> tuple[Status, str]:
-    """The finding about a node with this text below it and these modules next to it."""
+    """Return the finding about a node with this code below it, and with these modules next to it."""
     beside = {f"my_robot_controller/{name}.py": code for name, code in files.items()}
     package = submission({NODE_FILE: f"import time\n{NODE}\n{text}\n", **beside})
     finding = found(NO_CALLS, evidence(package=package), names=SLEEP, cause="Count.")

@@ -1,4 +1,4 @@
-"""The circle with a student's own numbers."""
+"""A circle with a student's own numbers."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ SIDE = {"counter-clockwise": 1.0, "clockwise": -1.0}
 
 
 def changed(**values: float) -> OwnNumbers:
-    """The numbers of alice with these values."""
+    """Return alice's numbers with these values."""
     return replace(ALICE, values={**ALICE.values, **values})
 
 
 def given(numbers: OwnNumbers | str | None, by: str | None = "alice") -> Evidence:
-    """A circle driven by the numbers drawn for alice, with these in the file."""
+    """Return a circle with the numbers drawn for alice, and a file with these numbers."""
     commands = every(1.0 / RATE_HZ, RADIUS_M, SIDE[str(ALICE.values["direction"])])
     text = numbers if numbers is None or isinstance(numbers, str) else to_toml(numbers)
     return evidence(
@@ -47,7 +47,7 @@ def test_the_own_numbers_pass_whoever_may_write_the_name_otherwise(by: str | Non
 
 
 def test_no_spelling_of_the_own_id_makes_a_friends_circle_pass() -> None:
-    """Bob hands in alice's program, and tries spellings of his own id until the drawn numbers are hers."""
+    """Bob submits alice's program, and tries spellings of his own id until he gets her numbers."""
     for number in range(512):
         spelling = "".join(char.upper() if number >> at & 1 else char for at, char in enumerate("bobbobbob"))
         numbers = draw_numbers(SPEC, spelling)

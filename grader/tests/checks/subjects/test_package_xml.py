@@ -1,4 +1,4 @@
-"""The checks of the package's files, of package.xml, of its name and dependencies."""
+"""The checks of the package's files, its package.xml, its name and its dependencies."""
 
 from __future__ import annotations
 

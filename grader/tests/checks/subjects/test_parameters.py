@@ -1,4 +1,4 @@
-"""Parameters: how they are described, and what a node says when one is set."""
+"""Parameters: their description, and what a node answers when one is set."""
 
 from __future__ import annotations
 

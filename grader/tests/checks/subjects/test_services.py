@@ -1,4 +1,4 @@
-"""Services: what a node asked for and answered, a pause, and an arc in a colour."""
+"""Services: a node's requests and replies, a pause, and an arc in another colour."""
 
 from __future__ import annotations
 

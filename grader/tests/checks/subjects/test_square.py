@@ -28,7 +28,7 @@ def round_(sides: tuple[float, ...] = (2.0,) * 4, corners: tuple[float, ...] = (
 
 
 GAP = round_((2.1, 2.1, 1.9, 1.9), (96.0, 96.0, 96.0, 90.0))
-"""Each side and corner is right, but the square ends 0.62 m away from the start."""
+"""Each side and each corner is right, but the square ends 0.62 m away from its start."""
 
 
 def square(parts: list[Leg], start: Pose | None = None, **values: str) -> Finding:
@@ -40,8 +40,8 @@ def square(parts: list[Leg], start: Pose | None = None, **values: str) -> Findin
     [
         round_(),
         round_()[:-1],
-        [*round_()[1:], side()],  # begins with a corner
-        [leg for part in round_() for leg in (part, (2, 0.0, 0.0))],  # rests in between
+        [*round_()[1:], side()],  # starts with a corner
+        [leg for part in round_() for leg in (part, (2, 0.0, 0.0))],  # stops between the sides
     ],
 )
 @pytest.mark.parametrize("start", [None, Pose(6.0, 5.0, 1.2)])

@@ -20,7 +20,7 @@ ENDED = ProcessEnd(by="itself", exit_code=0, t_s=3.0, stop_s=None)
 
 
 def observed(*ends: tuple[Literal["publisher", "subscription"], str, str], **changes: Any) -> Recording:  # noqa: ANN401
-    """A trial in which the node had these ends of topics (kind, topic, type)."""
+    """Return a trial in which the node had these publishers and subscriptions (kind, topic, type)."""
     endpoints = tuple(Endpoint(kind, "/draw_circle", topic, type_) for kind, topic, type_ in ends)
     ours = Endpoint("subscription", "/turtlesim", TOPIC, TWIST)
     graph = Graph(0.0, ("/turtlesim", "/draw_circle"), (ours, *endpoints))

@@ -1,4 +1,4 @@
-"""turtle_teleop_key, draw_square and mimic as a user starts them, beside turtlesim, on the real ROS 2."""
+"""turtle_teleop_key, draw_square and mimic on the real ROS 2, started beside turtlesim as a user does."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def terminal(of: World, command: str = "bash --norc --noprofile") -> pexpect.spa
 
 
 def poses(of: World, turtle: str) -> Running:
-    """Lines x,y,theta,linear,angular of a turtle from now on."""
+    """Lines x,y,theta,linear,angular of a turtle, from now on."""
     return of.start(f"ros2 topic echo /{turtle}/pose --csv", ",")
 
 
@@ -91,7 +91,7 @@ def test_the_terminal_is_left_as_it_was(alone: World, how: str) -> None:
         shell.expect("ready")
         shell.sendline("fg")
         shell.expect(TELEOP)
-        # As soon as keys are read one by one again.
+        # The terminal passes on single keys again.
         until(lambda: not shell.getecho())
     if how.startswith("SIG"):
         os.kill(job, signal.Signals[how])
@@ -107,11 +107,11 @@ def test_the_terminal_is_left_as_it_was(alone: World, how: str) -> None:
 def test_it_ends_when_the_terminal_is_lost(alone: World) -> None:
     keys = terminal(alone, TELEOP)
     keys.expect("Q quits")
-    # Not `close`, which would kill it.
+    # `close` would kill it.
     keys.ptyproc.fileobj.close()
     keys.ptyproc.closed = keys.closed = True
     until(lambda: not keys.isalive())
-    # It ended by itself. The real `ros2 run` does not outlive the terminal.
+    # It ended by itself. The real `ros2 run` ends with the terminal.
     assert REAL_ROS2 or keys.signalstatus is None
 
 
@@ -141,13 +141,13 @@ def test_draw_square_resets_and_drives_around_the_corner(beside: World) -> None:
     assert moved.code == 0
     observed = poses(beside, "turtle1")
     square = beside.start("ros2 run turtlesim draw_square")
-    # The rest of the square is tried on the simulator's motion, without waiting for it.
+    # test_square_velocity.py tests the rest of the square on the simulator's motion, without waiting for it.
     square.wait_for("Driving to [7.54, 7.54]")
     assert square.stop() == 0
     assert not any("Traceback" in line for line in square.lines)
     path = [tuple(map(float, line.split(",")[:3])) for line in observed.lines if line.count(",") == 4]
     path = [place for place in path if place[:2] != (1.0, 9.0)]
-    # Reset to the middle, 2 m straight to the right, then upwards.
+    # It is reset to the middle, drives 2 m to the right, and then turns upwards.
     assert path[0] == pytest.approx((5.544445, 5.544445, 0.0), abs=1e-4)
     assert max(abs(y - 5.544445) for x, y, _ in path if x < 7.5) < 0.02
     assert path[-1][0] == pytest.approx(7.544445, abs=0.02)
@@ -162,7 +162,7 @@ def test_mimic_drives_one_turtle_as_the_other_moves(beside: World) -> None:
     twist = "{linear: {x: 0.75}, angular: {z: -0.25}}"
     beside.start(f"ros2 topic pub -r 10 /turtle1/cmd_vel geometry_msgs/msg/Twist '{twist}'")
     first.wait_for(",0.75,-0.25")
-    # It has the same velocity, and that frame after frame: so it moves.
+    # It has the same velocity in several frames, so it moves.
     second.wait_for(",0.75,-0.25", times=round(1.0 / FRAME_S))
     *_, last = (line for line in second.lines if line.endswith(",0.75,-0.25"))
     assert math.dist((2.0, 2.0), tuple(map(float, last.split(",")[:2]))) > 0.5

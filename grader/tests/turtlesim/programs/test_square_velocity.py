@@ -1,4 +1,4 @@
-"""The square on the simulator's own motion, with commands that arrive some frames late."""
+"""The square with the simulator's own motion. The commands arrive some frames late."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Point = tuple[float, float]
 
 
 def drive(late: int, seconds: float = 36.0) -> tuple[list[Point], list[Leg]]:
-    """The turtle's places, frame by frame, and the legs in order."""
+    """Return the positions of the turtle in each frame, and the legs in order."""
     world = World()
     turtle = world.turtles["turtle1"]
     legs = [first(turtle.x, turtle.y, turtle.theta)]
@@ -33,7 +33,7 @@ def drive(late: int, seconds: float = 36.0) -> tuple[list[Point], list[Leg]]:
 
 
 def off_the_square(place: Point, corners: list[Point]) -> float:
-    """The distance to the nearest side of a square along the axes (m)."""
+    """Return the distance to the nearest side of a square that is parallel to the axes (m)."""
     (left, bottom), (right, top) = corners[0], corners[2]
     x, y = min(max(place[0], left), right), min(max(place[1], bottom), top)
     inside = min(x - left, right - x, y - bottom, top - y)
@@ -48,7 +48,7 @@ def test_the_turtle_drives_a_square_of_two_metres(late: int) -> None:
     assert max(off_the_square(place, corners) for place in places) < 0.02
     for corner in corners:
         assert min(math.dist(place, corner) for place in places) < 0.01
-    # Four sides with a turn each, and on it goes.
+    # There are four sides with a turn each, and it continues.
     assert [leg.turning for leg in legs[:9]] == [False, True] * 4 + [False]
 
 
@@ -63,6 +63,6 @@ def test_it_never_drives_faster_than_a_metre_a_second() -> None:
 
 
 def test_the_last_turn_goes_on_over_the_seam_of_the_angle() -> None:
-    # Looking west, the turn to the south leads from pi to -pi/2.
+    # From west, the turn to the south goes from pi to -pi/2.
     _, _, angular = follow(Leg(0.0, 0.0, math.pi, turning=True), 0.0, 0.0, -math.pi + 0.1)
     assert angular > 0

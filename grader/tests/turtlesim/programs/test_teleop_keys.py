@@ -44,7 +44,7 @@ def test_other_keys_are_ignored(other: str) -> None:
 
 
 def test_the_letters_inside_of_a_sequence_are_no_keys() -> None:
-    # End is ESC [ F, and F by itself cancels.
+    # The key End sends ESC [ F, and F alone cancels.
     assert keys("\x1b[F") == ([], "")
 
 
