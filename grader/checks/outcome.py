@@ -44,6 +44,8 @@ class Finding:
     """The change that would fix the mistake. The grader tries it but never shows it to a student."""
     tried: str = ""
     """A sentence about the result of trying the change."""
+    change: str = ""
+    """The change as a unified diff if it has proved the cause. It is for instructors, because it is the solution."""
 
     def because(self, cause: Cause) -> Finding:
         """Return the finding with this cause instead of its own."""

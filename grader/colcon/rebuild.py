@@ -23,10 +23,14 @@ if TYPE_CHECKING:
 
 
 class Rebuild:
-    """A replacement for `runner.build` that reuses the last build. `runs` counts the new builds made by `build`."""
+    """A replacement for `runner.build` that reuses the last build. `runs` counts the new builds made by `build`.
+
+    `build_s` is the duration of the last new build (s).
+    """
 
     def __init__(self, build: Callable[..., runner.Built] = runner.build) -> None:
         self.runs = 0
+        self.build_s = 0.0
         self._build = build
         self._last: tuple[Submission, runner.Built] | None = None
 
@@ -45,6 +49,7 @@ class Rebuild:
         else:
             self.runs += 1
             built = self._build(submission, ros, in_cell=in_cell, tell=tell)
+            self.build_s = built.build.seconds
         self._last = (submission, built)
         return built
 

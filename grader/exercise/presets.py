@@ -27,6 +27,7 @@ PRESETS: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
         "package-xml": {"kind": "package_xml", "title": "package.xml is valid"},
         "dependencies": {
             "kind": "dependencies",
+            "imports": "declared",
             "title": "package.xml declares what the nodes use",
             "needs": ["package-xml"],
         },

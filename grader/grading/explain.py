@@ -37,9 +37,18 @@ TOO_LONG = "there was no time to try more"
 NOT_SIMULATED = "a changed node needs wall time"
 
 
-def explain(evidence: Evidence, outcomes: Sequence[Outcome], build_s: float, regrade: Regrade) -> Tries:
-    """Try to fix the causes of the failed outcomes. `build_s` is the duration of the build (s)."""
-    return _Explaining(evidence, outcomes, MOST_F * (build_s + BARE_NODE_S), regrade).run()
+def explain(
+    evidence: Evidence,
+    outcomes: Sequence[Outcome],
+    build_s: float,
+    regrade: Regrade,
+    give_up: Callable[[], bool] = lambda: False,
+) -> Tries:
+    """Try to fix the causes of the failed outcomes. `build_s` is the duration of the build (s).
+
+    Before each try, `give_up` may say that the result is no longer wanted.
+    """
+    return _Explaining(evidence, outcomes, MOST_F * (build_s + BARE_NODE_S), regrade, give_up).run()
 
 
 def part_of(exercise: Exercise, check: str) -> Exercise:
@@ -66,6 +75,7 @@ class _Explaining:
     outcomes: Sequence[Outcome]
     seconds: float
     regrade: Regrade
+    give_up: Callable[[], bool]
     made: list[Try] = field(default_factory=list)
     behind: set[Key] = field(default_factory=set)
 
@@ -79,7 +89,7 @@ class _Explaining:
         stopped = ""
         while True:
             target = next((each for each in current.values() if _may_be_tried(each) and _key(each) not in tried), None)
-            if target is None:
+            if target is None or self.give_up():
                 break
             tried.add(_key(target))
             changed = applied(files, target.finding.fix)

@@ -67,22 +67,27 @@ def grade(
     in advance.
     """
     turns = Turns(turns_folder())
-    rebuild = Rebuild(build) if options.explain else build
+    rebuild = Rebuild(build)
     with turns.shared():
         graded = _Grading(exercise, submission, options, tell, early, rebuild, trial, turns).run()
-    return _explained(graded, options, tell, rebuild, trial) if options.explain else graded
+    return explained(graded, options, tell, build=rebuild, trial=trial) if options.explain else graded
 
 
-def _explained(
+def explained(
     graded: Graded,
     options: Options,
-    tell: Callable[[str], None],
-    build: Callable[..., runner.Built],
-    trial: Callable[..., Trial],
+    tell: Callable[[str], None] = lambda _: None,
+    *,
+    build: Rebuild,
+    trial: Callable[..., Trial] = Trial,
+    give_up: Callable[[], bool] = lambda: False,
 ) -> Graded:
-    """Return the grading, with its causes proved by trying to fix them if the first trial ran in simulated time."""
+    """Return the grading, with its causes proved by trying to fix them if the first trial ran in simulated time.
+
+    Before each try, `give_up` may say that the result is no longer wanted. `build` has the last build.
+    """
     report, evidence = graded.report, graded.evidence
-    if report.clock == "wall" or not report.with_status(Status.FAILED):
+    if report.clock == "wall" or not any(outcome.finding.fix for outcome in report.with_status(Status.FAILED)):
         return graded
     again = dataclasses.replace(options, clock="simulated", explain=False)
 
@@ -97,9 +102,8 @@ def _explained(
         return trial(dataclasses.replace(plan, stop_at_doubt=True), *rest, **more)
 
     begun = time.monotonic()
-    evidence = dataclasses.replace(
-        evidence, tries=explain(evidence, report.outcomes, report.seconds.get("build", 0.0), regrade)
-    )
+    tries = explain(evidence, report.outcomes, build.build_s, regrade, give_up)
+    evidence = dataclasses.replace(evidence, tries=tries)
     seconds = {**report.seconds, "explain": time.monotonic() - begun}
     explained = report_of(evidence, report.outcomes, report.ros, seconds, confined=report.confined)
     return dataclasses.replace(graded, report=explained, evidence=evidence)

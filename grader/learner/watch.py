@@ -15,7 +15,7 @@ from watchfiles import DefaultFilter, watch
 
 from grader.colcon.rebuild import Rebuild
 from grader.errors import UsageError
-from grader.grading.grade import Graded, grade
+from grader.grading.grade import Graded, explained, grade
 from grader.submission.package import open_answers, open_submission
 from grader.trial.trial import Plan, Trial
 
@@ -85,6 +85,10 @@ class Events:
                 self._saved.clear()
             yield happened
 
+    def waiting(self) -> bool:
+        """Return whether an event has happened that was not yielded yet."""
+        return not self._queue.empty()
+
     def press(self, key: str) -> None:
         """Add a key press, as if it came from the keyboard. Any thread may call this."""
         self._queue.put(Happened("key", key))
@@ -142,6 +146,7 @@ class Watched:
         self._options = options
         self._warm: tuple[Plan, Trial] | None = None
         self._wanted: tuple[Plan, Ros] | None = None
+        self._unproved: Graded | None = None
         self._judged = ""
         """The digest of the last submission, or the reason why there was none."""
 
@@ -168,9 +173,9 @@ class Watched:
             self._judged = str(error)
             raise
         self._judged = submission.digest
-        self._wanted = None
+        self._wanted = self._unproved = None
         try:
-            return grade(
+            graded = self._unproved = grade(
                 self.exercise,
                 submission,
                 self._options,
@@ -181,6 +186,21 @@ class Watched:
             )
         finally:
             self._warm_up()
+        return graded
+
+    def prove(self, tell: Callable[[str], None], give_up: Callable[[], bool]) -> Graded | None:
+        """Prove the causes of the last verdict by trying to fix them in a copy (see `grader.grading.explain`).
+
+        Before each try, `give_up` may say that something else must be done first. Then the next call begins again.
+        Returns the verdict with what the tries have shown, or None if they have shown nothing new.
+        """
+        if self._unproved is None or give_up():
+            return None
+        proved = explained(self._unproved, self._options, tell, build=self.rebuild, give_up=give_up)
+        if give_up():
+            return None
+        self._unproved = None
+        return proved if proved.evidence.tries.made else None
 
     def close(self) -> None:
         """Terminate the waiting processes."""

@@ -60,6 +60,9 @@ class _Screen:
         self._exercise = exercise
         self._workspace = workspace
         self._console = console
+        self._shown: Report | None = None
+        self._below: list[str] = []
+        """What was printed below the report."""
 
     def show(self, events: Events, notice: str) -> steps.Begun | None:
         """Show verdicts until the learner quits or starts another step. Return this step, or None to quit.
@@ -67,6 +70,7 @@ class _Screen:
         The first verdict clears the screen. `notice` is printed below it.
         """
         self._grade(notice)
+        self._prove(events)
         for happened in events:
             if happened.kind == "saved":
                 if self.watched.changed():
@@ -83,9 +87,11 @@ class _Screen:
                     return begun
             elif happened.key in ("q", "\x04"):
                 return None
+            self._prove(events)
         return None
 
     def _grade(self, notice: str = "") -> None:
+        self._shown, self._below = None, []
         if self._console.is_terminal:
             self._console.clear()
         try:
@@ -94,6 +100,7 @@ class _Screen:
         except GraderError as error:
             self._say(str(error))
         else:
+            self._shown = graded.report
             self._render(graded.report, len(notice.splitlines()))
             following = steps.note(self._exercise, self.watched.folder, graded.report, self._workspace)
             if following:
@@ -101,6 +108,22 @@ class _Screen:
         if notice:
             self._say(f"\n{notice}")
         self._say(f"\nWatching {self.watched.folder}   {KEYS if self._console.is_terminal else ''}".rstrip())
+
+    def _prove(self, events: Events) -> None:
+        """Try the causes of the verdict while nothing else happens, and show what the tries have shown."""
+        with self._working() as tell:
+            proved = self.watched.prove(tell, events.waiting)
+        if proved is None or self._shown is None:
+            return
+        if self._console.is_terminal:
+            self._console.clear()
+            self._render(proved.report, sum(text.count("\n") + 1 for text in self._below) - BELOW)
+            below, self._below = self._below, []
+            for text in below:
+                self._say(text)
+        else:
+            terminal.render_changes(self._shown, proved.report, self._console)
+        self._shown = proved.report
 
     def _render(self, report: Report, more: int) -> None:
         """Print the full report if it and the lines below fit into the window. Otherwise, print only what failed."""
@@ -115,6 +138,7 @@ class _Screen:
             notice = hints.hint(self._exercise.id, self._workspace)
         except GraderError as error:
             notice = str(error)
+        self._below.append(notice)
         self._console.print(notice, markup=False, soft_wrap=not self._console.is_terminal)
 
     def _next(self) -> steps.Begun | None:
@@ -133,4 +157,5 @@ class _Screen:
             yield lambda text: status.update(f"{text} ...")
 
     def _say(self, text: str) -> None:
+        self._below.append(text)
         self._console.print(text, markup=False, soft_wrap=True)

@@ -23,6 +23,7 @@ from grader.errors import GraderError, MachineError
 from grader.grading.grade import Graded, grade
 from grader.grading.options import Options
 from grader.notebook.mode import confined
+from grader.report.certainty import cause_label
 from grader.report.plain import plain_line
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_answers, open_submission
@@ -51,7 +52,12 @@ def reason(outcome: Outcome) -> str:
     lines = [f"{sign} {outcome.title}{points}"]
     if outcome.status is not Status.PASSED:
         where = str(finding.where) if finding.where else ""
-        rows = (("seen", finding.observed), ("expected", finding.expected), ("why", finding.cause), ("where", where))
+        rows = (
+            ("seen", finding.observed),
+            ("expected", finding.expected),
+            (cause_label(outcome), finding.cause),
+            ("where", where),
+        )
         lines += [f"    {label}: {text}" for label, text in rows if text]
     return "\n".join(map(plain_line, lines))
 

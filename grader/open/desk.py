@@ -64,7 +64,8 @@ class Desk:
 
     def tell(self, doing: str) -> None:
         """Show what the grader does."""
-        self._set(replace(self._content, doing=doing))
+        if doing != self._content.doing:
+            self._set(replace(self._content, doing=doing))
 
     def early(self, outcomes: Sequence[Outcome]) -> None:
         """Show what is certain to fail, from the files alone."""

@@ -54,6 +54,7 @@ def _grade_until_another(desk: Desk, events: Events, watched: Watched, workspace
                 return True
         elif happened.key == RERUN or (happened.kind == "saved" and watched.changed()):
             _grade(desk, watched, workspace)
+        _prove(desk, events, watched)
     return False
 
 
@@ -66,3 +67,13 @@ def _grade(desk: Desk, watched: Watched, workspace: Path | None) -> None:
         desk.detailed(verdict_html(graded.evidence, graded.report, watched.folder))
     except GraderError as error:
         desk.failed(str(error))
+
+
+def _prove(desk: Desk, events: Events, watched: Watched) -> None:
+    """Try the causes of the verdict while nothing else happens, and show what the tries have shown."""
+    proved = watched.prove(desk.tell, events.waiting)
+    if proved is not None:
+        desk.judged(proved.report)
+        desk.detailed(verdict_html(proved.evidence, proved.report, watched.folder))
+    else:
+        desk.tell("")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
 from grader.common.words import printable, shorten
+from grader.report.certainty import cause_sentence
 from grader.report.hidden import for_students
 from grader.report.verdict import verdict
 
@@ -67,7 +68,9 @@ def _reported(outcome: Outcome) -> str:
     if outcome.status is Status.PASSED:
         return ""
     where = f"({finding.where})" if finding.where else ""
-    return _text(" ".join(text for text in (finding.observed, finding.expected, finding.cause, where) if text))
+    return _text(
+        " ".join(text for text in (finding.observed, finding.expected, cause_sentence(outcome), where) if text)
+    )
 
 
 def _text(text: str) -> str:
@@ -103,7 +106,7 @@ def _command(kind: str, student: str, outcome: Outcome, folder: str) -> str:
             properties["line"] = str(where.line)
     finding = outcome.finding
     message = shorten(
-        " ".join(text for text in (finding.observed, finding.expected, finding.cause) if text), 3 * LONGEST
+        " ".join(text for text in (finding.observed, finding.expected, cause_sentence(outcome)) if text), 3 * LONGEST
     )
     joined = ",".join(f"{name}={_property(value)}" for name, value in properties.items())
     return f"::{kind} {joined}::{_data(message)}"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.checks.outcome import Status
 from grader.common.words import printable
+from grader.report.certainty import cause_sentence
 from grader.report.hidden import for_students
 from grader.report.verdict import verdict
 
@@ -66,5 +67,5 @@ def _output(outcome: Outcome) -> str:
     expected = f"Expected: {finding.expected}" if finding.expected else ""
     error = "This could not be judged. Your instructor can see that." if outcome.status is Status.ERROR else ""
     return "\n".join(
-        printable(text) for text in (note, error, finding.observed, expected, finding.cause, where) if text
+        printable(text) for text in (note, error, finding.observed, expected, cause_sentence(outcome), where) if text
     )

@@ -17,11 +17,18 @@ if TYPE_CHECKING:
 
 
 def for_students(report: Report) -> Report:
-    """Return the report without the details of hidden checks."""
+    """Return the report without the details of hidden checks, and without the changes that prove causes."""
     numbers = {outcome.id: number for number, outcome in enumerate((o for o in report.outcomes if o.hidden), 1)}
     return replace(
-        report, outcomes=tuple(_covered(each, numbers[each.id]) if each.hidden else each for each in report.outcomes)
+        report,
+        outcomes=tuple(
+            _covered(each, numbers[each.id]) if each.hidden else _without_change(each) for each in report.outcomes
+        ),
     )
+
+
+def _without_change(outcome: Outcome) -> Outcome:
+    return replace(outcome, finding=replace(outcome.finding, change=""))
 
 
 def _covered(outcome: Outcome, number: int) -> Outcome:

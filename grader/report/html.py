@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
 from grader.errors import UnreadableError
+from grader.report.certainty import is_certain
 from grader.report.code_excerpt import excerpt
 from grader.report.escaped_template import compiled
 from grader.report.html_page import make_page, save_page
@@ -54,6 +55,11 @@ class ShownCheck:
         """What was observed; empty if it is hidden or only repeats the title."""
         text = self.outcome.finding.observed
         return "" if self.outcome.hidden or text.rstrip(".") == self.outcome.title else text
+
+    @property
+    def certain(self) -> bool:
+        """Whether the cause is a fact."""
+        return is_certain(self.outcome)
 
     def shows(self, where: Where) -> bool:
         """Return whether the code shown with this check includes the line `where`."""

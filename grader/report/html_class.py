@@ -81,6 +81,8 @@ class Diagnosis:
     id: str
     texts: Counter[str] = field(default_factory=Counter)
     entries: list[Entry] = field(default_factory=list)
+    changes: list[tuple[Entry, str]] = field(default_factory=list)
+    """The submissions in which a change proved this cause, each with the change as a unified diff."""
 
     @property
     def text(self) -> str:
@@ -188,6 +190,8 @@ def failures(entries: Iterable[Entry]) -> list[FailedCheck]:
             cause = outcome.finding.diagnosis or "unknown"
             diagnosis = check.by_cause.setdefault(cause, Diagnosis(cause))
             diagnosis.entries.append(entry)
+            if outcome.finding.change:
+                diagnosis.changes.append((entry, outcome.finding.change))
             diagnosis.texts[outcome.finding.cause or outcome.finding.observed] += 1
     return sorted(checks.values(), key=lambda check: (-len(check.entries), check.exercise, check.id))
 

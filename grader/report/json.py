@@ -14,7 +14,8 @@ Schema 4. Every key is always present. Strings are never null unless stated belo
     outcomes      [{id, kind, title, status: "passed", "failed", "skipped" or "error", points, max, seen, expected,
                   cause, diagnosis: stable id of the cause or null, where: {file, line or null} or null, hidden,
                   advice: true if it has no points and never fails a run, near_edge,
-                  tried: the result of changing the cause in a copy, or an empty string}]
+                  tried: the result of changing the cause in a copy, or an empty string,
+                  change: that change as a unified diff, only if it has proved the cause}]
     seconds       {stage: wall time in s}; differs from run to run
     recordings    [paths of the recordings that were kept]
 """
@@ -77,6 +78,7 @@ def _outcome(outcome: Outcome) -> dict[str, Any]:
         "advice": outcome.advice,
         "near_edge": finding.near_edge,
         "tried": finding.tried,
+        **({"change": _encodable(finding.change)} if finding.change else {}),
     }
 
 
@@ -137,6 +139,7 @@ def _read_outcome(data: dict[str, Any]) -> Outcome:
         where=None if where is None else Where(text(where["file"]), whole_or_none(where["line"])),
         near_edge=bool(data["near_edge"]),
         tried=text(data.get("tried", "")),
+        change=text(data.get("change", "")),
     )
     return Outcome(
         id=text(data["id"]),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Status
 from grader.common.words import printable
+from grader.report.certainty import cause_label
 from grader.report.hidden import for_students
 from grader.report.verdict import verdict
 
@@ -68,7 +69,8 @@ def _case(suite: ET.Element, student: str, report: Report, outcome: Outcome) -> 
     element = ET.SubElement(case, tag, message=_text(finding.observed))
     if tag != "skipped":
         element.set("type", _text(finding.diagnosis or tag))
-    rows = (("expected", finding.expected), ("why", finding.cause), ("where", str(finding.where or "")))
+    where = str(finding.where or "")
+    rows = (("expected", finding.expected), (cause_label(outcome), finding.cause), ("where", where))
     element.text = "\n".join(_text(f"{label}: {text}") for label, text in rows if text) or None
 
 

@@ -114,7 +114,7 @@ def _with_try(outcome: Outcome, evidence: Evidence) -> Outcome:
         tried += f" Then {count(tries.behind, 'more mistake')} appeared."
     if evidence.exercise.show_fix:
         tried += f" The change: {shorten(_in_one_line(made.difference), 200)}"
-    return replace(outcome, finding=replace(finding, tried=tried))
+    return replace(outcome, finding=replace(finding, tried=tried, change=made.difference))
 
 
 def _in_one_line(difference: str) -> str:

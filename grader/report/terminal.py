@@ -13,6 +13,7 @@ from rich.text import Text
 
 from grader.checks.outcome import Outcome, Status
 from grader.common.words import count, printable
+from grader.report.certainty import cause_label
 from grader.report.verdict import UNCONFINED, tone, verdict
 
 if TYPE_CHECKING:
@@ -50,6 +51,14 @@ def render(report: Report, console: Console, *, brief: bool = False, verbose: bo
     _line(console, _verdict(report))
     for text in _footnotes(report, verbose=verbose):
         _line(console, Text(text, style="dim"))
+
+
+def render_changes(before: Report, after: Report, console: Console) -> None:
+    """Print the checks whose findings differ in two reports on the same submission."""
+    known = {outcome.id: outcome.finding for outcome in before.outcomes}
+    for outcome in after.outcomes:
+        if outcome.finding != known.get(outcome.id):
+            _check(outcome, console, "")
 
 
 def early(outcomes: Sequence[Outcome]) -> list[str]:
@@ -101,7 +110,7 @@ def _check(outcome: Outcome, console: Console, shown: str) -> None:
     labels = (
         ("seen", finding.observed),
         ("expected", finding.expected),
-        ("why", finding.cause),
+        (cause_label(outcome), finding.cause),
         ("where", where),
         ("tried", finding.tried),
     )

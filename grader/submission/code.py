@@ -15,7 +15,7 @@ from grader.submission.constants import Names, dotted, single_names
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
 MAX_BYTES = 400_000
 """The maximum size of a file that is parsed (bytes). A larger one was not written by hand."""
@@ -182,6 +182,35 @@ def imported_files(module: Module, paths: Collection[str]) -> list[str]:
             continue
         found += [file for name in names if (file := module_file(name, paths)) is not None]
     return found
+
+
+def imported_packages(code: Code, paths: Collection[str]) -> dict[str, Where]:
+    """Return the names of the packages outside of the submission that the code imports, with their first lines.
+
+    An import inside `try` or `if` is optional, so it does not count.
+    """
+    found: dict[str, Where] = {}
+    for module in code.modules:
+        for node in sorted(_required_imports(module.body), key=lambda each: each.lineno):
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            else:
+                names = [node.module] if node.module and not node.level else []
+            for name in names:
+                package = name.partition(".")[0]
+                if module_file(name, paths) is None and module_file(package, paths) is None:
+                    found.setdefault(package, Where(module.file, node.lineno))
+    return found
+
+
+def _required_imports(body: Iterable[ast.AST]) -> Iterator[ast.Import | ast.ImportFrom]:
+    waiting = list(body)
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            yield node
+        elif isinstance(node, ast.stmt) and not isinstance(node, ast.Try | ast.If):
+            waiting += ast.iter_child_nodes(node)
 
 
 def module_file(module: str, paths: Collection[str]) -> str | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 MODULE_OF = {
     "Node": "rclpy.node",
     "MultiThreadedExecutor": "rclpy.executors",
@@ -44,6 +46,14 @@ MODULES = (
     "os",
     "sys",
 )
+PACKAGE = re.compile(
+    r"(?!turtlesim_msgs)\w+_(?:msgs|srvs|interfaces)|rclpy|turtlesim|tf2_ros|rosbag2_py|ament_index_python"
+    r"|launch|launch_ros|message_filters|cv_bridge"
+)
+"""Imports that are packages of ROS 2: the names of interface packages, and those that nodes in Python often use.
+
+The installed packages are not asked, so that a report is the same on every machine. turtlesim_msgs is no package of
+Jazzy."""
 ROS_1 = frozenset({"rospy", "roslib", "tf", "catkin", "roscpp", "rosbag", "actionlib"})
 """Modules that exist only in ROS 1."""
 

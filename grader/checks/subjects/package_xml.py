@@ -7,14 +7,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
-from grader.checks.kind import Kind, NoParams, strings
+from grader.checks.causes.ros_names import PACKAGE
+from grader.checks.kind import Kind, NoParams, choice, strings
 from grader.checks.outcome import Finding, failed, passed
 from grader.common.words import a_list, nearest, shorten
-from grader.submission.code import import_path
+from grader.submission.code import import_path, imported_packages
 from grader.submission.package_xml import line_of, open_tag
 from grader.submission.where import Where
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from grader.evidence.evidence import Evidence
     from grader.submission.package_xml import Manifest
 
@@ -87,43 +90,71 @@ class Dependencies:
     """The names of packages that must be declared as dependencies of the running node."""
 
     packages: tuple[str, ...] = strings(about="The packages that must be declared.")
+    imports: str = choice(
+        "any",
+        "declared",
+        about='"declared": the ROS 2 packages that the nodes of the exercise import must be declared too.',
+    )
 
 
 def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
-    """package.xml declares these packages as <depend> or <exec_depend>."""
+    """package.xml declares these packages, and those that the nodes import, as <depend> or <exec_depend>."""
     manifest = evidence.manifest
-    expected = f"{FILE} declares {a_list(params.packages)}."
+    imported = _imported(evidence) if params.imports == "declared" else {}
+    needed = tuple(dict.fromkeys((*params.packages, *imported)))
+    expected = f"{FILE} declares {a_list(needed)}."
     if manifest is None or manifest.problem is not None:
         return failed(
             f"{FILE} is missing or cannot be read.", expected, Cause("package-xml-invalid", where=Where(FILE))
         )
-    missing = [name for name in params.packages if name not in manifest.run_depends]
+    missing = [name for name in needed if name not in manifest.run_depends]
     if not missing:
         return passed(expected)
-    where = _line(evidence, r"<\w*depend\b", "</license>")
     late = [name for name in missing if name in manifest.other_depends]
     if late:
-        cause = "<build_depend> and <test_depend> do not count when the node runs. <depend> covers everything."
         observed = f"{FILE} declares {a_list(late)} only for building or testing."
-        return failed(
-            observed, expected, Cause("depend-kind", cause, _line(evidence, rf">\s*{re.escape(late[0])}\s*<"))
-        )
+        cause = "<build_depend> and <test_depend> do not count when the node runs. <depend> covers everything."
+        where = _line(evidence, rf">\s*{re.escape(late[0])}\s*<")
+        return failed(observed, expected, Cause("depend-kind", cause, where))
     observed = f"{FILE} does not declare {a_list(missing)}."
-    guess = nearest(missing[0], set(manifest.run_depends) - set(params.packages))
+    return failed(observed, expected, _why_not_declared(evidence, manifest, missing[0], needed, imported))
+
+
+def _imported(evidence: Evidence) -> dict[str, Where]:
+    """Return the ROS 2 packages that the nodes of the exercise import, with the line of the first import."""
+    found: dict[str, Where] = {}
+    for view in evidence.views():
+        for package, where in imported_packages(view.code, evidence.submission.files).items():
+            if PACKAGE.fullmatch(package):
+                found.setdefault(package, where)
+    return found
+
+
+def _why_not_declared(
+    evidence: Evidence, manifest: Manifest, name: str, needed: Sequence[str], imported: Mapping[str, Where]
+) -> Cause:
+    """Return the cause of a package `name` that package.xml does not declare at all."""
+    guess = nearest(name, set(manifest.run_depends) - set(needed))
     if guess is not None:
         cause = f'It declares "{shorten(guess)}". Is that a typing error?'
-        return failed(observed, expected, Cause("depend-misspelt", cause, _line(evidence, re.escape(guess))))
-    comment = re.search(rf"<!--(?:(?!-->).)*\b{re.escape(missing[0])}\b", _text(evidence), re.DOTALL)
+        return Cause("depend-misspelt", cause, _line(evidence, re.escape(guess)))
+    comment = re.search(rf"<!--(?:(?!-->).)*\b{re.escape(name)}\b", _text(evidence), re.DOTALL)
     if comment is not None:
         cause = "The line is inside a comment, between <!-- and -->, so it does not count."
         line = _text(evidence)[: comment.end()].count("\n") + 1
-        return failed(observed, expected, Cause("depend-commented-out", cause, Where(FILE, line)))
+        return Cause("depend-commented-out", cause, Where(FILE, line))
+    where = _line(evidence, r"<\w*depend\b", "</license>")
     setup = evidence.setup_py
-    if setup is not None and missing[0] in setup.required:
-        cause = f"install_requires in setup.py is for pip packages. ROS 2 reads {FILE}."
-        return failed(observed, expected, Cause("depend-in-setup-py", cause, where))
+    if setup is not None and name in setup.required:
+        return Cause(
+            "depend-in-setup-py", f"install_requires in setup.py is for pip packages. ROS 2 reads {FILE}.", where
+        )
     cause = "On a computer without this package, nothing would install it together with yours."
-    return failed(observed, expected, Cause("missing-depend", cause, where))
+    if name in imported:
+        cause = f"{imported[name]} imports it. {cause}"
+    elif imported:
+        cause = f"Your code does not import it, but your node needs its programs. {cause}"
+    return Cause("missing-depend", cause, where)
 
 
 def _text(evidence: Evidence) -> str:

@@ -21,6 +21,7 @@ from grader.errors import UsageError
 from grader.grading.options import Options
 from grader.learner.watch import Events, Watched
 from grader.learner.watch_screen import _Screen
+from grader.report.report import PASSES
 from grader.ros.installation import find_ros
 from grader.ros.underlay import with_turtlesim
 from grader.sandbox import bubblewrap
@@ -62,6 +63,10 @@ def change(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new))
 
 
+def ignored(_: str) -> None:
+    """What is being done, which no one reads."""
+
+
 def failed(watched: Watched) -> list[str]:
     return [o.id for o in watched.grade().report.outcomes if o.status.value == "failed" and not o.advice]
 
@@ -79,6 +84,38 @@ def test_changed_modules_are_graded_without_colcon(package: Path, watched: Watch
     assert failed(watched) == []
     assert watched.rebuild.runs == 1
     assert not watched.changed()
+
+
+def test_causes_are_proved_after_the_verdict_unless_something_else_waits(package: Path, watched: Watched) -> None:
+    assert failed(watched) == []
+    assert watched.prove(ignored, lambda: False) is None
+    change(node_of(package), "create_timer(0.5", "create_timer(0.05")
+    assert failed(watched) == ["rate"]
+    busy = iter([False, True, True])
+    assert watched.prove(ignored, lambda: next(busy)) is None
+    proved = watched.prove(ignored, lambda: False)
+    assert proved is not None
+    rate = next(each for each in proved.report.outcomes if each.id == "rate")
+    assert rate.finding.tried == PASSES
+    assert watched.prove(ignored, lambda: False) is None
+    change(node_of(package), "create_timer(0.05", "create_timer(0.5")
+    assert failed(watched) == []
+    assert watched.rebuild.runs == 1
+
+
+def test_the_screen_shows_a_proof_when_it_is_there(package: Path) -> None:
+    change(node_of(package), "create_timer(0.5", "create_timer(0.05")
+    console = Console(file=io.StringIO(), width=200)
+    screen = _Screen(find_exercise(STEP), package, None, Options(in_cell=bubblewrap.usable()), console)
+    with closing(screen.watched):
+        screen._grade()
+        screen._prove(Events(None))
+    assert isinstance(console.file, io.StringIO)
+    verdict, _, proof = console.file.getvalue().partition("Watching ")
+    assert "    likely: The first argument of create_timer" in verdict
+    assert "    why: The first argument of create_timer" in proof
+    assert f"    tried: {PASSES}" in proof
+    assert "✓" not in proof
 
 
 def test_changes_that_symlink_install_would_miss_start_a_new_build(package: Path) -> None:

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.errors import UsageError
+from grader.report.hidden import for_students
+from grader.report.html import html_page
 from grader.report.html_class import class_page, counts, failures, read_class, save_class_page
-from grader.report.json import to_data, to_json
+from grader.report.json import from_json, to_data, to_json
 from grader.tests.report.hostile import ALL, SCRIPTS
-from grader.tests.report.reports import report
+from grader.tests.report.reports import EVIDENCE, report
 from grader.tests.report.test_html import Tags
 
 if TYPE_CHECKING:
@@ -47,6 +49,25 @@ def test_the_most_frequent_failures_come_first_with_causes(folder: Path) -> None
     circle = next(check for check in found if check.id == "circle")
     assert [(each.id, len(each.entries)) for each in circle.diagnoses] == [("wrong-radius", 2)]
     assert "linear.x divided by angular.z" in circle.diagnoses[0].text
+
+
+def test_the_change_that_proved_a_cause_is_for_instructors_only(folder: Path) -> None:
+    given = report("failed")
+    change = "-        msg.linear.x = 2.2\n+        msg.linear.x = <2.0>\n"
+    given = replace(
+        given,
+        outcomes=tuple(
+            replace(each, finding=replace(each.finding, change=change)) if each.id == "circle" else each
+            for each in given.outcomes
+        ),
+    )
+    assert from_json(to_json(given)) == given
+    assert not any(each.finding.change for each in for_students(given).outcomes)
+    assert "2.0&gt;" not in html_page(EVIDENCE["failed"], given)
+    (folder / "proved.json").write_text(to_json(replace(given, submission="zoe/my_robot_controller")))
+    page = class_page(read_class(folder))
+    assert page.count("The change that proved it") == 1
+    assert "msg.linear.x = &lt;2.0&gt;" in page
 
 
 def test_errors_of_the_machine_have_their_own_list_and_do_not_count_in_averages(folder: Path) -> None:

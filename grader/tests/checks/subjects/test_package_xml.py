@@ -64,6 +64,37 @@ def test_a_misspelt_dependency_is_shown() -> None:
     assert found.cause == 'It declares "geometry_msg". Is that a typing error?'
 
 
+NODE_IMPORT = "from geometry_msgs.msg import Twist\n"
+
+
+@pytest.mark.parametrize(
+    ("line", "missing"),
+    [
+        ("from std_msgs.msg import String\n", "std_msgs"),
+        ("import sensor_msgs.msg as messages\n", "sensor_msgs"),
+        ("def later():\n    from std_srvs.srv import Empty\n", "std_srvs"),
+        ("import numpy, math\n", None),
+        ("from .helper_msgs import text\n", None),
+        ("try:\n    from tf2_ros import Buffer\nexcept ImportError:\n    Buffer = None\n", None),
+        ("if TYPE_CHECKING:\n    from std_msgs.msg import String\n", None),
+    ],
+)
+def test_what_the_node_imports_must_be_declared(line: str, missing: str | None) -> None:
+    source = submission().files[NODE_FILE].decode()
+    at = source[: source.index(NODE_IMPORT)].count("\n") + 1
+    found = of("dependencies", {NODE_FILE: source.replace(NODE_IMPORT, line + NODE_IMPORT)})
+    if missing is None:
+        assert found.status is Status.PASSED
+        return
+    assert (found.status, found.diagnosis) == (Status.FAILED, "missing-depend")
+    assert found.observed == f"package.xml does not declare {missing}."
+    assert found.cause.startswith(f"{NODE_FILE}:{at + line.count(chr(10)) - 1} imports it.")
+
+
+def test_another_node_of_the_package_may_import_what_it_likes() -> None:
+    assert of("dependencies", {"my_robot_controller/other.py": "import std_msgs.msg\n"}).status is Status.PASSED
+
+
 @pytest.mark.parametrize(
     ("more", "observed"),
     [

@@ -1,0 +1,48 @@
+"""Whether the cause of a failed check is a fact or a possibility.
+
+A fact is what the files, the build or an exception show by themselves, and what a try has proved: after the change, the
+check passes or the node gets further. Everything else is concluded from what the node did, and another cause may fit.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from grader.checks.diagnoses_of_files import OF_FILES
+from grader.checks.kinds import KINDS
+from grader.report.report import FURTHER, PASSES
+
+if TYPE_CHECKING:
+    from grader.checks.outcome import Outcome
+
+OF_EXCEPTIONS = frozenset(
+    {
+        "crash",
+        "node-name-invalid",
+        "topic-name-invalid",
+        "parameter-undeclared",
+        "timer-period-negative",
+        "init-twice",
+    }
+)
+"""Diagnoses that follow from the exception alone, besides those in `OF_FILES`."""
+FACTS = OF_EXCEPTIONS.union(*OF_FILES.values())
+
+
+def is_certain(outcome: Outcome) -> bool:
+    """Return whether the cause of this failed check is a fact."""
+    finding = outcome.finding
+    kind = KINDS.get(outcome.kind)
+    judges_files = kind is not None and kind.stage != "trial"
+    return judges_files or finding.diagnosis in FACTS or finding.tried.startswith((PASSES, FURTHER))
+
+
+def cause_label(outcome: Outcome) -> Literal["why", "likely"]:
+    """Return the label of the cause in a list of labels and texts."""
+    return "why" if is_certain(outcome) else "likely"
+
+
+def cause_sentence(outcome: Outcome) -> str:
+    """Return the cause as a sentence that says "Likely cause" if it is not certain. It is empty without a cause."""
+    cause = outcome.finding.cause
+    return cause if is_certain(outcome) or not cause else f"Likely cause: {cause}"
