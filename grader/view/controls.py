@@ -10,6 +10,7 @@ from grader.turtlesim.programs.teleop_keys import Cancel, Drive, Key, Turn, keys
 
 if TYPE_CHECKING:
     import socket
+    from collections.abc import Callable
 
     from grader.view.state import State
     from grader.view.system import Ears
@@ -30,12 +31,18 @@ def together(held: list[str]) -> Drive:
 
 
 class Hands:
-    """Passes keys on to ROS and buttons on to the simulator. `state` contains the turtles."""
+    """Passes keys on to ROS and buttons on to the simulator. `state` contains the turtles.
 
-    def __init__(self, ears: Ears, state: State, simulator: socket.socket | None) -> None:
+    `listen` is called when a page wants the log messages of all nodes.
+    """
+
+    def __init__(
+        self, ears: Ears, state: State, simulator: socket.socket | None, listen: Callable[[], object] = lambda: None
+    ) -> None:
         self._ears = ears
         self._state = state
         self._simulator = simulator
+        self._listen = listen
         self._driving: dict[object, str] = {}
         """The turtle that each page drives."""
         self._drivers: set[object] = set()
@@ -50,6 +57,8 @@ class Hands:
             self.pressed(str(said["turtle"]), str(said["press"]))
         elif "do" in said:
             self.request(str(said["do"]))
+        elif "log" in said:
+            self._listen()
         return page in self._driving
 
     def held(self, page: object, turtle: str, keys: list[str]) -> None:

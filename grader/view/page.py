@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+from collections import deque
 from typing import TYPE_CHECKING
 
 from grader.graph.discovery import cli_node
@@ -15,6 +16,7 @@ from grader.view.graph_news import GraphNews
 from grader.view.guard import Door
 from grader.view.hub import Hub
 from grader.view.page_server import application
+from grader.view.rqt.rosout import MOST_LINES, Line, Rosout
 from grader.view.serving import ended_by_signals, in_loop, serve
 from grader.view.state import State
 from grader.view.system import Ears
@@ -23,7 +25,10 @@ from grader.view.topics import VIEWS
 if TYPE_CHECKING:
     import socket
 
+    from rclpy.node import Node
+
     from grader.view.address import Place
+    from grader.view.system import System
 
 
 class Page:
@@ -35,6 +40,8 @@ class Page:
         self._state = State()
         self._hub = Hub(self._whole)
         self._news = GraphNews(self._hub, show or Show(), self._state)
+        self._rosout: Rosout | None = None
+        self._lines: deque[Line] = deque(maxlen=MOST_LINES)
 
     async def serve(self, place: Place) -> bool:
         """Serve until the simulator exits, or until Ctrl-C; return whether the page could be opened in a browser.
@@ -43,21 +50,37 @@ class Page:
         """
         self._ended = ended_by_signals()
         loop = asyncio.get_running_loop()
+
+        def look(system: System) -> None:
+            in_loop(loop, self._news.look, system)
+            if self._rosout is not None:
+                self._rosout.flush()
+
+        def listen(node: Node) -> None:
+            """Subscribe to /rosout once a page asks, in the thread of the node. A subscription is seen on the graph."""
+            if self._rosout is None:
+                self._rosout = Rosout(node, lambda lines: in_loop(loop, self._logged, lines))
+
         with (
             cli_node(f"{VIEWS[1:]}{os.getpid()}") as node,
             Ears(
                 node,
-                lambda system: in_loop(loop, self._news.look, system),
+                look,
                 looking=lambda: self._hub.pages > 0,
                 known=lambda: list(self._state.rates),
             ) as ears,
         ):
             door = Door(place.address.token)
-            app = application(self._hub, Hands(ears, self._state, self._feed), door)
+            hands = Hands(ears, self._state, self._feed, listen=lambda: ears.later(listen, node))
+            app = application(self._hub, hands, door)
             if self._feed is not None:
                 self._feed.settimeout(0.0)
                 loop.add_reader(self._feed, self._hear)
             return await serve(place, app, door, self._hub, self._ended, stays=self._stays)
+
+    def _logged(self, lines: list[Line]) -> None:
+        self._lines += lines
+        self._hub.tell("log", {"log": lines})
 
     # --- the simulator ------------------------------------------------------------------------------------------
 
@@ -80,5 +103,6 @@ class Page:
         return {
             **(self._state.whole() if self._feed is not None else {}),
             "simulator": self._feed is not None,
+            "log": list(self._lines),
             **self._news.whole(),
         }

@@ -1,6 +1,7 @@
 // The turtle: start and stop turtlesim and one's own node, drive, and ask ROS 2.
 
 import { Link } from "./link.js";
+import { LogLines } from "./log_lines.js";
 import { act } from "./requests.js";
 import { session } from "./session.js";
 import { Simulator } from "./simulator.js";
@@ -16,6 +17,7 @@ export class TurtlePane {
     this.link = null;
     this.running = { turtlesim: false, node: false };
     this.simulator = new Simulator({ send: (said) => this.link?.send(said), within: pane });
+    this.log = new LogLines(find("rosout"));
     this.status = find("sim-status");
     find("sim-switch").addEventListener("click", () => this.change("turtlesim", { on: !this.running.turtlesim }));
     find("node-switch").addEventListener("click", () => this.change("node",
@@ -68,8 +70,10 @@ export class TurtlePane {
         find("live").hidden = false;
         setText(this.status, "turtlesim is running.");
         this.simulator.show(news);
+        if (news.log && news.kind === "all") this.log.whole(news.log);
+        else if (news.log) this.log.add(news.log);
       },
-      up: () => {},
+      up: () => this.link.send({ log: true }),
       down: () => {},
       path: "/turtle",
       token: session,

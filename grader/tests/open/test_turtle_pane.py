@@ -66,6 +66,7 @@ def drive(learner: Course, browser: Browser) -> None:
 
     page.get_by_role("button", name="Run it").click()
     page.locator("#node-lines").get_by_text("[draw_circle]").wait_for()
+    page.locator("#rosout").get_by_text("[INFO] [draw_circle]: ").wait_for()
     page.locator('#graph [data-name="/draw_circle"]').wait_for()
     page.locator("#where").get_by_text("x 7.").wait_for()
 
