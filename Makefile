@@ -29,7 +29,7 @@ docs: python3 ## build README, docs/ and the lessons as a site in build/site; a 
 	@echo "The documentation: build/site/index.html"
 
 test: lint ## set up, lint, and run all tests but the exhaustive ones
-	@$(BIN)/python -m pytest -n $$(( $$(nproc) + 1 )) --dist loadscope
+	@$(BIN)/python -m pytest -n $$(( $$(nproc) + 1 )) --dist loadscope --no-loadscope-reorder
 
 test-all: lint ## all tests: in both clocks, with repetition and load (long)
 	@$(BIN)/python -m pytest -m ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import threading
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -20,16 +21,20 @@ from grader.report.json import to_data
 from grader.sandbox import bubblewrap
 from grader.submission.package import open_answers, open_submission
 from grader.tests.case import make_submission
-from grader.tests.gradings import EXERCISE, Graded
+from grader.tests.gradings import AT_ONCE, EXERCISE, Graded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
+
+    import pytest
 
     from grader.grading.clock import ClockChoice
     from grader.ros.installation import Ros
     from grader.submission.package import Submission
     from grader.tests.case import Case
+
+    Grade = Callable[[Case, ClockChoice], Graded]
 
 
 class Builds:
@@ -84,3 +89,24 @@ def grade_here(case: Case, clock: ClockChoice, folder: Path, builds: Builds) -> 
     terminal.render(report, page)
     assert isinstance(page.file, io.StringIO)
     return Graded(report.exit_code, page.file.getvalue(), "\n".join(reported), to_data(report))
+
+
+def all_graded_here(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grade]:
+    """Yield the fixture `graded`: it grades a case with a clock. All gradings of this module run side by side."""
+    folder, builds = tmp_path_factory.mktemp("graded"), Builds()
+    futures: dict[tuple[str, str], Future[Graded]] = {}
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+
+        def submit(case: Case, clock: ClockChoice) -> Future[Graded]:
+            if (case.name, clock) not in futures:
+                place = folder / f"{case.name}.{clock}"
+                futures[case.name, clock] = pool.submit(grade_here, case, clock, place, builds)
+            return futures[case.name, clock]
+
+        for item in request.session.items:
+            if item.path == request.path and hasattr(item, "callspec"):
+                for mark in item.iter_markers("clocks"):
+                    for clock in mark.args:
+                        submit(item.callspec.params["case"], clock)
+        yield lambda case, clock: submit(case, clock).result()
+        pool.shutdown(cancel_futures=True)

@@ -26,4 +26,4 @@ def test_a_case_gets_the_report_that_it_expects(case: Case, gradings: Gradings) 
 @pytest.mark.clocks("auto", "wall")
 @each([case for case in CASES if case.result != "usage" and not case.wall_varies], always=True)
 def test_both_clocks_agree(case: Case, gradings: Gradings) -> None:
-    check_clocks_agree(case, gradings)
+    check_clocks_agree(gradings.of(case, "auto"), gradings.of(case, "wall"))

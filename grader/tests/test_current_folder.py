@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -17,14 +16,12 @@ from grader.ros import installation, underlay
 from grader.sandbox import bubblewrap
 from grader.tests.case import ROOT, copy_solution
 from grader.tests.classroom.a_class import reports
-from grader.tests.traps import Traps
+from grader.tests.traps import Traps, careless
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 STEP = "03-circle-publisher"
-BIN = Path(sys.executable).parent
-SEARCHED = ("PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 
 
@@ -38,17 +35,7 @@ class Folder:
         copy_solution(STEP, self.here / "package")
         copy_solution(STEP, self.here / "class" / "anna")
         shutil.copytree(ROOT / "exercises" / STEP, self.here / "class" / "ben")
-        # The value after `export PYTHONPATH=$PYTHONPATH:...` if the variable was empty before.
-        listed = {name: f":{os.environ.get(name, '')}:relative" for name in SEARCHED}
-        places = {"PYTHONSTARTUP": "trap.py", "PYTHONUSERBASE": ".", "PYTHONPYCACHEPREFIX": "cache"}
-        self.env = {
-            **{name: value for name, value in os.environ.items() if name not in ("CI", "GITHUB_ACTIONS")},
-            **listed,
-            **places,
-            "PATH": f"{BIN}::{os.environ['PATH']}",
-            "HOME": str(folder / "home"),
-            "XDG_CACHE_HOME": str(folder / "cache"),
-        }
+        self.env = {**careless(), "HOME": str(folder / "home"), "XDG_CACHE_HOME": str(folder / "cache")}
 
     def run(self, *command: object, code: int = 0, cwd: Path | None = None, **env: str) -> str:
         """Run a command in the folder. Check its exit code and that it touched no trap. Return its output."""
@@ -92,14 +79,11 @@ def test_the_traps_are_traps(tmp_path: Path) -> None:
     assert {"grader", "numpy", "program cmake"} <= set(traps.touched)
 
 
-def test_turtlesim_is_built_and_a_package_is_checked(folder: Folder) -> None:
-    report, cache = folder.out / "report.json", folder.out / "cache"
+def test_a_package_is_checked(folder: Folder) -> None:
+    report = folder.out / "report.json"
     wanted = ("--json", report, "--html", folder.out / "page.html", "--image", folder.out / "picture.png")
-    folder.run(
-        "grader", "check", "--sandbox", "package", "--exercise", STEP, *wanted, XDG_CACHE_HOME=str(folder.out / "cache")
-    )
+    folder.run("grader", "check", "--sandbox", "package", "--exercise", STEP, *wanted)
     assert json.loads(report.read_text())["points"] == 100.0
-    assert list((cache / "grader").glob("turtlesim-*/share"))
 
 
 def test_a_package_is_checked_without_a_sandbox_and_regraded(folder: Folder) -> None:
@@ -131,10 +115,8 @@ def test_a_gradebook_is_synced(folder: Folder, tmp_path: Path) -> None:
     pytest.importorskip("nbgrader")
     folder.run("grader", "class", "new", tmp_path / "term")
     submitted = tmp_path / "term" / "class" / "submitted"
-    shutil.copytree(ROOT / "exercises" / STEP, submitted / "ben" / STEP)
     shutil.copytree(ROOT / "exercises" / STEP, submitted / "anna" / STEP)
     copy_solution(STEP, submitted / "anna" / STEP / "my_robot_controller")
     folder.run("nbgrader", "generate_assignment", STEP, cwd=tmp_path / "term" / "course", PYTHONPATH="")
     folder.run("grader", "gradebook", "sync", STEP, "--course", tmp_path / "term" / "course")
-    graded = points(tmp_path / "term" / "class" / "results")
-    assert (graded["anna"], graded["ben"] < 50.0) == (100.0, True)
+    assert points(tmp_path / "term" / "class" / "results") == {"anna": 100.0}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
@@ -18,20 +17,19 @@ from grader.exercise.model import catalogue
 from grader.submission.package import open_submission
 from grader.tests.case import BASES, ROOT, Case, base_of, make_submission, read_cases
 from grader.tests.catalogue import MISTAKES, PAGE, SHOWN_BY_TESTS, TESTS, cases, page
-from grader.tests.grading_here import Builds, grade_here
-from grader.tests.gradings import AT_ONCE, Graded, check_report, each, place_of
+from grader.tests.grading_here import all_graded_here
+from grader.tests.gradings import Graded, check_clocks_agree, check_report, each, place_of
+from grader.tests.sample import expected_by_tests, sample
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
-    from grader.grading.clock import ClockChoice
+    from grader.tests.grading_here import Grade
 
-    Grade = Callable[[Case, ClockChoice], Graded]
-
-EVERY = 16
-"""Each of so many cases is graded by `make test`, all of them by `make test-all`: a case takes one to three seconds."""
-CASES = tuple(replace(case, sample=number % EVERY == 0) for number, case in enumerate(read_cases(MISTAKES)))
+ALL = read_cases(MISTAKES)
+SAMPLE = sample(ALL)
+CASES = tuple(replace(case, sample=case.name in SAMPLE) for case in ALL)
 JUDGED = [case for case in CASES if case.result != "usage"]
 MOST_WORDS = 60
 MOST_CASES = 12
@@ -44,24 +42,7 @@ NOWHERE = frozenset({"node-name", "no-answers", "no-numbers", "rejected-file"})
 
 @pytest.fixture(scope="module")
 def graded(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grade]:
-    """Return the function that grades a case with a clock. All gradings of this session run side by side."""
-    folder, builds = tmp_path_factory.mktemp("mistakes"), Builds()
-    futures: dict[tuple[str, str], Future[Graded]] = {}
-    with ThreadPoolExecutor(AT_ONCE) as pool:
-
-        def submit(case: Case, clock: ClockChoice) -> Future[Graded]:
-            if (case.name, clock) not in futures:
-                place = folder / f"{case.name}.{clock}"
-                futures[case.name, clock] = pool.submit(grade_here, case, clock, place, builds)
-            return futures[case.name, clock]
-
-        for item in request.session.items:
-            if item.path == request.path and hasattr(item, "callspec"):
-                for mark in item.iter_markers("clocks"):
-                    for clock in mark.args:
-                        submit(item.callspec.params["case"], clock)
-        yield lambda case, clock: submit(case, clock).result()
-        pool.shutdown(cancel_futures=True)
+    yield from all_graded_here(request, tmp_path_factory)
 
 
 @pytest.mark.clocks("auto")
@@ -95,12 +76,7 @@ def test_what_is_said_gives_nothing_away(case: Case, graded: Grade, tmp_path: Pa
 @pytest.mark.clocks("auto", "wall")
 @each(JUDGED, always=True)
 def test_both_clocks_name_the_same_mistake(case: Case, graded: Grade) -> None:
-    keys = ("status", "points", "diagnosis", "cause")
-    simulated, wall = (
-        {id_: tuple(outcome[key] for key in keys) for id_, outcome in graded(case, clock).outcomes().items()}
-        for clock in ("auto", "wall")
-    )
-    assert simulated == wall
+    check_clocks_agree(graded(case, "auto"), graded(case, "wall"))
 
 
 def test_a_diagnosis_is_not_shown_over_and_over() -> None:
@@ -120,6 +96,12 @@ def test_every_diagnosis_is_shown_by_a_case_or_a_test() -> None:
     assert sorted(DIAGNOSES.keys() - by_case - SHOWN_BY_TESTS.keys()) == []
     assert sorted(by_case - DIAGNOSES.keys()) == []
     assert sorted(by_case & SHOWN_BY_TESTS.keys()) == [], "the case is enough"
+
+
+def test_make_test_meets_every_diagnosis() -> None:
+    """The sample and the tests of the checks together."""
+    met = {id_ for case in CASES if case.sample for id_ in case.diagnosis.values()} | expected_by_tests()
+    assert sorted(DIAGNOSES.keys() - met - SHOWN_BY_TESTS.keys()) == []
 
 
 @pytest.mark.parametrize(("id_", "file"), SHOWN_BY_TESTS.items())

@@ -1,6 +1,6 @@
-"""Submissions that are right, and unlike ours: full marks, and nothing said against them but advice.
+"""Correct submissions that are unlike ours get full marks. The report says nothing against them except advice.
 
-`make test` grades each third, and none of those that live by wall time and take ten seconds.
+`make test` grades every third one, and none that wall time judges, since that takes ten seconds.
 """
 
 from __future__ import annotations
@@ -11,11 +11,14 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.tests.case import CASES, read_cases
+from grader.tests.grading_here import all_graded_here
 from grader.tests.gradings import check_clocks_agree, check_report, each
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from grader.tests.case import Case
-    from grader.tests.gradings import Gradings
+    from grader.tests.grading_here import Grade
 
 EVERY = 3
 UNUSUAL = tuple(
@@ -24,15 +27,20 @@ UNUSUAL = tuple(
 )
 
 
+@pytest.fixture(scope="module")
+def graded(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Grade]:
+    yield from all_graded_here(request, tmp_path_factory)
+
+
 @pytest.mark.clocks("auto")
 @each(UNUSUAL)
-def test_what_is_right_gets_full_marks_however_it_is_written(case: Case, gradings: Gradings) -> None:
+def test_what_is_right_gets_full_marks_however_it_is_written(case: Case, graded: Grade) -> None:
     assert (case.result, case.points, case.failed, case.skipped) == ("passed", 100, (), ())
-    check_report(case, gradings.of(case))
+    check_report(case, graded(case, "auto"))
 
 
 @pytest.mark.exhaustive
 @pytest.mark.clocks("auto", "wall")
 @each([case for case in UNUSUAL if not case.wall_varies], always=True)
-def test_it_is_right_by_the_wall_clock_too(case: Case, gradings: Gradings) -> None:
-    check_clocks_agree(case, gradings)
+def test_it_is_right_by_the_wall_clock_too(case: Case, graded: Grade) -> None:
+    check_clocks_agree(graded(case, "auto"), graded(case, "wall"))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from importlib import metadata
-from typing import TYPE_CHECKING
+from pathlib import Path
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
+SEARCHED = ("PYTHONPATH", "LD_LIBRARY_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "COLCON_PREFIX_PATH")
 PROGRAMS = (
     "bwrap",
     "prlimit",
@@ -75,6 +74,15 @@ class Traps:
         (folder / ("PKG-INFO" if folder.name.endswith("egg-info") else "METADATA")).write_text(about)
         groups = "".join(f"[{group}]\ntrap = trap:main\n" for group in GROUPS)
         (folder / "entry_points.txt").write_text(groups)
+
+
+def careless() -> dict[str, str]:
+    """Return the variables of a shell whose search paths contain the current folder."""
+    # The value after `export PYTHONPATH=$PYTHONPATH:...` if the variable was empty before.
+    listed = {name: f":{os.environ.get(name, '')}:relative" for name in SEARCHED}
+    places = {"PYTHONSTARTUP": "trap.py", "PYTHONUSERBASE": ".", "PYTHONPYCACHEPREFIX": "cache"}
+    ours = {name: value for name, value in os.environ.items() if name not in ("CI", "GITHUB_ACTIONS")}
+    return {**ours, **listed, **places, "PATH": f"{Path(sys.executable).parent}::{os.environ['PATH']}"}
 
 
 def _modules() -> set[str]:

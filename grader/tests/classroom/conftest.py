@@ -1,15 +1,16 @@
 from __future__ import annotations
 
+import subprocess
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from grader.sandbox import bubblewrap
 from grader.tests.classroom.a_class import STEP, grade, make_class
+from grader.tests.shared import made_once
 
 if TYPE_CHECKING:
-    import subprocess
     from pathlib import Path
 
 
@@ -24,8 +25,13 @@ class Run:
 
 @pytest.fixture(scope="session")
 def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """The modules that use it may run in several processes, so no test may change its folders."""
     if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")
-    folder = tmp_path_factory.mktemp("class")
-    submitted = make_class(folder / "submitted")
-    return Run(submitted, folder / "grades", grade(submitted, "--exercise", STEP, "--out", folder / "grades"))
+
+    def make(folder: Path) -> list[Any]:
+        done = grade(make_class(folder / "submitted"), "--exercise", STEP, "--out", folder / "grades")
+        return [done.args, done.returncode, done.stdout, done.stderr]
+
+    folder, done = made_once(tmp_path_factory, "class", make)
+    return Run(folder / "submitted", folder / "grades", subprocess.CompletedProcess(*done))

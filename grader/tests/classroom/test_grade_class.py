@@ -101,8 +101,10 @@ def copied(folder: Path) -> Path:
 
 
 @pytest.mark.parametrize(("under", "code"), [("0", 0), ("60", 1)])
-def test_fail_under_is_the_exit_code(undisturbed: Run, under: str, code: int) -> None:
-    done = grade(undisturbed.submitted, "--exercise", STEP, "--out", undisturbed.out, "--fail-under", under)
+def test_fail_under_is_the_exit_code(undisturbed: Run, tmp_path: Path, under: str, code: int) -> None:
+    out = tmp_path / "grades"
+    shutil.copytree(undisturbed.out, out)
+    done = grade(undisturbed.submitted, "--exercise", STEP, "--out", out, "--fail-under", under)
     assert (done.returncode, "nothing to grade" in done.stdout) == (code, True), done.stderr
 
 

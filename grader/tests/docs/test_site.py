@@ -27,10 +27,10 @@ def build(source: Path, to: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run([SPHINX, *arguments(), *folders], capture_output=True, text=True, check=False, timeout=300)
 
 
-@pytest.fixture
-def source(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the site's files that a test may change."""
-    copy = tmp_path / "source"
+    copy = tmp_path_factory.mktemp("site") / "source"
     left_out = shutil.ignore_patterns("__pycache__", "bases", "cases", "golden", "hostile", "mistakes", "unusual")
     for name in ("docs", "course", "grader"):
         shutil.copytree(ROOT / name, copy / name, ignore=left_out)
@@ -40,20 +40,26 @@ def source(tmp_path: Path) -> Path:
     return copy
 
 
-def test_the_site_is_built_with_every_page(tmp_path: Path) -> None:
-    done = build(ROOT, tmp_path)
+@pytest.fixture(scope="module")
+def built(source: Path) -> Path:
+    """The folder of the site, without errors and warnings."""
+    to = source.parent / "built"
+    done = build(source, to)
     assert (done.returncode, done.stderr) == (0, "")
+    return to
+
+
+def test_the_site_is_built_with_every_page(built: Path) -> None:
     lessons = [str(path.relative_to(ROOT)) for path in (ROOT / "course").glob("*/lesson.md")]
     for page in (*PAGES, *BESIDE_THE_CODE, *lessons):
-        assert (tmp_path / "site" / page).with_suffix(".html").is_file(), page
-    assert "README.html" in (tmp_path / "site/index.html").read_text("utf-8")
+        assert (built / "site" / page).with_suffix(".html").is_file(), page
+    assert "README.html" in (built / "site/index.html").read_text("utf-8")
 
 
-def test_a_link_that_leads_nowhere_fails(source: Path, tmp_path: Path) -> None:
-    assert build(source, tmp_path / "right").returncode == 0
+def test_a_link_that_leads_nowhere_fails(source: Path, built: Path) -> None:
     with (source / "docs/design.md").open("a", encoding="utf-8") as page:
         page.write("\nSee [the moon](moon.md) and [this](authors.md#no-such-heading).\n")
-    done = build(source, tmp_path / "wrong")
+    done = build(source, built)  # Sphinx reads only the page that has changed
     assert done.returncode != 0
     assert "moon.md" in done.stderr
     assert "no-such-heading" in done.stderr

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import stat
 import subprocess
@@ -15,6 +14,7 @@ import pytest
 
 from grader.errors import MachineError
 from grader.ros import installation, underlay
+from grader.tests.traps import Traps, careless
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,12 +57,14 @@ def without(monkeypatch: pytest.MonkeyPatch, *programs: str) -> None:
 
 
 def test_two_at_once_build_it_once_and_both_get_it(ros: installation.Ros, tmp_path: Path) -> None:
+    """The current folder is full of traps, and the build loads and runs none of them."""
+    traps = Traps(tmp_path / "current", tmp_path / "touched")
     code = "from grader.ros import installation, underlay; print(underlay.ensure(installation.find_ros(), print))"
-    env = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "home of Ada")}
-    both = [
-        subprocess.Popen([sys.executable, "-c", code], env=env, stdout=subprocess.PIPE, text=True) for _ in range(2)
-    ]
+    env = {**careless(), "XDG_CACHE_HOME": str(tmp_path / "home of Ada")}
+    command = [sys.executable, "-I", "-c", code]
+    both = [subprocess.Popen(command, cwd=traps.folder, env=env, stdout=subprocess.PIPE, text=True) for _ in range(2)]
     lines = [process.communicate()[0].splitlines() for process in both]
+    assert traps.touched == []
     prefixes = {Path(reported[-1]) for reported in lines}
     assert len(prefixes) == 1
     prefix = prefixes.pop()
