@@ -9,6 +9,7 @@ import json
 import re
 from collections import Counter
 from dataclasses import dataclass, field
+from statistics import median
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
@@ -212,7 +213,7 @@ def class_page(reports: ClassReports) -> str:
         "failures": failures(judged),
         "passed": sum(entry.tone == "passed" for entry in judged),
         "mean": sum(shares) / len(shares) if shares else 0.0,
-        "middle": sorted(shares)[len(shares) // 2] if shares else 0.0,
+        "middle": median(shares) if shares else 0.0,
         "distribution": Markup(distribution(shares)) if shares else "",
         "caption": _in_words(shares),
     }

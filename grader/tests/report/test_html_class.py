@@ -11,7 +11,7 @@ import pytest
 from grader.errors import UsageError
 from grader.report.hidden import for_students
 from grader.report.html import html_page
-from grader.report.html_class import class_page, counts, failures, read_class, save_class_page
+from grader.report.html_class import ClassReports, Entry, class_page, counts, failures, read_class, save_class_page
 from grader.report.json import from_json, to_data, to_json
 from grader.tests.report.hostile import ALL, SCRIPTS
 from grader.tests.report.reports import EVIDENCE, report
@@ -68,6 +68,12 @@ def test_the_change_that_proved_a_cause_is_for_instructors_only(folder: Path) ->
     page = class_page(read_class(folder))
     assert page.count("The change that proved it") == 1
     assert "msg.linear.x = &lt;2.0&gt;" in page
+
+
+def test_the_median_of_two_is_the_mean_of_both() -> None:
+    entries = tuple(Entry(report(status), status, "") for status in ("passed", "failed"))
+    middle = 50 * sum(entry.share for entry in entries)
+    assert f"median {middle:.0f} %" in class_page(ClassReports(entries, ()))
 
 
 def test_errors_of_the_machine_have_their_own_list_and_do_not_count_in_averages(folder: Path) -> None:
