@@ -12,7 +12,7 @@ from grader.checks.subjects.rate import RATE
 from grader.tests.checks.made import NODE_FILE, every, evidence, finding, node, recording
 from grader.tests.checks.made import found as found_by
 from grader.tests.checks.shapes import SHAPES
-from grader.trial.recording import LogLine
+from grader.trial.recording import ClockName, LogLine
 
 TIMER = "self.create_timer(0.5, self.send)"
 
@@ -134,6 +134,15 @@ def test_log_lines_have_names_of_their_own() -> None:
 def test_a_mean_near_the_edge_is_for_wall_time_to_judge(period_s: float, near: bool, status: str) -> None:
     found = finding("rate", evidence(recording(every(period_s, 2.0, 1.0))))
     assert (found.near_edge, found.status.value) == (near, status)
+
+
+@pytest.mark.parametrize(
+    ("hz", "clock", "near"), [(62.5, "simulated", True), (62.5, "wall", False), (25.0, "simulated", False)]
+)
+def test_a_rate_above_40_hz_is_for_wall_time_to_judge(hz: float, clock: ClockName, near: bool) -> None:
+    """Simulated time has frames of 16 ms, so it cannot measure such a rate."""
+    found = finding("rate", evidence(recording(every(1.0 / hz, 2.0, 1.0), clock=clock)))
+    assert (found.near_edge, found.status) == (near, Status.FAILED)
 
 
 @given(st.lists(st.floats(0.42, 0.62), min_size=15, max_size=20))
