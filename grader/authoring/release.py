@@ -35,6 +35,10 @@ else:
     import tomli as tomllib
 
 
+RECORDED = (".mcap", "/metadata.yaml")
+"""The ends of the files of a bag, which each student records."""
+
+
 @dataclass(frozen=True)
 class ReleasedFile:
     """A file as students receive it."""
@@ -118,6 +122,8 @@ def _stale_step(solution: Path, exercise: Path) -> list[str]:
 
 def release_file(data: bytes, path: str, name: str) -> bytes | None:
     """Return the released content of a file, or None if the student creates the file. Messages contain `name`."""
+    if path.endswith(RECORDED):
+        return None
     if path.endswith(".ipynb"):
         return released_notebook(data, name)
     syntax = syntax_of(path)

@@ -137,7 +137,7 @@ def _in_order(specs: Iterable[CheckSpec]) -> list[CheckSpec]:
 
 def _is_made(evidence: Evidence, stage: Stage) -> bool:
     """Return whether the evidence of this stage exists."""
-    return {"source": True, "build": evidence.build is not None, "trial": evidence.run.recording is not None}[stage]
+    return {"source": True, "build": evidence.build is not None, "trial": evidence.run.made}[stage]
 
 
 def _is_complete(evidence: Evidence, spec: CheckSpec) -> bool:

@@ -12,6 +12,7 @@ from grader.evidence.late_exit import with_crash_first
 from grader.evidence.trajectory import Trajectory, trajectory_of
 from grader.evidence.tries import Tries
 from grader.submission.answers_toml import Answers, read_answers
+from grader.submission.bag_folder import BagFolder, read_bag
 from grader.submission.code import Code, module_file, read_code
 from grader.submission.package_xml import Manifest, read_manifest
 from grader.submission.setup_py import SetupPy, read_setup_py
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise, TrialSpec
     from grader.submission.package import Submission
     from grader.submission.where import Where
+    from grader.trial.called import Called
     from grader.trial.recording import Command, Recording
 
 
@@ -47,6 +49,13 @@ class Run:
     recording: Recording | None = None
     overwhelmed: str | None = None
     """How the node brought the simulator down, twice. There is no recording in that case."""
+    called: tuple[Called, ...] | None = None
+    """What the calls of a trial without a simulator did. There is no recording in that case."""
+
+    @property
+    def made(self) -> bool:
+        """Whether the trial was run to its end."""
+        return self.recording is not None or self.called is not None
 
 
 @dataclass(frozen=True)
@@ -119,10 +128,20 @@ class Evidence:
         data = self.submission.files.get("answers.toml")
         return None if data is None else read_answers(data)
 
+    def bag(self, folder: str) -> BagFolder:
+        """Return the bag in this folder of the submission."""
+        if folder not in self._bags:
+            self._bags[folder] = read_bag(self.submission.files, folder)
+        return self._bags[folder]
+
+    @cached_property
+    def _bags(self) -> dict[str, BagFolder]:
+        return {}
+
     @cached_property
     def node_file(self) -> str | None:
         """The source file of the node: the module of the entry point, or else the file named after the executable."""
-        target = self.entry_point()
+        target = self.trial.calls.function or self.entry_point()
         files = self.submission.files
         if target is not None:
             found = module_file(target.partition(":")[0].strip(), files)
@@ -169,6 +188,17 @@ class Evidence:
             message = "a check of a trial was judged without a recording"
             raise ValueError(message)
         return self.run.recording
+
+    def called(self, id_: str) -> Called:
+        """Return what the call with this id did.
+
+        Only checks of a trial without a simulator may use it.
+        """
+        found = [each for each in self.run.called or () if each.id == id_]
+        if not found:
+            message = f"a check was judged without the call {id_}"
+            raise ValueError(message)
+        return found[0]
 
     @property
     def built(self) -> Build:

@@ -1,6 +1,7 @@
 """Archive: a graded submission as a folder that contains everything needed to judge it again, without running it.
 
-    trials/ID/       one folder per trial: bag/ with the messages (rosbag2, MCAP), trial.json with the rest
+    trials/ID/       one folder per trial: bag/ with the messages (rosbag2, MCAP), trial.json with the rest;
+                     or calls.json, if functions or programs were called without a simulator
     build.json       the result of the build
     tries.json       the fixes that were tried, with their results; for instructors, since it gives solutions away
     submission.json  name, digest and paths
@@ -29,6 +30,7 @@ from grader.evidence.tries import Tries, Try
 from grader.exercise.model import FILE_NAME
 from grader.submission.package import Submission, open_answers, open_submission, write_copy
 from grader.submission.search import IGNORE_MARKER
+from grader.trial.called import called_from_json
 from grader.trial.recording import from_json, to_json
 
 if TYPE_CHECKING:
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
 
     from grader.evidence.stage import Stage
     from grader.exercise.model import Exercise
+    from grader.trial.called import Called
     from grader.trial.recording import Recording
 
 _SCHEMA = 2
@@ -73,6 +76,10 @@ def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -
         for trial, run in evidence.runs.items():
             if run.recording is not None:
                 _save_recording(folder / "trials" / trial, run.recording, prefixes)
+            if run.called is not None:
+                (folder / "trials" / trial).mkdir(parents=True)
+                calls = {"schema": _SCHEMA, "calls": [asdict(each) for each in run.called]}
+                _write(folder / "trials" / trial / "calls.json", calls)
     except OSError as error:
         message = f"The recording could not be written to {folder}: {error.strerror}."
         raise MachineError(message) from error
@@ -96,6 +103,12 @@ def _load_recording(folder: Path) -> Recording | None:
     text(recording.why)
     whole_or_none(recording.seed)
     return recording
+
+
+def _load_calls(folder: Path) -> tuple[Called, ...] | None:
+    if not (folder / "calls.json").exists():
+        return None
+    return tuple(called_from_json(each) for each in _read(folder / "calls.json")["calls"])
 
 
 def check_free(folder: Path) -> None:
@@ -137,7 +150,9 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
         tries = _tries(_read(folder / "tries.json")) if (folder / "tries.json").exists() else Tries()
         runs = {
             trial.id: Run(
-                _load_recording(folder / "trials" / trial.id), text_or_none(about["runs"][trial.id]["overwhelmed"])
+                _load_recording(folder / "trials" / trial.id),
+                text_or_none(about["runs"][trial.id]["overwhelmed"]),
+                _load_calls(folder / "trials" / trial.id),
             )
             for trial in kept.trials
             if trial.id in about["runs"]

@@ -11,6 +11,8 @@ The keys of the format with `schema = 2`:
   from_s, linear_x_m_s and angular_z_rad_s (one number, or two between which a number is drawn). `[[trial.call]]` has
   at_s, service, type and request (a table with fields), `[[trial.set]]` has at_s, parameter and value.
   `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.
+- A `[[trial]]` without a simulator has id and either function and `[[trial.points]]`, or executable and
+  `[[trial.bag]]` (calls_toml.py).
 - `[[check]]` has id, kind, points, needs (ids), title, trial (the default is the first one), hidden, and the parameters
   of its kind. It may have a preset instead (presets.py).
 - `[[hint]]` has text, checks (the ids of the checks that it helps with) and part (a letter). The hints begin with a

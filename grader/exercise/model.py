@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grader.errors import MachineError
+from grader.exercise.call_inputs import NO_CALLS, CallsSpec
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -85,13 +86,15 @@ class Scenario:
 class TrialSpec:
     """One `[[trial]]`: the executable, the name of its node (without a slash), and the scenario.
 
-    If there is no executable, the simulator runs without a node.
+    If there is no executable, the simulator runs without a node. If there are `calls`, there is neither a simulator nor
+    a node: a function, or the executable, is called once with each of them.
     """
 
     id: str
     executable: str
     node: str
     scenario: Scenario
+    calls: CallsSpec = NO_CALLS
 
 
 @dataclass(frozen=True)

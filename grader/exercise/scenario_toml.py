@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from grader.common.words import shorten
+from grader.exercise.calls_toml import read_calls
 from grader.exercise.model import CallInput, Drive, Scenario, TrialSpec
 
 if TYPE_CHECKING:
@@ -24,6 +25,8 @@ PARAMETER_TYPES = (
     (str, 4, "string_value"),
 )
 """For each type of a parameter: its number in rcl_interfaces/msg/ParameterType, and the field with its value."""
+CALLS = ("function", "points", "bag")
+"""The keys of a `[[trial]]` without a simulator."""
 MAX_DURATION_S = 600.0
 MAX_SPEED = 10.0
 """The maximum speed (m/s, rad/s)."""
@@ -45,14 +48,25 @@ def _trial(table: Table, package: str) -> TrialSpec:
     id_ = table.string("id", ID, "small letters, digits and single dashes, as in figure-eight")
     if id_:
         table.place += f" ({id_})"
-    spec = TrialSpec(
+    spec = _calls(table, id_) if any(key in table.values for key in CALLS) else _run(table, id_, package)
+    table.finish()
+    return spec
+
+
+def _run(table: Table, id_: str, package: str) -> TrialSpec:
+    return TrialSpec(
         id=id_,
         executable=table.string("executable", ROS_NAME, NAME) if package else "",
         node=table.string("node", ROS_NAME, NAME) if package else "",
         scenario=_scenario(table, f"/{table.values.get('node')}"),
     )
-    table.finish()
-    return spec
+
+
+def _calls(table: Table, id_: str) -> TrialSpec:
+    """Return a trial without a simulator, in which a function or the executable is called."""
+    calls = read_calls(table)
+    executable = table.string("executable", ROS_NAME, NAME) if calls.bags else ""
+    return TrialSpec(id_, executable, "", Scenario(0.0), calls)
 
 
 def _scenario(table: Table, node: str) -> Scenario:

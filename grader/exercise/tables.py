@@ -105,6 +105,16 @@ class Table:
 
         return tuple(self._get(key, "a list of strings", good, default=[]))
 
+    def numbers(self, key: str, most: float) -> tuple[float, ...]:
+        """Return a list of finite numbers from -most to most, which may be empty."""
+
+        def good(value: object) -> bool:
+            return isinstance(value, list) and all(
+                isinstance(each, int | float) and not isinstance(each, bool) and abs(each) <= most for each in value
+            )
+
+        return tuple(float(each) for each in self._get(key, "a list of numbers", good, default=None) or ())
+
     def options(self, key: str) -> tuple[Any, ...]:
         """Return a list of at least two different values: all strings, or all numbers."""
 

@@ -61,7 +61,7 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
 
 def executables(exercise: Exercise) -> list[str]:
     """Return the executables that the exercise runs, without repetition."""
-    return list(dict.fromkeys(trial.executable for trial in exercise.trials if trial.executable))
+    return list(dict.fromkeys(trial.executable for trial in exercise.trials if trial.executable and not trial.calls))
 
 
 def run(program: Program, *, view: bool) -> int:

@@ -127,6 +127,8 @@ def _in_one_line(difference: str) -> str:
 def _why_this_clock(evidence: Evidence) -> str:
     """Return why the first trial was judged by its clock, and which trials were judged by the other clock and why."""
     first = evidence.run.recording
+    if first is None and evidence.run.called is not None:
+        return "No node was run. Your code was called, without a simulator."
     if first is None:
         return "The node was not run." if evidence.run.overwhelmed is None else "The trial could not be finished."
     others = [(view.trial.executable, view.run.recording) for view in evidence.views()]

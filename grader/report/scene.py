@@ -46,7 +46,8 @@ def scene_of(evidence: Evidence) -> Scene:
     """Return what to draw for a run."""
     recording = evidence.run.recording
     if recording is None:
-        return Scene(notice="The node was not run.")
+        called = evidence.run.called is not None
+        return Scene(notice="No turtle drives in this step." if called else "The node was not run.")
     trajectory = evidence.trajectory
     shapes: list[Line | Ring | Arrow] = []
     legend: list[tuple[Role, str]] = []

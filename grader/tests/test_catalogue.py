@@ -63,7 +63,13 @@ def contents(case: Case, folder: Path) -> dict[str, list[str]]:
     """Return the lines of each file of the submission."""
     make_submission(case, folder)
     files = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
-    return {path.relative_to(folder).as_posix(): path.read_bytes().decode("latin-1").splitlines() for path in files}
+    return {path.relative_to(folder).as_posix(): lines_of(path) for path in files}
+
+
+def lines_of(path: Path) -> list[str]:
+    """The lines of a file. A file of a bag is one line, because a recording is made anew or not at all."""
+    text = path.read_bytes().decode("latin-1")
+    return [text] if path.suffix == ".mcap" or path.name == "metadata.yaml" else text.splitlines()
 
 
 def distance(right: dict[str, list[str]], wrong: dict[str, list[str]]) -> int:

@@ -36,7 +36,7 @@ MOST_CASES = 12
 """The maximum number of cases about one diagnosis. There are more ways to break a rule than to lose a file."""
 LONG = 12
 """Characters. A shorter line of a solution, such as `pass`, gives nothing away."""
-NOWHERE = frozenset({"node-name", "no-answers", "no-numbers", "rejected-file"})
+NOWHERE = frozenset({"node-name", "no-answers", "no-bag", "no-numbers", "rejected-file"})
 """These diagnoses may refer to no file."""
 
 

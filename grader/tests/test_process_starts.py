@@ -32,6 +32,7 @@ OTHERS = {
     ("browser", "_started"): "xdg-open, or what the door made: the caller gives both command and environment",
     ("child", "run_child"): "ros2 run: a program of the user's, for the user",
     ("create", "_email"): "git",
+    ("cell_calls", "_called"): "this process again, which then calls a student's code, in its cell",
     ("cells", "run_below"): "our command ros2, or what simulator._command made",
     ("doctor", "_version_of"): "a compiler, make or cmake, in the system's folder for temporary files",
     ("node_test", "why_not_heard"): "sh, with what _talker_and_listener made",

@@ -27,6 +27,7 @@ INSIDE = {"checks", "evidence", "submission"}
 """Rooms whose code runs in the reading process."""
 BEHIND_THE_DOOR = {
     ("budget", "_read"): "relay: a process of its own, with limits",
+    ("called", "read_called"): "calls",
     ("clues", "wall_clues"): "judging",
     ("cli", "_judged"): "cli",
     ("html_class", "read_class"): "html_class",
@@ -49,6 +50,8 @@ BEHIND_THE_DOOR = {
 OURS = {
     ("archives", "_why"): "what unpack.py says",
     ("bridge", "main"): "an order of the relay",
+    ("cell_calls", "_returned"): "what a child wrote, in the cell of a student's code",
+    ("cell_calls", "main"): "an order of calling.py, in the cell",
     ("check", "_graded"): "what the notebook's grader says",
     ("conductor", "_conduct"): "an order of trial.py",
     ("conductor", "main"): "an order of trial.py",

@@ -1,0 +1,104 @@
+"""Why a fitted circle is wrong: compare what was returned with what the usual mistakes return."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import permutations
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.common.lazy import np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from grader.checks.diagnosis import Diagnosis
+    from grader.exercise.call_inputs import Arc
+
+ROUGH_M = 0.02
+"""How far a mean or an extreme of noisy points may be from that of exact points (m), besides the tolerance."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A circle that was reported: the centre and the radius (m). `within` are the tolerances of the three values."""
+
+    arc: Arc
+    values: tuple[float, float, float]
+    within: tuple[float, float, float]
+
+    @property
+    def truth(self) -> tuple[float, float, float]:
+        """The centre and the radius of the arc (m)."""
+        return self.arc.x_m, self.arc.y_m, self.arc.radius_m
+
+    @property
+    def right(self) -> bool:
+        """Whether all three values are within their tolerances."""
+        return self.is_like(self.truth)
+
+    @property
+    def centre_right(self) -> bool:
+        """Whether the centre is within its tolerances."""
+        return self.is_like(self.truth[:2])
+
+    def is_like(self, other: Sequence[float], more: float = 0.0) -> bool:
+        """Return whether the values, or only the first ones, are within their tolerances and `more` of these."""
+        return all(
+            abs(value - one) <= width + more for value, one, width in zip(self.values, other, self.within, strict=False)
+        )
+
+
+def why_fit(fit: Fit) -> Cause:
+    """Return the cause of a circle that is not right."""
+    x, y, radius = fit.truth
+    if fit.is_like((y, x, radius)):
+        return Cause("x-y-swapped", "The two coordinates of the centre are swapped.")
+    if any(fit.is_like(other) for other in permutations(fit.truth)):
+        return Cause("result-order", "The three numbers are right, in another order: centre x, centre y, radius.")
+    if fit.is_like((0.5, 0.5)):
+        return Cause("wrong-fit", "This comes out for all points if the right side is x + y instead of x² + y².")
+    found = _why_radius(fit) if fit.centre_right else _why_centre(fit)
+    return Cause(*found) if found is not None else Cause("wrong-fit", _FIRST_TRY)
+
+
+RADIUS_OF_C: tuple[Diagnosis, str] = (
+    "radius-without-centre",
+    "The third unknown is c = r² - a² - b², and not yet r²: the squares of the centre are missing.",
+)
+"""What makes a wrong radius, or NaN, beside the right centre."""
+_FIRST_TRY = "Try it with four points of a circle that you know, and print what lstsq returns."
+
+
+def _why_radius(fit: Fit) -> tuple[Diagnosis, str] | None:
+    x, y, radius = fit.truth
+    value, within = fit.values[2], fit.within[2]
+    c = radius**2 - x**2 - y**2
+    more = within * (1.0 + 2.0 * (radius + abs(x) + abs(y)))
+    if abs(value - radius**2) <= within * (1.0 + 2.0 * radius):
+        return "radius-squared", "This is the square of the radius. The equation of the circle has r squared in it."
+    if abs(value - 2.0 * radius) <= 2.0 * within:
+        return "diameter", "This is the diameter, twice the radius."
+    if abs(value - c) <= more or abs(value - math.sqrt(abs(c))) <= more:
+        return RADIUS_OF_C
+    if 0.0 < value - radius <= 4.0 * fit.arc.noise_m:
+        return "extremes-for-centre", "A radius from the outermost points alone has all their noise in it."
+    return None
+
+
+def _why_centre(fit: Fit) -> tuple[Diagnosis, str] | None:
+    x, y, _ = fit.truth
+    angle = fit.arc.angles()
+    xs, ys = x + fit.arc.radius_m * np.cos(angle), y + fit.arc.radius_m * np.sin(angle)
+    if fit.is_like((2.0 * x, 2.0 * y), max(fit.within)):
+        return "centre-doubled", "The centre is twice as far as it should be: the equation has 2·x·a and 2·y·b in it."
+    if fit.is_like((-x, -y)) or fit.is_like((-2.0 * x, -2.0 * y), max(fit.within)):
+        return "centre-sign", "The centre has the wrong sign. Look on which side of the equation each term stands."
+    if fit.is_like((float(xs.mean()), float(ys.mean())), ROUGH_M):
+        return "mean-for-centre", "This is the mean of the points. It is the centre only if they go all the way round."
+    middle = ((xs.min() + xs.max()) / 2.0, (ys.min() + ys.max()) / 2.0)
+    if fit.is_like(middle, ROUGH_M + 3.0 * fit.arc.noise_m):
+        text = "This is the middle between the extremes of the points. On an arc, the circle goes on beyond them."
+        return "extremes-for-centre", text
+    return None

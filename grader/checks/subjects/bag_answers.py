@@ -1,0 +1,111 @@
+"""Checks of answers about the student's own bag: a number with its unit."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.kind import Kind, choice, number, string
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.answers import KEY
+from grader.checks.subjects.recorded_bag import BAG
+from grader.checks.tolerance import Band
+from grader.common.lazy import np
+from grader.common.words import shorten
+from grader.evidence.circle_fit import fit_circle
+from grader.submission.answers_toml import FILE
+from grader.submission.bag_folder import Poses
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+NUMBER = re.compile(r"(?P<number>[-+]?\d{1,19}(?:\.\d{1,15})?(?:[eE][-+]?\d{1,2})?)\s*(?P<unit>[A-Za-z/%]*)", re.ASCII)
+EXAMPLE = {"messages": '"1250"', "duration": '"12.5 s"', "rate": '"10.0 Hz"', "radius": '"1.00 m"'}
+UNITS = {"messages": "", "duration": "s", "rate": "Hz", "radius": "m"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class BagAnswer:
+    """A quantity of the student's bag."""
+
+    answer: str = string(KEY, about="The name of the answer in answers.toml.")
+    bag: str = string("the name of a folder", about=BAG)
+    topic: str = string("a topic", start="/", default="/turtle1/pose", about="The topic with the poses.")
+    quantity: str = choice(
+        "messages",
+        "duration",
+        "rate",
+        "radius",
+        about="What is asked: the number of messages of the topic, the time from the first to the last one (s), their "
+        "rate (Hz), or the radius of their circle (m).",
+    )
+    tolerance_percent: float = number(2.0, at_least=0, at_most=100, about="How far the answer may be off.")
+
+
+def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:
+    """The answer is what the bag holds, with its unit."""
+    found = evidence.answers
+    where = Where(FILE, found.lines.get(params.answer) if found is not None else None)
+    given = found.given.get(params.answer) if found is not None else None
+    unit = UNITS[params.quantity]
+    expected = (
+        f"{params.answer} is a number{f' and its unit, {unit}' if unit else ''}, as in {EXAMPLE[params.quantity]}."
+    )
+    if given is None:
+        return failed(f"{params.answer} is not answered yet.", expected, Cause("no-answer", where=where))
+    match = NUMBER.fullmatch(f"{given:.0f}" if isinstance(given, float) and not unit else str(given).strip())
+    if match is None:
+        return failed(f"{params.answer} is {shorten(str(given))}.", expected, Cause("answer-form", where=where))
+    value, has = float(match["number"]), match["unit"]
+    observed = f"{params.answer} is {shorten(match[0])}."
+    if has != unit:
+        if not has:
+            cause = "A number without its unit could be anything."
+            return failed(observed, expected, Cause("unit-missing", cause, where))
+        return failed(observed, expected, Cause("wrong-unit", f"The unit is {unit or 'none: it is a count'}.", where))
+    truth = _truth(evidence, params)
+    band = Band.around(truth, truth * params.tolerance_percent / 100.0 + 0.005 * bool(unit))
+    if band.holds(value):
+        return passed(f"{shorten(match[0])} is right.")
+    total = sum(evidence.bag(params.bag).counts.values())
+    if params.quantity == "messages" and value == total:
+        counts = Cause("all-messages", "Only the messages of the topic with the poses count.", where)
+        return failed(observed, "What your bag holds.", counts)
+    return failed(observed, "What your bag holds.", _why(params.quantity, value, band).at(where))
+
+
+def _truth(evidence: Evidence, params: BagAnswer) -> float:
+    poses = evidence.bag(params.bag).poses.get(params.topic, Poses())
+    if params.quantity == "messages":
+        return len(poses.t_s)
+    if params.quantity == "radius":
+        circle = fit_circle(np.array(poses.x), np.array(poses.y))
+        return circle.radius if circle is not None else 0.0
+    duration_s = poses.t_s[-1] - poses.t_s[0] if poses.t_s else 0.0
+    if params.quantity == "duration":
+        return duration_s
+    return (len(poses.t_s) - 1) / duration_s if duration_s else 0.0
+
+
+def _why(quantity: str, value: float, band: Band) -> Cause:
+    if any(band.holds(value * factor) for factor in (1e-9, 1e9)):
+        return Cause("nanoseconds", "Time stamps in a bag are in nanoseconds. A second has 1,000,000,000 of them.")
+    if quantity == "rate" and value and band.holds(1.0 / value):
+        cause = "This is the period, the time between two messages in seconds. The rate is 1 divided by the period."
+        return Cause("period-for-rate", cause)
+    if quantity == "radius" and band.holds(value / 2.0):
+        return Cause("diameter", "This is the diameter, twice the radius.")
+    return Cause("wrong-answer", "`ros2 bag info` and your own program show it. Is the answer about an earlier bag?")
+
+
+ANSWER = Kind(
+    "bag_answer",
+    "source",
+    "The answer matches the bag",
+    BagAnswer,
+    bag_answer,
+    about="An answer in `answers.toml` is what the student's bag holds, a number with its unit.",
+)

@@ -1,0 +1,181 @@
+"""Checks of a function that fits a circle: the centre and the radius, and an error where there is no circle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.crash import read_traceback
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_fit import RADIUS_OF_C, Fit, why_fit
+from grader.checks.kind import Kind, number, string
+from grader.checks.outcome import Finding, failed, passed
+from grader.common.words import a_list, count, shorten
+from grader.trial.called import TOO_LATE
+
+if TYPE_CHECKING:
+    from grader.checks.causes.crash import Crash
+    from grader.evidence.evidence import Evidence
+    from grader.exercise.call_inputs import Arc
+    from grader.trial.called import Called
+
+SIGMAS = 6.0
+"""How many standard deviations of the best fit a right answer may be off."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OneCall:
+    """One call of the trial."""
+
+    call: str = string("the id of a call", about="The id of a `[[trial.points]]` or a `[[trial.bag]]`.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class FitCall(OneCall):
+    """One call, with the points of a circle."""
+
+    rounding_m: float = number(
+        1e-3, above=0, about="How far each value may be off without noise (m). With noise, six deviations are added."
+    )
+
+
+def fits_circle(evidence: Evidence, params: FitCall) -> Finding:
+    """The function returns the centre and the radius of the circle from which the points were drawn."""
+    called = evidence.called(params.call)
+    arc = _arc(evidence, params.call)
+    name = evidence.trial.calls.function.rpartition(":")[2]
+    expected = (
+        f"{name} returns x={arc.x_m:g}, y={arc.y_m:g} and radius={arc.radius_m:g} (m) for {arc.count} points from "
+        f"{arc.from_deg:g}° to {arc.to_deg:g}°."
+    )
+    broken = stopped(evidence, called, expected, name)
+    if broken is not None:
+        return broken
+    values = called.values
+    where = evidence.place("lstsq", "solve")
+    if values is None or len(values) != 3:
+        observed = f"{name} returned {_form(called)}."
+        cause = "It must return three numbers: `return x, y, radius`."
+        return failed(observed, expected, Cause("result-form", cause, where))
+    observed = f"{name} returned x={values[0]:.3f}, y={values[1]:.3f} and radius={values[2]:.3f}."
+    fit = Fit(arc, (values[0], values[1], values[2]), tolerances(arc, params.rounding_m))
+    if not all(math.isfinite(value) for value in values):
+        if fit.centre_right:
+            return failed(observed, expected, Cause(*RADIUS_OF_C).at(where))
+        cause = "A root of a negative number, or a division by zero, makes NaN in numpy, and only warns."
+        return failed(observed, expected, Cause("not-a-number", cause, where))
+    return passed(observed) if fit.right else failed(observed, expected, why_fit(fit).at(where))
+
+
+def tolerances(arc: Arc, rounding_m: float) -> tuple[float, float, float]:
+    """Return how far centre x, centre y and radius may be off (m)."""
+    x, y, radius = (rounding_m + SIGMAS * each for each in arc.deviations())
+    return x, y, radius
+
+
+def stopped(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
+    """Return a finding about a call that raised an exception or was ended, or None."""
+    if called.ended == "exit 0":
+        return None
+    where = evidence.code.start
+    late = _late(evidence, called, expected, name)
+    if late is not None:
+        return late
+    crash = read_traceback(called.stderr, evidence.submission.files)
+    if crash is not None:
+        observed = f"{name} raised {crash.observed}."
+        known = _why_raised(evidence, crash, called.id)
+        if known is not None:
+            return failed(observed, expected, known.at(crash.where or where))
+        return crash_finding(evidence, crash, observed, expected)
+    last = called.stderr.strip().splitlines()[-1:]
+    how = f"{called.ended or 'no result'}{f': {shorten(last[0], 80)}' if last else ''}"
+    return failed(f"{name} ended the program ({how}).", expected, Cause("call-ended", "", where))
+
+
+def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
+    """Return a finding about a call that did not end, or that was not made after such a call, or None."""
+    late = any(each.ended == TOO_LATE for each in evidence.run.called or ())
+    if not late or called.ended not in (TOO_LATE, ""):
+        return None
+    observed = f"{name} was still busy after 5 s."
+    if not called.ended:
+        observed = f"{name} was not called with this any more, because an earlier call did not end."
+    cause = "A loop may never end, or it waits for something that never comes."
+    return failed(observed, expected, Cause("call-too-long", cause, evidence.code.start))
+
+
+def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
+    """Return the cause of an exception that is typical of a fit, or None."""
+    if any(each.id == id_ and each.lists for each in evidence.trial.calls.points):
+        others = [each for each in evidence.run.called or () if each.id != id_ and each.values is not None]
+        if others:
+            cause = "It works with arrays of numpy, but not with lists. `np.asarray` makes an array out of either."
+            return Cause("lists-refused", cause)
+    if evidence.code.calls("lstsq") and (crash.error == "LinAlgError" or "to unpack" in crash.message):
+        cause = (
+            "lstsq takes the matrix first and the right side second. It returns four things: the solution, the "
+            "residuals, the rank and the singular values."
+        )
+        return Cause("lstsq-result", cause)
+    return None
+
+
+def refuses(evidence: Evidence, params: OneCall) -> Finding:
+    """The function raises ValueError for points that do not determine a circle."""
+    called = evidence.called(params.call)
+    name = evidence.trial.calls.function.rpartition(":")[2]
+    x, y = next((each.x, each.y) for each in evidence.trial.calls.points if each.id == params.call)
+    given = f"x = {list(x)} and y = {list(y)}"
+    expected = f"{name} raises ValueError for {given}, with a sentence that says why."
+    crash = read_traceback(called.stderr, evidence.submission.files)
+    if "ValueError" in called.kind.split() and crash is not None:
+        return passed(f"{name} raises {crash.observed}.")
+    late = _late(evidence, called, expected, name)
+    if late is not None:
+        return late
+    where = evidence.place("ValueError", "lstsq", "solve")
+    if called.ended == "exit 0":
+        cause = "Look at the points first, and `raise ValueError(...)`. A printed message, NaN or None is no error."
+        return failed(f"{name} returned {_form(called)}.", expected, Cause("no-error", cause, where))
+    if crash is not None and called.kind:
+        cause = "Whoever calls the function cannot know what this error means. Look at the points before you compute."
+        return failed(f"{name} raised {crash.observed}.", expected, Cause("other-error", cause, crash.where or where))
+    cause = "sys.exit ends the whole program. A function raises an exception, and its caller decides."
+    return failed(f"{name} ended the program.", expected, Cause("other-error", cause, where))
+
+
+def _form(called: Called) -> str:
+    if called.values is not None:
+        numbers = a_list([f"{each:.3g}" for each in called.values])
+        return f"{count(len(called.values), 'number')} ({numbers})"
+    return {"NoneType": "None", "str": "a string"}.get(called.kind, f"a value of type {shorten(called.kind, 30)}")
+
+
+def _arc(evidence: Evidence, id_: str) -> Arc:
+    arc = next((each.arc for each in evidence.trial.calls.points if each.id == id_), None)
+    if arc is None:
+        message = f"the points {id_} are not those of an arc"
+        raise ValueError(message)
+    return arc
+
+
+FITS = Kind(
+    "fits_circle",
+    "trial",
+    "The function finds the circle",
+    FitCall,
+    fits_circle,
+    about="A function that is called with the points of a `[[trial.points]]` returns the centre and the radius of "
+    "their circle. The tolerance follows from the noise of the points.",
+)
+REFUSES = Kind(
+    "raises_value_error",
+    "trial",
+    "The function refuses points without a circle",
+    OneCall,
+    refuses,
+    about="A function that is called with a `[[trial.points]]` raises ValueError.",
+)

@@ -1,0 +1,156 @@
+"""Checks of a program that reads a bag: the line that it prints, and how it ends without the messages it needs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.crash import read_traceback
+from grader.checks.causes.why_fit import Fit, why_fit
+from grader.checks.kind import Kind, string, strings
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.fit import OneCall, stopped, tolerances
+from grader.checks.subjects.log import FORMAT
+from grader.common.words import shorten
+from grader.evidence.student_log import Format
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.exercise.call_inputs import BagInput
+
+HUNDREDTH = 0.0101
+"""A printed value has two decimal places, and may be cut instead of rounded."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Printed(OneCall):
+    """One run of the program, and which numbers of its line are compared."""
+
+    format: str = string("a line with its numbers in braces", about=FORMAT)
+    values: tuple[str, ...] = strings(about='Which numbers are compared: "messages", "rate", "x", "y", "radius".')
+
+
+def prints(evidence: Evidence, params: Printed) -> Finding:
+    """The program prints a line with the right numbers."""
+    called = evidence.called(params.call)
+    bag = _bag(evidence, params.call)
+    name = evidence.trial.executable
+    truth = _truth(bag)
+    expected = f"{name} bags/{bag.id} prints {_line(params.format, truth)}"
+    crash = read_traceback(called.stderr, evidence.submission.files)
+    if crash is not None and crash.error == "AttributeError" and "Twist" in crash.message:
+        observed = f"{name} raised {crash.observed}."
+        cause = "It took a command for a pose. Read only the messages on the topic of the poses."
+        return failed(observed, expected, Cause("all-messages", cause, crash.where))
+    broken = stopped(evidence, called, expected, name)
+    if broken is not None:
+        return broken
+    lines = [line.strip() for line in called.stdout.splitlines() if line.strip()]
+    if not lines:
+        cause = "print writes a line. The function main of the entry point must reach it."
+        return failed(f"{name} printed nothing.", expected, Cause("prints-nothing", cause, evidence.code.start))
+    pattern = Format(params.format).pattern()
+    found = next((match for match in map(pattern.fullmatch, lines) if match is not None), None)
+    where = evidence.place("print")
+    if found is None and "nan" in lines[-1]:
+        cause = "NaN is no number. Where does it come from?"
+        return failed(f'{name} printed "{shorten(lines[-1], 80)}".', expected, Cause("not-a-number", cause, where))
+    if found is None:
+        cause = "Compare it letter by letter: names, spaces and the digits after the decimal point count."
+        return failed(f'{name} printed "{shorten(lines[-1], 80)}".', expected, Cause("print-format", cause, where))
+    given = {key: float(value) for key, value in found.groupdict().items()}
+    wrong = [key for key in params.values if not abs(given[key] - truth[key]) <= _within(bag)[key]]
+    if not wrong:
+        return passed(f'{name} printed "{shorten(found[0], 80)}".')
+    return failed(f'{name} printed "{shorten(found[0], 80)}".', expected, _why(wrong[0], given, bag).at(where))
+
+
+def ends_with_message(evidence: Evidence, params: OneCall) -> Finding:
+    """Without a pose in the bag, the program ends with an exit code other than 0 and a sentence."""
+    called = evidence.called(params.call)
+    name = evidence.trial.executable
+    expected = f"{name} says in one sentence what is missing, and ends with an exit code other than 0."
+    crash = read_traceback(called.stderr, evidence.submission.files)
+    if crash is not None:
+        cause = (
+            "Nobody but you can read a traceback. Look whether there are poses, and end with sys.exit and a sentence."
+        )
+        observed = f"For a bag without poses, {name} ended with {crash.observed}."
+        return failed(observed, expected, Cause("program-traceback", cause, crash.where))
+    if called.ended == "exit 0":
+        cause = "A script that calls the program sees only the exit code. sys.exit with a string ends with 1."
+        observed = f"For a bag without poses, {name} ended with exit code 0."
+        return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit", "print")))
+    if not called.ended.startswith("exit") or not called.stderr.strip():
+        observed = f"For a bag without poses, {name} said nothing ({called.ended or 'no result'})."
+        cause = "sys.exit with a string prints the string."
+        return failed(observed, expected, Cause("exit-code", cause, evidence.place("exit")))
+    return passed(f'{name} says "{shorten(called.stderr.strip().splitlines()[-1], 80)}"')
+
+
+def _why(key: str, given: dict[str, float], bag: BagInput) -> Cause:
+    count, rate = bag.arc.count, bag.rate_hz
+    more = count + bag.commands
+    if key == "messages" and given[key] == more:
+        return Cause("all-messages", "All messages of the bag were counted, and not only the poses.")
+    if key == "rate":
+        value = given[key]
+        if value == 0.0 or abs(value * 1e9 - rate) <= rate:
+            return Cause("nanoseconds", "Time stamps in a bag are in nanoseconds. A second has 1,000,000,000 of them.")
+        if abs(value - rate * count / (count - 1)) <= HUNDREDTH:
+            return Cause(
+                "rate-off-by-one",
+                "Count / duration is too high: between the first and the last message there is one interval fewer than "
+                "there are messages.",
+            )
+        if abs(value - 1.0 / rate) <= HUNDREDTH:
+            return Cause(
+                "period-for-rate", "This is the time between two messages in seconds. The rate is 1 divided by it."
+            )
+        return Cause(
+            "wrong-rate", "The rate is the number of intervals divided by the time from first to last message."
+        )
+    if key in ("x", "y", "radius"):
+        within = _within(bag)
+        values = (given["x"], given["y"], given["radius"])
+        return why_fit(Fit(bag.arc, values, (within["x"], within["y"], within["radius"])))
+    return Cause("wrong-count", "Each message on the topic counts once.")
+
+
+def _truth(bag: BagInput) -> dict[str, float]:
+    arc = bag.arc
+    return {"messages": arc.count, "rate": bag.rate_hz, "x": arc.x_m, "y": arc.y_m, "radius": arc.radius_m}
+
+
+def _within(bag: BagInput) -> dict[str, float]:
+    x, y, radius = tolerances(bag.arc, HUNDREDTH)
+    return {"messages": 0.0, "rate": HUNDREDTH, "x": x, "y": y, "radius": radius}
+
+
+def _line(form: str, truth: dict[str, float]) -> str:
+    return form.format(**{key: round(value) if key == "messages" else value for key, value in truth.items()})
+
+
+def _bag(evidence: Evidence, id_: str) -> BagInput:
+    return next(each for each in evidence.trial.calls.bags if each.id == id_)
+
+
+PRINTS = Kind(
+    "prints_report",
+    "trial",
+    "The program prints what the bag holds",
+    Printed,
+    prints,
+    about="The executable, started with the name of a `[[trial.bag]]`, prints a line in the format, with the right "
+    "numbers of the poses in the bag. It ends with exit code 0.",
+)
+ENDS = Kind(
+    "ends_with_message",
+    "trial",
+    "The program says what is missing",
+    OneCall,
+    ends_with_message,
+    about="The executable, started with the name of a `[[trial.bag]]` without poses, prints a sentence on standard "
+    "error and ends with an exit code other than 0, without a traceback.",
+)

@@ -1,0 +1,147 @@
+"""Checks of a bag that the student recorded: it can be read, holds the topic, and shows a circle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.kind import Kind, number, string
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.tolerance import Band
+from grader.common.lazy import np
+from grader.common.words import a_list, shorten
+from grader.evidence.circle_fit import fit_circle, turns_about
+from grader.submission.bag_folder import Poses
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+
+BAG = "The folder of the bag in the package."
+STILL_M = 0.05
+"""A turtle that never leaves a square with this side has not moved."""
+ROUND_M = 0.05
+"""How far the poses may be from the circle (root mean square)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class InBag:
+    """A folder of the package."""
+
+    bag: str = string("the name of a folder", about=BAG)
+
+
+def readable(evidence: Evidence, params: InBag) -> Finding:
+    """The bag is there, was closed properly, and holds messages."""
+    bag, where = evidence.bag(params.bag), Where(params.bag)
+    expected = f"The folder {params.bag} beside package.xml holds a bag with at least one message."
+    if bag.problem == "missing":
+        return failed(
+            f"There is no folder {params.bag}.", expected, Cause("no-bag", "The lesson shows how to record it.")
+        )
+    if bag.problem == "elsewhere":
+        observed = f"There is no bag in {params.bag}, but {shorten(bag.detail)} belongs to one."
+        cause = "The option -o gives the bag its name, in the folder in which you type the command."
+        return failed(observed, expected, Cause("bag-name", cause, Where(bag.detail)))
+    if bag.problem == "unfinished":
+        cause = (
+            "It is written when the recording ends with Ctrl-C. A recorder that was killed leaves none; `ros2 bag "
+            "reindex` makes it."
+        )
+        return failed(f"{params.bag} has no metadata.yaml.", expected, Cause("bag-unfinished", cause, where))
+    if bag.problem == "storage":
+        cause = "The usual storage of ROS 2 Jazzy is MCAP. Record without the options -s and --compression-mode."
+        return failed(
+            f"{params.bag} holds {shorten(bag.detail)}, and no .mcap file.",
+            expected,
+            Cause("bag-storage", cause, where),
+        )
+    if bag.problem:
+        cause = "Delete the folder, and record again."
+        return failed(f"{params.bag} cannot be read: {bag.detail}.", expected, Cause("bag-damaged", cause, where))
+    if not sum(bag.counts.values()):
+        cause = "The recording ended before anything arrived, or nothing was published meanwhile."
+        return failed(f"The bag {params.bag} is empty.", expected, Cause("bag-empty", cause, where))
+    return passed(f"The bag holds {sum(bag.counts.values())} messages.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class TopicInBag(InBag):
+    """A topic with its type."""
+
+    topic: str = string("a topic", start="/", about="The topic that must be in the bag.")
+    type: str = string("a type", about="The type of its messages.")
+
+
+def topic_in_bag(evidence: Evidence, params: TopicInBag) -> Finding:
+    """The bag holds messages of the topic."""
+    bag, where = evidence.bag(params.bag), Where(params.bag)
+    expected = f"The bag holds {params.topic} with messages of type {params.type}."
+    held = [f"{shorten(topic)} ({count})" for topic, count in sorted(bag.counts.items())]
+    if bag.types.get(params.topic, params.type) != params.type:
+        observed = f"{params.topic} has the type {shorten(bag.types[params.topic])} in the bag."
+        return failed(observed, expected, Cause("wrong-type", "", where))
+    if not bag.counts.get(params.topic):
+        cause = "The topics to record are the last words of the command. Each begins with a slash."
+        return failed(f"The bag holds {a_list(held)}.", expected, Cause("bag-topic", cause, where))
+    return passed(f"The bag holds {a_list(held)}.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class CircleInBag(InBag):
+    """A circle that the turtle drives during the recording."""
+
+    topic: str = string("a topic", start="/", default="/turtle1/pose", about="The topic with the poses.")
+    radius_m: float = number(above=0, about="The radius of the circle.")
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="How far the radius may be off.")
+    turns: float = number(1.0, above=0, about="How many turns the bag must show at least.")
+
+
+def circle_in_bag(evidence: Evidence, params: CircleInBag) -> Finding:
+    """The poses in the bag show a whole circle with the radius."""
+    poses, where = evidence.bag(params.bag).poses.get(params.topic, Poses()), Where(params.bag)
+    expected = f"The poses show at least {params.turns:g} turn on a circle with a radius of {params.radius_m:g} m."
+    x, y = np.array(poses.x), np.array(poses.y)
+    if len(x) < 2 or max(np.ptp(x), np.ptp(y)) < STILL_M:
+        cause = "Start the recording, then the turtle, and end the recording after a whole turn."
+        return failed("The turtle stands still in all of the bag.", expected, Cause("bag-still", cause, where))
+    circle = fit_circle(x, y)
+    if circle is None or circle.rms > ROUND_M:
+        cause = "Only one circle belongs into the bag. A wall, a teleport or another drawing spoils it."
+        return failed("The path in the bag is not a circle.", expected, Cause("not-round", cause, where))
+    driven = abs(turns_about(x, y, circle.x, circle.y))
+    if not Band.around(params.radius_m, params.radius_m * params.tolerance_percent / 100.0).holds(circle.radius):
+        cause = "The radius is speed / turning speed. Compare with your numbers."
+        observed = f"The circle in the bag has a radius of {circle.radius:.2f} m."
+        return failed(observed, expected, Cause("wrong-radius", cause, where))
+    if not driven >= params.turns - 0.01:
+        cause = "The recording began too late, or ended too early."
+        return failed(f"The bag shows {driven:.2f} turns.", expected, Cause("too-short", cause, where))
+    return passed(f"The bag shows {driven:.1f} turns on a circle with a radius of {circle.radius:.2f} m.")
+
+
+READABLE = Kind(
+    "bag",
+    "source",
+    "The bag can be read",
+    InBag,
+    readable,
+    about="A folder of the package holds a bag (MCAP) with at least one message, and its recording was ended properly.",
+)
+TOPIC = Kind(
+    "bag_topic",
+    "source",
+    "The bag holds the topic",
+    TopicInBag,
+    topic_in_bag,
+    about="The bag holds messages of a topic, with the right type.",
+)
+CIRCLE = Kind(
+    "bag_circle",
+    "source",
+    "The bag shows a circle",
+    CircleInBag,
+    circle_in_bag,
+    about="The poses in the bag lie on one circle with the radius, all the way round.",
+)

@@ -1,0 +1,100 @@
+"""What a function or a program of the package is called with: points of a circle, and bags with poses on a circle."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.common.lazy import np
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Arc:
+    """`count` points on a circle, evenly spaced from `from_deg` to `to_deg` (counter-clockwise from east).
+
+    The centre and the radius are in m. `noise_m` is the standard deviation of each coordinate (m).
+    """
+
+    x_m: float
+    y_m: float
+    radius_m: float
+    from_deg: float
+    to_deg: float
+    count: int
+    noise_m: float
+
+    def points(self, name: str, seed: int) -> tuple[Floats, Floats]:
+        """Return x and y (m), each of shape (count,). The noise is drawn from `seed` and `name`."""
+        angle = self.angles()
+        noise = np.random.default_rng([seed, zlib.crc32(name.encode())]).normal(0.0, self.noise_m, (2, self.count))
+        x = self.x_m + self.radius_m * np.cos(angle) + noise[0]
+        y = self.y_m + self.radius_m * np.sin(angle) + noise[1]
+        return x, y
+
+    def angles(self) -> Floats:
+        """Return the angles of the points (rad)."""
+        return np.radians(np.linspace(self.from_deg, self.to_deg, self.count))
+
+    def deviations(self) -> tuple[float, float, float]:
+        """Return the standard deviations of centre x, centre y and radius (m) of the best fit to such points.
+
+        They follow from the noise: the Cramér-Rao bound, as in N. Chernov, "Circular and Linear Regression" (2010),
+        section 7.2.
+        """
+        angle = self.angles()
+        slopes = np.column_stack((np.cos(angle), np.sin(angle), np.ones_like(angle)))
+        x, y, radius = (float(each) for each in self.noise_m * np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes))))
+        return x, y, radius
+
+
+@dataclass(frozen=True)
+class PointsInput:
+    """One call of a function with x and y: the points of an arc, or these coordinates (m). `lists` passes lists."""
+
+    id: str
+    arc: Arc | None = None
+    x: tuple[float, ...] = ()
+    y: tuple[float, ...] = ()
+    lists: bool = False
+
+
+@dataclass(frozen=True)
+class BagInput:
+    """One run of a program with the name of a bag as its argument.
+
+    The bag holds poses of turtle1 on an arc, at `rate_hz`, and as many commands in the same time (`commands`). With
+    `poses` false, it holds commands only.
+    """
+
+    id: str
+    arc: Arc
+    rate_hz: float
+    commands: int = 0
+    poses: bool = True
+
+
+@dataclass(frozen=True)
+class CallsSpec:
+    """What is called in a trial without a simulator: a function ("package.module:function"), or the executable."""
+
+    function: str = ""
+    points: tuple[PointsInput, ...] = ()
+    bags: tuple[BagInput, ...] = ()
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """The ids of all calls, in their order."""
+        return (*(each.id for each in self.points), *(each.id for each in self.bags))
+
+    def __bool__(self) -> bool:
+        """Return whether anything is called."""
+        return bool(self.points or self.bags)
+
+
+NO_CALLS = CallsSpec()

@@ -1,0 +1,67 @@
+"""Read `[[trial.points]]` and `[[trial.bag]]` in exercise.toml: what a function or a program is called with."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from grader.exercise.call_inputs import Arc, BagInput, CallsSpec, PointsInput
+
+if TYPE_CHECKING:
+    from grader.exercise.tables import Table
+
+ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+ID_WORDS = "small letters, digits and single dashes, as in half-circle"
+FUNCTION = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*")
+MOST_POINTS = 10_000
+MOST_M = 1000.0
+
+
+def read_calls(table: Table) -> CallsSpec:
+    """Return what is called in this `[[trial]]`. A mistake is recorded in the table in which it stands."""
+    function = table.string("function", FUNCTION, "a function, as in my_robot_controller.circle_fit:fit_circle", "")
+    calls = CallsSpec(
+        function,
+        tuple(_points(each) for each in table.tables("points")),
+        tuple(_bag(each) for each in table.tables("bag")),
+    )
+    if bool(calls.points) != bool(function):
+        table.problem('a trial that calls a "function" needs [[trial.points]], and the other way round.')
+    ids = calls.ids
+    for id_ in sorted({each for each in ids if ids.count(each) > 1}):
+        table.problem(f'the id "{id_}" is used twice; each call needs one of its own.')
+    return calls
+
+
+def _points(table: Table) -> PointsInput:
+    id_ = table.string("id", ID, ID_WORDS)
+    lists = table.flag("lists")
+    if "radius_m" in table.values:
+        points = PointsInput(id_, _arc(table), lists=lists)
+    else:
+        points = PointsInput(id_, None, table.numbers("x", MOST_M), table.numbers("y", MOST_M), lists)
+    table.finish()
+    return points
+
+
+def _bag(table: Table) -> BagInput:
+    id_ = table.string("id", ID, ID_WORDS)
+    commands = table.number("commands", 0, MOST_POINTS, f"a number from 0 to {MOST_POINTS}", 0)
+    rate = table.number("rate_hz", 0.1, 1000.0, "from 0.1 to 1000 (Hz)")
+    bag = BagInput(id_, _arc(table), rate, int(commands), poses=not table.flag("without_poses"))
+    table.finish()
+    return bag
+
+
+def _arc(table: Table) -> Arc:
+    within = f"from {-MOST_M:g} to {MOST_M:g} (m)"
+    degrees = "an angle in degrees"
+    return Arc(
+        x_m=table.number("x_m", -MOST_M, MOST_M, within),
+        y_m=table.number("y_m", -MOST_M, MOST_M, within),
+        radius_m=table.number("radius_m", 1e-3, MOST_M, "above 0 (m)"),
+        from_deg=table.number("from_deg", -3600.0, 3600.0, degrees, 0.0),
+        to_deg=table.number("to_deg", -3600.0, 3600.0, degrees, 360.0),
+        count=int(table.number("count", 0, MOST_POINTS, f"a number from 0 to {MOST_POINTS}")),
+        noise_m=table.number("noise_m", 0.0, MOST_M, "at least 0 (m)", 0.0),
+    )

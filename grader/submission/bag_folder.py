@@ -1,0 +1,108 @@
+"""BagFolder: a bag that a student recorded, read from the files of the submission.
+
+The bag is not trusted. It is read in the process with limits (reader.py), without writing anything.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from io import BytesIO
+from typing import TYPE_CHECKING, Literal
+
+from grader.common.words import shorten
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+METADATA = "metadata.yaml"
+POSE_TYPE = "turtlesim/msg/Pose"
+MOST_MESSAGES = 200_000
+MOST_RECORD_BYTES = 64 * 1024 * 1024
+"""The maximum size of one record of a bag, after decompression (bytes)."""
+_POSE = {0: struct.Struct(">4x2f"), 1: struct.Struct("<4x2f")}
+"""How x and y stand in a serialized pose, by the second byte of its header."""
+
+Problem = Literal["", "missing", "elsewhere", "unfinished", "storage", "damaged"]
+
+
+@dataclass(frozen=True)
+class Poses:
+    """The poses on one topic, in the order of the bag: when each was received (s), x and y (m)."""
+
+    t_s: tuple[float, ...] = ()
+    x: tuple[float, ...] = ()
+    y: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class BagFolder:
+    """A bag. `problem` says why it cannot be read, `detail` gives the folder, file or error that belongs to it.
+
+    `types` has the type of each topic, `counts` the number of its messages, and `poses` those of type Pose.
+    """
+
+    problem: Problem
+    detail: str
+    types: Mapping[str, str]
+    counts: Mapping[str, int]
+    poses: Mapping[str, Poses]
+
+
+def read_bag(files: Mapping[str, bytes], folder: str) -> BagFolder:
+    """Read the bag in this folder of a submission. What is wrong with it is stored in `problem`, and never raised."""
+    inside = {path.removeprefix(f"{folder}/"): data for path, data in files.items() if path.startswith(f"{folder}/")}
+    stored = sorted(path for path in inside if path.endswith(".mcap"))
+    if not inside:
+        others = sorted(path for path in files if path.endswith((".mcap", ".db3", ".mcap.active")))
+        return _unread("elsewhere" if others else "missing", others[0] if others else "")
+    if not stored:
+        other = sorted(path for path in inside if path.endswith((".db3", ".zstd", ".lz4")))
+        return _unread("storage", other[0]) if other else _unread("damaged", "it has no file that ends in .mcap")
+    if METADATA not in inside:
+        return _unread("unfinished", "")
+    from mcap.exceptions import EndOfFile  # slow, and most exercises have no bag
+
+    try:
+        return _read([inside[path] for path in stored])
+    except EndOfFile:
+        return _unread("damaged", "a file ends in the middle")
+    except Exception as error:  # a damaged file can cause any exception, through an offset, a string or a checksum
+        return _unread("damaged", shorten(str(error) or type(error).__name__, 80))
+
+
+def _unread(problem: Problem, detail: str) -> BagFolder:
+    return BagFolder(problem, detail, {}, {}, {})
+
+
+def _read(stored: list[bytes]) -> BagFolder:
+    from mcap.records import Channel, Footer, Message, Schema
+    from mcap.stream_reader import StreamReader
+
+    types: dict[str, str] = {}
+    counts: dict[str, int] = {}
+    rows: dict[str, list[tuple[float, float, float]]] = {}
+    for data in stored:
+        schemas: dict[int, str] = {}
+        channels: dict[int, str] = {}
+        for record in StreamReader(BytesIO(data), record_size_limit=MOST_RECORD_BYTES).records:
+            if isinstance(record, Schema):
+                schemas[record.id] = record.name
+            elif isinstance(record, Channel):
+                channels[record.id] = record.topic
+                types[record.topic] = schemas[record.schema_id]
+                counts.setdefault(record.topic, 0)
+            elif isinstance(record, Message):
+                topic = channels[record.channel_id]
+                counts[topic] += 1
+                if types[topic] == POSE_TYPE:
+                    x, y = _POSE[record.data[1]].unpack_from(record.data)
+                    rows.setdefault(topic, []).append((record.log_time / 1e9, x, y))
+            elif isinstance(record, Footer):
+                break
+            if sum(counts.values()) > MOST_MESSAGES:
+                return _unread("damaged", f"it has more than {MOST_MESSAGES} messages")
+    poses = {
+        topic: Poses(*(tuple(column) for column in zip(*sorted(each), strict=True))) for topic, each in rows.items()
+    }
+    return BagFolder("", "", types, counts, poses)

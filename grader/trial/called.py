@@ -1,0 +1,55 @@
+"""Called: what one call of a student's function, or one run of a student's program, did."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from grader.common.json_types import text
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+MOST_TEXT = 20_000
+"""How many characters of each output are kept."""
+MOST_VALUES = 10
+TOO_LATE = "too late"
+"""The `ended` of a call that took too long."""
+
+
+@dataclass(frozen=True)
+class Called:
+    """The result of the call with this id.
+
+    `ended` is how the process ended: "exit 0", "signal 9", TOO_LATE, or an empty string if nothing is known of it.
+    A function returned `values`, if they are up to MOST_VALUES numbers, and something of the type `kind` in any case.
+    """
+
+    id: str
+    ended: str = ""
+    stdout: str = ""
+    stderr: str = ""
+    values: tuple[float, ...] | None = None
+    kind: str = ""
+
+
+def called_from_json(data: dict[str, Any]) -> Called:
+    """Return the result in this JSON. Raises ValueError, TypeError or KeyError if it is none."""
+    values = data["values"]
+    numbers = None if values is None else tuple(float(each) for each in values[:MOST_VALUES])
+    names = ("id", "ended", "stdout", "stderr")
+    id_, ended, stdout, stderr = (text(data[name])[:MOST_TEXT] for name in names)
+    return Called(id_, ended, stdout, stderr, numbers, text(data["kind"])[:100])
+
+
+def read_called(output: bytes, ids: Sequence[str]) -> tuple[Called, ...]:
+    """Return the result of each call, from the lines that the cell wrote. A line that is not a result is left out."""
+    found: dict[str, Called] = {}
+    for line in output.splitlines():
+        try:
+            called = called_from_json(json.loads(line))
+        except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
+            continue
+        found.setdefault(called.id, called)
+    return tuple(found.get(id_, Called(id_)) for id_ in ids)
