@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from grader.submission.package import Submission
 
 MIB = 1024 * 1024
+IN_CELL = Path(__file__).absolute().with_name("in_cell.py")
+"""The script that runs colcon."""
 LIMITS = Limits(processes=200, cpu_s=60)
 TIMEOUT_S = 60.0
 MOST_LOG = 256 * 1024
@@ -53,20 +55,7 @@ code=$?
 [ -d install ] && tar -c --format=gnu -f - -C install .
 exit $code
 """
-# The script reports whether the machine can build before it reads the first byte of the submission. Output after that
-# never counts as a message about the machine.
-_COLCON = r"""
-import os, subprocess, sys
-from colcon_core.command import main
-# colcon loads these when it builds, and goes on without what cannot be loaded: the package would be to blame.
-import colcon_core.shell.dsv, colcon_core.shell.sh, colcon_core.task.python.build
-import colcon_ros.package_identification.ros, colcon_ros.task.ament_python.build
-os.write(2, b"colcon-is-ready\n")
-if subprocess.call(["tar", "-x", "-f", "-", "-C", "src"]):
-    sys.exit(90)
-os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-sys.exit(main())
-"""
+# The script and in_cell.py report whether the machine can build before the first byte of the submission is read.
 _CELL, _READY = b"cell-is-ready\n", b"cell-is-ready\ncolcon-is-ready\n"
 _LIMITS_HIT = {
     "disk": (b"No space left on device", b"File too large", b"Disk quota exceeded"),
@@ -93,10 +82,10 @@ def build(submission: Submission, ros: installation.Ros, *, in_cell: bool, tell:
     with _workspace(in_cell=in_cell) as (workspace, home):
         env = installation.environment(ros, home=home)
         env["WS"] = str(workspace)
-        colcon = interpreter("-c", _COLCON, python=str(ros.python), env=env, searches=True)
+        colcon = interpreter(str(IN_CELL), python=str(ros.python), env=env, searches=True)
         argv = ["sh", "-c", _SCRIPT, "sh", *colcon.argv]
         if in_cell:
-            view = bubblewrap.ros_view(ros)
+            view = bubblewrap.ros_view(ros, IN_CELL)
             with call_filter() as filter_fd, control_group(LIMITS) as group, cell_user() as user:
                 command = bubblewrap.lone_cell(argv, view, env=env, limits=LIMITS, user=user, filter_fd=filter_fd)
                 done = _run(group.joined(command), env, submission, () if filter_fd is None else (filter_fd,))

@@ -40,6 +40,9 @@ OTHERS = {
     ("grade", "start"): "made by the door in the same function",
     ("html", "_making"): "made by the door in the same function",
     ("kernel", "_source_and_start_again"): "bash, which sources a ROS 2 and becomes what the door made",
+    ("in_cell", "__init__"): "this process again, in its cell",
+    ("in_cell", "_next_run"): "this process again, in its cell, as a run of setup.py",
+    ("in_cell", "main"): "tar, in its cell",
     ("install", "_run"): "uv, or pip as _pip made it",
     ("launcher", "main"): "a node of the student's that is not Python, in its cell",
     ("lock", "_compile"): "uv, in the course's folder",
@@ -66,6 +69,7 @@ OTHERS = {
 NAMED = {
     ("doctor", "look_at_node"): "shown",
     ("doctor", "look_at_python"): "shown",
+    ("in_cell", "of"): "compared with what colcon starts",
     ("install", "_uv"): "uv is told where to install",
     ("interpreter", "interpreter"): "the door itself",
     ("bootstrap", "look"): "the version of a sourced one",

@@ -60,6 +60,7 @@ OURS = {
     ("desk_server", "_awake"): "what a page says, behind the guard",
     ("desk_server", "_wanted"): "what a page says, behind the guard",
     ("gradescope_archive", "build_archive"): "our own archive, written",
+    ("in_cell", "_next_run"): "what colcon starts, in its cell",
     ("judging", "so_far"): "a submission that is not read any more",
     ("launcher", "main"): "an order of the conductor",
     ("node_process", "_find_pid"): "what bubblewrap says",

@@ -141,8 +141,11 @@ grader.sandbox.bubblewrap.room = lambda *_, **__: ['sh', '-c', 'echo no namespac
         ),
         (
             """
-import grader.colcon.runner as runner
-runner._COLCON = "import sys; sys.modules['em'] = None\\n" + runner._COLCON
+import pathlib, tempfile, grader.colcon.runner as runner
+script = pathlib.Path(tempfile.mkdtemp()) / "in_cell.py"
+future = "from __future__ import annotations\\n"
+script.write_text(runner.IN_CELL.read_text().replace(future, future + "import sys; sys.modules['em'] = None\\n"))
+runner.IN_CELL = script
 """,
             "The build could not be started: ModuleNotFoundError",
         ),

@@ -1,0 +1,288 @@
+"""Run colcon in its cell. What colcon starts as `python setup.py` becomes a fork of an interpreter that is ready.
+
+colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
+metadata of all installed packages again and again. That is most of the CPU time of a build. Here, one process does this
+once, before the submission arrives, and forks for each run of setup.py. The fork gets the folder, environment,
+arguments and streams of the process that colcon started, which only waits for the exit code. Where a fork could differ
+from a new interpreter, there is no fork (`Run.of`).
+
+This file runs as a script of its own. Standard input is the submission, a tar stream that is unpacked into src.
+"""
+
+from __future__ import annotations
+
+import importlib.machinery
+import json
+import os
+import re
+import signal
+import site
+import socket
+import subprocess
+import sys
+import types
+import warnings
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from functools import partial
+from importlib import metadata
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+READY = b"colcon-is-ready\n"
+"""Printed before the first byte of the submission is read. Output after it is never about the machine."""
+_MOST_OPEN = 4096
+_MOST_REQUEST = 1024 * 1024
+_IGNORE = re.compile(r"ignore:([^:]*)")
+_AT_START = re.compile(r"PYTHON(?!PATH$)|LD_|SETUPTOOLS_|DISTUTILS_")
+"""Variables that have an effect only while an interpreter starts or imports setuptools."""
+_WITH_PREFIX = ("sysconfig", "distutils.sysconfig")
+"""Modules that copy sys.prefix when they are imported."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a new interpreter would run: the code after -c, or setup.py (an absolute path) if `argv` names it.
+
+    `ignored` are the beginnings of the warnings that -W ignores.
+    """
+
+    code: str
+    argv: list[str]
+    ignored: list[str]
+    cwd: str
+    env: dict[str, str]
+
+    @classmethod
+    def of(cls, command: list[str], cwd: str, env: Mapping[str, str]) -> Run | None:
+        """Return the command as a Run, or None if a fork might not do the same as a new interpreter."""
+        python, *words = command
+        ignored = []
+        while words[:1] == ["-W"] and (match := _IGNORE.fullmatch(words[1])):
+            ignored.append(match[1])
+            del words[:2]
+        if python != sys.executable or _at_start(env) != _at_start(os.environ) or _hides_a_module(cwd):
+            return None
+        if words[:1] == ["-c"] and len(words) == 2:
+            return cls(words[1], ["-c"], ignored, cwd, dict(env))
+        script = str(Path(cwd, "setup.py"))
+        if words[:1] == ["setup.py"] and _compiles(script):
+            return cls(script, words, ignored, cwd, dict(env))
+        return None
+
+
+def _at_start(env: Mapping[str, str]) -> dict[str, str]:
+    return {key: value for key, value in env.items() if _AT_START.match(key)}
+
+
+def _hides_a_module(folder: str) -> bool:
+    """Return whether a file or folder there would be imported in place of a module that the fork has already."""
+    try:
+        return any(path.name.partition(".")[0] in sys.modules for path in Path(folder).iterdir())
+    except OSError:
+        return True
+
+
+def _compiles(script: str) -> bool:
+    try:
+        compile(Path(script).read_bytes(), script, "exec", dont_inherit=True)
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):
+        return False
+    return True
+
+
+class Forks:
+    """A process that has imported setuptools and forks for each Run. It ends with its parent."""
+
+    def __init__(self) -> None:
+        importlib.import_module("setuptools")
+        importlib.import_module("distutils.core")
+        metadata.entry_points = EntryPoints()
+        self._requests, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        if os.fork() == 0:
+            self._requests.close()
+            _import_commands()
+            become(_next_run(theirs))
+        theirs.close()
+
+    def do(self, run: Run) -> None:
+        """Let a fork do this run, and exit as it does. Return if there is no fork.
+
+        The caller is a process that colcon has started and that would now become a new interpreter.
+        """
+        try:
+            ours, theirs = socket.socketpair()
+            socket.send_fds(self._requests, [json.dumps(asdict(run)).encode()], [0, 1, 2, theirs.fileno()])
+            theirs.close()
+            os.closerange(3, ours.fileno())  # colcon waits until its pipe to this process is closed
+            os.closerange(ours.fileno() + 1, _MOST_OPEN)
+            status = int(ours.recv(64) or b"-1")
+        except OSError:
+            return
+        if os.WIFSIGNALED(status):
+            with suppress(OSError):  # nobody can change the action of SIGKILL
+                signal.signal(os.WTERMSIG(status), signal.SIG_DFL)
+            os.kill(os.getpid(), os.WTERMSIG(status))
+        os._exit(os.WEXITSTATUS(status))
+
+
+def _import_commands() -> None:
+    """Import the commands of setup.py, which `setup.py --help-commands` imports too."""
+    for command in metadata.entry_points(group="distutils.commands"):
+        with suppress(Exception):
+            command.load()
+    for name in importlib.import_module("distutils.command").__all__:
+        with suppress(Exception):
+            importlib.import_module(f"distutils.command.{name}")
+
+
+def _next_run(requests: socket.socket) -> Run:
+    """Serve requests. Return only in a fork, with what it has to run."""
+    while True:
+        request, received, _, _ = socket.recv_fds(requests, _MOST_REQUEST, 8)
+        if not request:
+            os._exit(0)
+        child = os.fork()
+        if child == 0:
+            for number, descriptor in enumerate(received[:3]):
+                os.dup2(descriptor, number)
+            os.closerange(3, _MOST_OPEN)
+            return Run(**json.loads(request))
+        with socket.socket(fileno=received[3]) as answer:
+            for descriptor in received[:3]:
+                os.close(descriptor)
+            answer.send(str(os.waitpid(child, 0)[1]).encode())
+
+
+def become(run: Run) -> NoReturn:
+    """Become the interpreter of this run."""
+    os.chdir(run.cwd)
+    own = set(_entries(os.environ))
+    os.environ.clear()
+    os.environ.update(run.env)
+    sys.path[:] = [*_entries(run.env), *(entry for entry in sys.path if entry not in own)]
+    sys.modules.pop("sitecustomize", None)
+    prefix = sys.prefix
+    site.execsitecustomize()
+    if sys.prefix != prefix:
+        for name in _WITH_PREFIX:
+            importlib.reload(sys.modules[name])
+    sys.warnoptions[:] = [f"ignore:{beginning}" for beginning in run.ignored]
+    for beginning in run.ignored:
+        warnings.filterwarnings("ignore", re.escape(beginning))
+    sys.argv = run.argv
+    main, code = _main_of(run)
+    sys.path.insert(0, "" if run.argv[0] == "-c" else run.cwd)
+    try:
+        exec(compile(code, getattr(main, "__file__", "<string>"), "exec", dont_inherit=True), main.__dict__)
+    except SystemExit:
+        raise
+    except BaseException as error:
+        trace = error.__traceback__
+        # Without the frame of this function.
+        sys.excepthook(type(error), error.with_traceback(trace and trace.tb_next), error.__traceback__)
+        sys.exit(1)
+    sys.exit()
+
+
+def _main_of(run: Run) -> tuple[types.ModuleType, bytes]:
+    """Return the module __main__ of this run, and its source."""
+    main = types.ModuleType("__main__")
+    main.__dict__.update({name: value for name, value in vars(sys.modules["__main__"]).items() if name[:2] == "__"})
+    main.__doc__ = None
+    sys.modules["__main__"] = main
+    if run.argv[0] == "-c":
+        for name in ("__file__", "__cached__"):
+            main.__dict__.pop(name, None)
+        main.__loader__ = importlib.machinery.BuiltinImporter
+        return main, run.code.encode()
+    main.__file__ = run.code
+    main.__loader__ = importlib.machinery.SourceFileLoader("__main__", run.code)
+    return main, Path(run.code).read_bytes()
+
+
+class EntryPoints:
+    """`importlib.metadata.entry_points`, which reads the metadata of every installed package whenever it is called.
+
+    setuptools calls it up to fifteen times in a run. Here, the metadata of the machine are read once. Those in other
+    folders on sys.path, such as the folder of the submission, are read each time.
+    """
+
+    def __init__(self) -> None:
+        self._read = metadata.entry_points
+        self._fixed = frozenset(sys.path)
+        self._names = frozenset(name for folder in sys.path for name in _with_metadata(folder))
+        self._all: Any = self._read()
+        self._groups: dict[str, list[metadata.EntryPoint]] = {}
+
+    def __call__(self, **chosen: Any) -> Any:  # noqa: ANN401 - as the original
+        """Return the entry points with these attributes."""
+        others = {folder: _with_metadata(folder) for folder in sys.path if folder not in self._fixed}
+        group = chosen.pop("group", None)
+        if group is None and not any(others.values()):
+            return self._all.select(**chosen)
+        if group is None or not self._names.isdisjoint(name for names in others.values() for name in names):
+            return self._read(**({"group": group} if group else {}), **chosen)
+        if group not in self._groups:
+            self._groups[group] = list(self._all.select(group=group))
+        folders = [folder for folder, names in others.items() if names]
+        found = [each.entry_points.select(group=group) for each in metadata.distributions(path=folders)]
+        return metadata.EntryPoints([*chain.from_iterable(found), *self._groups[group]]).select(**chosen)
+
+
+def _with_metadata(folder: str) -> list[str]:
+    """Return the names of the packages whose metadata are in the folder."""
+    try:
+        names = [path.name for path in Path(folder).iterdir()]
+    except OSError:
+        return []
+    found = [name for name in names if name.endswith((".dist-info", ".egg-info", ".egg"))]
+    return [re.sub(r"[-_.]+", "_", name.rpartition(".")[0].partition("-")[0]).lower() for name in found]
+
+
+def _entries(env: Mapping[str, str]) -> list[str]:
+    """Return what PYTHONPATH adds to sys.path."""
+    path = env.get("PYTHONPATH")
+    return list(dict.fromkeys(map(os.path.abspath, path.split(os.pathsep)))) if path else []
+
+
+def _starting_with(forks: Forks) -> type[subprocess.Popen[Any]]:
+    """Return a Popen that lets a fork do the runs of setup.py."""
+
+    class Popen(subprocess.Popen[Any]):
+        def __init__(self, command: Any, *rest: Any, **options: Any) -> None:  # noqa: ANN401 - as the base class
+            cwd, env = str(Path(options.get("cwd") or ".").absolute()), options.get("env") or os.environ
+            words = list(map(str, command)) if isinstance(command, list | tuple) else [str(command)]
+            run = Run.of(words, cwd, env)
+            if run is not None:
+                options["preexec_fn"] = partial(forks.do, run)
+            super().__init__(command, *rest, **options)
+
+    return Popen
+
+
+def main() -> None:
+    """Unpack the submission into src, and run colcon with the arguments of this process."""
+    sys.path.pop(0)
+    forks = Forks()
+    colcon = importlib.import_module("colcon_core.command").main
+    # colcon loads these when it builds, and goes on without what cannot be loaded: the package would be to blame.
+    for name in ("colcon_core.shell.dsv", "colcon_core.shell.sh", "colcon_core.task.python.build"):
+        importlib.import_module(name)
+    for name in ("colcon_ros.package_identification.ros", "colcon_ros.task.ament_python.build"):
+        importlib.import_module(name)
+    os.write(2, READY)
+    if subprocess.call(["tar", "-x", "-f", "-", "-C", "src"]):
+        sys.exit(90)
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    subprocess.Popen = _starting_with(forks)  # type: ignore[assignment,misc]
+    sys.argv[0] = "-c"
+    sys.exit(colcon())
+
+
+if __name__ == "__main__":
+    main()

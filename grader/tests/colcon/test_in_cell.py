@@ -1,0 +1,130 @@
+"""colcon in a cell: a fork that runs setup.py does what a new interpreter does."""
+
+from __future__ import annotations
+
+import io
+import re
+import shutil
+import subprocess
+import tarfile
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.colcon.runner import IN_CELL
+from grader.ros.installation import environment
+from grader.tests.in_ros import HANG_S
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from grader.ros.installation import Ros
+    from grader.tests.in_ros import InRos
+
+BUILD = ("build", "--base-paths", "src", "--executor", "sequential", "--event-handlers", "console_direct+")
+PLAIN = "import sys; from colcon_core.command import main; sys.argv[0] = '-c'; sys.exit(main())"
+PACKAGE_XML = """<package format="3">
+  <name>fish</name><version>0.1.0</version><description>a</description><maintainer email="a@b.c">a</maintainer>
+  <license>MIT</license><export><build_type>ament_python</build_type></export>
+</package>
+"""
+SETUP_PY = """import atexit, os, sys, sysconfig, warnings
+IN_A_FORK = "distutils.command.sdist" in sys.modules
+from setuptools import find_packages, setup
+{before}
+setup(
+    name="fish", version="0.1.0", packages=find_packages(), install_requires=["setuptools"], tests_require=["pytest"],
+    data_files=[("share/ament_index/resource_index/packages", ["resource/fish"]), ("share/fish", ["package.xml"])],
+    entry_points={{"console_scripts": ["swim = fish.node:main"]}},
+)
+{after}
+"""
+TELLS = """
+told = [__name__, __file__, __doc__, sys.argv, sys.path, sys.prefix, sys.exec_prefix, sys.flags, sys.stdin.read()]
+told += [os.getcwd(), sorted(os.environ.items()), sysconfig.get_path("purelib"), sysconfig.get_config_var("prefix")]
+told += [sys.executable, sys.warnoptions, sorted(globals())]
+print(*map(repr, told), sep="\\n", file=sys.stderr)
+warnings.warn("beware")
+atexit.register(print, "the end", file=sys.stderr)
+"""
+FAILS = """
+if "install" in sys.argv:
+    try:
+        {}["swim"]
+    except KeyError:
+        print(1 / 0)
+"""
+IN_A_FORK = "sys.stderr.write(f'in a fork: {IN_A_FORK}\\n')"
+
+
+def package(*, before: str = "", after: str = "", more: dict[str, str] | None = None) -> dict[str, str]:
+    """Return the files of a package whose setup.py does something before and after it calls setup."""
+    return {
+        "package.xml": PACKAGE_XML,
+        "setup.py": SETUP_PY.format(before=before, after=after),
+        "setup.cfg": "[develop]\nscript-dir=$base/lib/fish\n[install]\ninstall_scripts=$base/lib/fish\n",
+        "resource/fish": "",
+        "fish/__init__.py": "",
+        "fish/node.py": "def main() -> None:\n    pass\n",
+        **(more or {}),
+    }
+
+
+def build(ros: Ros, workspace: Path, files: dict[str, str], *, forks: bool) -> tuple[int, str, dict[str, bytes]]:
+    """Build the files, in forks or as plain colcon does. Return the exit code, the log, and the installed files."""
+    shutil.rmtree(workspace, ignore_errors=True)
+    (workspace / "src").mkdir(parents=True)
+    packed = io.BytesIO()
+    with tarfile.open(fileobj=packed, mode="w") as tar:
+        for name, text in files.items():
+            member = tarfile.TarInfo(f"fish/{name}")
+            member.size = len(text.encode())
+            tar.addfile(member, io.BytesIO(text.encode()))
+    if not forks:
+        subprocess.run(["tar", "-x", "-C", workspace / "src"], input=packed.getvalue(), check=True)
+    done = subprocess.run(
+        [ros.python, *([IN_CELL] if forks else ["-c", PLAIN]), *BUILD],
+        input=packed.getvalue() if forks else b"",
+        env=environment(ros, home=workspace),
+        cwd=workspace,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        timeout=HANG_S,
+        check=False,
+    )
+    log = re.sub(r"\d+\.\d+s", "TIME", done.stdout.decode().removeprefix("colcon-is-ready\n"))
+    installed = {str(path): path.read_bytes() for path in sorted((workspace / "install").rglob("*")) if path.is_file()}
+    return done.returncode, log, {path: data for path, data in installed.items() if not path.endswith(".pyc")}
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        pytest.param(package(before=TELLS), id="tells"),
+        pytest.param(package(before=FAILS), id="fails"),
+        pytest.param(package(after="sys.exit('install' in sys.argv and 3)"), id="exits", marks=pytest.mark.exhaustive),
+        pytest.param(package(after="os.kill(os.getpid(), 9)"), id="killed", marks=pytest.mark.exhaustive),
+        pytest.param(package(before="def"), id="syntax", marks=pytest.mark.exhaustive),
+        pytest.param(package(before="os.close(1)"), id="closes", marks=pytest.mark.exhaustive),
+        pytest.param(package(before="if os.fork() == 0: os._exit(0)"), id="forks", marks=pytest.mark.exhaustive),
+        pytest.param(package(more={"json.py": "print('mine')"}), id="own json", marks=pytest.mark.exhaustive),
+        pytest.param(
+            package(more={"fish.egg-info/entry_points.txt": "[distutils.commands]\nbuild = fish.node:main\n"}),
+            id="own commands",
+            marks=pytest.mark.exhaustive,
+        ),
+    ],
+)
+def test_a_fork_does_what_a_new_interpreter_does(in_ros: InRos, tmp_path: Path, files: dict[str, str]) -> None:
+    assert build(in_ros.ros, tmp_path / "ws", files, forks=True) == build(
+        in_ros.ros, tmp_path / "ws", files, forks=False
+    )
+
+
+@pytest.mark.parametrize("more", [{}, {"json.py": "from_here = True"}], ids=["plain", "own json"])
+def test_setup_py_runs_in_a_fork_unless_its_folder_hides_a_module(
+    in_ros: InRos, tmp_path: Path, more: dict[str, str]
+) -> None:
+    code, log, _ = build(in_ros.ros, tmp_path / "ws", package(before=IN_A_FORK, more=more), forks=True)
+    assert code == 0, log
+    assert set(re.findall("in a fork: (.*)", log)) == {str(not more)}
