@@ -48,6 +48,7 @@ def test_the_first_tab_stop_skips_the_links(page: Page, pages: Path) -> None:
 @pytest.mark.parametrize("name", [*GIVEN, "class"])
 def test_nothing_is_wider_than_the_page(page: Page, pages: Path, name: str, problems: list[str]) -> None:
     opened(page, pages, name)
+    unfold(page)
     for width in (360, 1600):
         page.set_viewport_size({"width": width, "height": 800})
         assert page.evaluate("document.documentElement.scrollWidth") <= width
