@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 COLCON = Path(sys.executable).with_name("colcon")
 STEP = "03-circle-publisher"
 PACKAGE = ROOT / "solutions" / STEP / "my_robot_controller"
-SUBMISSIONS = ("cases", "hostile", "mistakes", "unusual")
+SUBMISSIONS = ("bases", "cases", "hostile", "mistakes", "unusual")
 STEPS = [name for name in catalogue() if find_exercise(name).package]
 BROKEN = "exercises", "04-package-files"
 """The learner repairs this package, which colcon cannot read before."""
