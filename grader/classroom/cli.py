@@ -96,8 +96,8 @@ def grade(
         bool,
         typer.Option(
             "--explain/--no-explain",
-            help="Prove the causes of failed checks: change them in a copy, and run it again. A failed submission "
-            "then takes up to 1.5 times a build and a run longer.",
+            help="Prove the causes of failed checks: change them in a copy, and run it again. Then a failed "
+            "submission takes longer: up to 1.5 times a build and a run.",
         ),
     ] = True,
     trusted: Annotated[

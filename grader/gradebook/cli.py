@@ -59,7 +59,7 @@ def sync(
     trusted: Annotated[
         bool,
         typer.Option(
-            "--trust-submissions", help="Run submissions even without a sandbox. Use a machine that you can lose."
+            "--trust-submissions", help="Run submissions even without a sandbox, on a machine without important data."
         ),
     ] = False,
 ) -> None:

@@ -150,7 +150,7 @@ def require(*, trusted: bool = False) -> bool:
         return why is None
     message = (
         f"There is no sandbox, so code of others does not run: {why}. On "
-        "a machine that you can lose, --trust-submissions runs it with limits on time, memory and output only."
+        "a machine without important data, --trust-submissions runs it with limits on time, memory and output only."
     )
     raise MachineError(message)
 

@@ -87,7 +87,9 @@ def _stuck(evidence: Evidence) -> Cause | None:
                 text = "rclpy.spin returns only after Ctrl-C, so the lines after it in __init__ do not run before that."
                 return Cause("blocks-in-init", text, where)
             if method.name == "__init__" and isinstance(node, ast.While) and _only_waits(node):
-                return Cause("blocks-in-init", "This loop in __init__ may never end, so that nothing spins.", where)
+                return Cause(
+                    "blocks-in-init", "This loop in __init__ may never end, so rclpy.spin is never reached.", where
+                )
             if method.name in callbacks and waits_inside(node):
                 text = "This callback waits for a response, but rclpy.spin cannot receive it while the callback waits."
                 return Cause("waits-in-callback", text, where)

@@ -42,8 +42,8 @@ def waits_in_callback(evidence: Evidence) -> Cause | None:
         for node in ast.walk(method):
             if waits_inside(node):
                 text = (
-                    "A callback waits for a response. While it waits, rclpy.spin can call nothing, "
-                    "so the response is never received. Use call_async, and add_done_callback for what comes next."
+                    "A callback waits for a response. While it waits, rclpy.spin cannot receive the response. "
+                    "Use call_async, and add_done_callback for what comes next."
                 )
                 return Cause("waits-in-callback", text, Where(module.file, getattr(node, "lineno", None)))
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr not in reached:

@@ -119,7 +119,7 @@ def _not_followed(evidence: Evidence, params: Arc) -> Cause | None:
     made = [call for call in set_calls(evidence) if call.t_s < params.from_s and call.response is not None]
     if not any(call.response["results"][0]["successful"] for call in made if call.response is not None):
         return None
-    text = "The parameter was set, and the commands did not follow. Read it with get_parameter before each command."
+    text = "The parameter was set, but the commands did not change. Read it with get_parameter before each command."
     return Cause("parameter-not-followed", text, evidence.place("get_parameter"))
 
 

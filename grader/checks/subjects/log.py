@@ -82,7 +82,7 @@ def _other_format(evidence: Evidence, params: LogFormat, logged: list[str], expe
     why = Cause("log-format", "Compare it letter by letter: capital letters, spaces and dots count.")
     pattern = student_log.Format(params.format).pattern()
     if re.search(r"\{[\w.:]+\}", line):
-        text = "The braces are in the line as they are in the code. Only in an f-string do they stand for a value."
+        text = "The line contains the braces themselves. Only an f-string replaces them by a value."
         where = evidence.place(*LEVELS)
         why = Cause("log-numbers", text, where).fixed_by(at(where, '("', '(f"'))
     elif re.search(r"%[-+.\d]*[dfsi]|\{\}", line):

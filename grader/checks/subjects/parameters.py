@@ -67,7 +67,7 @@ class SetsParameter:
 
     parameter: str = string("the name of a parameter", about="The parameter.")
     value: float = number(about="The value that the trial sets.")
-    answer: str = choice("accepted", "refused", about="What the node must say to it.")
+    answer: str = choice("accepted", "refused", about="Whether the node must accept the value or refuse it.")
 
 
 def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:

@@ -35,7 +35,7 @@ class CallsService:
     after: str = string(
         "the full name of a service",
         default=" ",
-        about="A service that must have been called before. No matter which, if this is left out.",
+        about="A service that must have been called before. If this is left out, the order does not matter.",
     )
 
 
