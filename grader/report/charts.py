@@ -136,7 +136,7 @@ def intervals(evidence: Evidence, name: str = "intervals", bins: int = BINS) -> 
         drawn += _band(area, low_s, high_s) + _dashes(area, middle_s)
     drawn += "".join(_dot(area, t, value, good=low_s <= value <= high_s) for t, value in thin(series, end_s, bins))
     svg = picture(
-        area.frame("seconds since the command before"),
+        area.frame("seconds since the previous command"),
         drawn,
         area.head(),
         words("time (s)", WIDTH - RIGHT, TOP + HEIGHT + 32, "end"),
