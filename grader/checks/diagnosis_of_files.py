@@ -96,6 +96,9 @@ DiagnosisOfFiles = Literal[
     "method-outside-class",
     "method-in-method",
     "name-used-twice",
+    "interface-part",
+    "future-for-answer",
+    "name-of-node",
     "node-publishes",
     "none-before-message",
     # Calls

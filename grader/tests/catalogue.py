@@ -20,6 +20,10 @@ TESTS = Path(__file__).parent
 PAGE = TESTS.parent / "checks" / "README.md"
 MISTAKES = CASES.parent / "mistakes"
 SHOWN_BY_TESTS = {
+    "action-type": "checks/subjects/test_goals.py",
+    "goal-aborted": "checks/subjects/test_goals.py",
+    "goal-not-reached": "checks/subjects/test_goals.py",
+    "stale-feedback": "checks/subjects/test_goals.py",
     "build-limit": "checks/subjects/test_building.py",
     "lobe-gap": "checks/subjects/test_eight.py",
     "no-answers-file": "classroom/test_task.py",

@@ -14,6 +14,7 @@ import pexpect
 import pytest
 
 from grader.ros.installation import environment, find_ros
+from grader.ros.underlay import with_turtlesim
 from grader.submission.answers_toml import read_answers
 from grader.submission.package_xml import read_manifest
 from grader.tests.console import Block, blocks, differs, run
@@ -182,7 +183,7 @@ def test_parts_of_files_are_in_the_step(block: Block) -> None:
 
 @pytest.mark.parametrize("block", blocks_of("python", "example"))
 def test_examples_can_be_imported(block: Block, tmp_path: Path) -> None:
-    ros = find_ros()
+    ros = with_turtlesim(find_ros())
     done = subprocess.run(
         [ros.python, "-c", block.text],
         env=environment(ros, home=tmp_path, domain=own_domain()),

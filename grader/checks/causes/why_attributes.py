@@ -26,6 +26,11 @@ NO_ATTRIBUTE = re.compile(
     r"(?:'(?P<object>\w+)' object|type object '(?P<type>\w+)'|module '(?P<module>[\w.]+)')"
     r" has no attribute '(?P<name>\w+)'"
 )
+OF_THE_NODE = re.compile(
+    r"^(\w+) cannot be modified after node creation|property '(\w+)' of '\w+' object has no setter"
+    r"|can't set attribute '(\w+)'"
+)
+"""How rclpy and Python 3.10 to 3.14 refuse to set an attribute that a node uses itself."""
 MANGLED = re.compile(r"^_[A-Za-z]\w*?__(?=[a-zA-Z])")
 """What Python puts in front of an attribute whose name begins with two underscores."""
 PLAIN = {
@@ -46,6 +51,10 @@ MODULES_READ = {"math": math, "time": time, "random": random}
 
 def why_no_attribute(scene: CrashScene) -> Cause | None:
     """Return the cause of an AttributeError, depending on the type of the object."""
+    taken = OF_THE_NODE.search(scene.crash.message)
+    if taken is not None:
+        name = next(filter(None, taken.groups()))
+        return Cause("name-of-node", f"Every node has an attribute named {name} of its own. Choose another name.")
     match = NO_ATTRIBUTE.search(scene.crash.message)
     if match is None:
         return None

@@ -10,6 +10,7 @@ from grader.checks.causes.why_attributes import why_no_attribute
 from grader.checks.causes.why_calls import why_refused, why_type
 from grader.checks.causes.why_fields import why_field
 from grader.checks.causes.why_imports import why_no_import
+from grader.checks.causes.why_interface import why_interface
 from grader.checks.causes.why_names import why_no_name, why_unbound
 from grader.checks.causes.why_response import why_response
 from grader.checks.outcome import Finding, failed
@@ -63,7 +64,7 @@ def why_crashed(evidence: Evidence, crash: Crash) -> Cause:
     """Return the cause of a crash. If the source code does not show the cause, explain only the exception."""
     explain = EXPLANATIONS.get(crash.error)
     scene = CrashScene(evidence, crash)
-    cause = why_response(scene) or (explain(scene) if explain is not None else None)
+    cause = why_response(scene) or why_interface(scene) or (explain(scene) if explain is not None else None)
     return cause or Cause("crash", crash.meaning)
 
 

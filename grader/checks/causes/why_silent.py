@@ -145,12 +145,18 @@ def _only_waits(loop: ast.While) -> bool:
     )
 
 
+WAITS = ("spin_until_future_complete", "send_goal", "cancel_goal", "get_result")
+"""Methods that wait for a response. The three of actions have a twin that ends in _async."""
+
+
 def waits_inside(node: ast.AST) -> bool:
-    """Return whether this is a call that waits for a response: spin_until_future_complete, or the call of a client."""
+    """Return whether this waits for a response: spin_until_future_complete, Client.call, or a loop until it is done."""
+    if isinstance(node, ast.While):
+        return _calls(node.test, "done")
     if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
         return False
     owner = dotted(node.func.value) or ""
-    return node.func.attr == "spin_until_future_complete" or (node.func.attr == "call" and owner.startswith("self."))
+    return node.func.attr in WAITS or (node.func.attr == "call" and owner.startswith("self."))
 
 
 def _never_called(evidence: Evidence, sends: Sequence[str]) -> Cause | None:

@@ -43,7 +43,7 @@ def waits_in_callback(evidence: Evidence) -> Cause | None:
             if waits_inside(node):
                 text = (
                     "A callback waits for a response. While it waits, rclpy.spin cannot receive the response. "
-                    "Use call_async, and add_done_callback for what comes next."
+                    "Use the method that ends in _async, and add_done_callback for what comes next."
                 )
                 return Cause("waits-in-callback", text, Where(module.file, getattr(node, "lineno", None)))
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr not in reached:

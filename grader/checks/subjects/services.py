@@ -100,7 +100,7 @@ def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:
     calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
     call = calls[int(params.nth) - 1] if len(calls) >= params.nth else None
     if call is None or call.missing or call.response is None or call.answered_s is None:
-        return _no_response(evidence, params, call, expected)
+        return no_response(evidence, params.service, params.type, call, expected)
     took = Band.at_most(params.within_s)
     took_s = call.answered_s - call.t_s
     if not took.holds(took_s):
@@ -115,7 +115,8 @@ def answers_call(evidence: Evidence, params: AnswersCall) -> Finding:
     return passed(f"The node answered the call of {params.service}.", near_edge=took.near(took_s))
 
 
-def _no_response(evidence: Evidence, params: AnswersCall, call: Call | None, expected: str) -> Finding:
+def no_response(evidence: Evidence, service: str, type_: str, call: Call | None, expected: str) -> Finding:
+    """Return the failed finding about a call of the trial that got no response."""
     crash = crash_of(evidence)
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
@@ -126,24 +127,24 @@ def _no_response(evidence: Evidence, params: AnswersCall, call: Call | None, exp
         cause = waits_in_callback(evidence) or Cause(
             "no-response", "Something in the node blocks its callbacks.", where
         )
-        return failed(f"The node received the call of {params.service} and never answered.", expected, cause)
-    return _missing(evidence, params, expected)
+        return failed(f"The node received the call of {service} and never answered.", expected, cause)
+    return _missing(evidence, service, type_, expected)
 
 
-def _missing(evidence: Evidence, params: AnswersCall, expected: str) -> Finding:
+def _missing(evidence: Evidence, service: str, type_: str, expected: str) -> Finding:
     where = evidence.place("create_service")
     offers = evidence.recording.offers
-    same = [offer for offer in offers if offer.service == params.service]
+    same = [offer for offer in offers if offer.service == service]
     if same:
-        observed = f"{params.service} has the type {shorten(same[0].type)}."
-        text = f"The type is the first argument of create_service. The exercise asks for {params.type}."
+        observed = f"{service} has the type {shorten(same[0].type)}."
+        text = f"The type is the first argument of create_service. The exercise asks for {type_}."
         return failed(observed, expected, Cause("service-type", text, where))
     names = sorted({offer.service for offer in offers})
     if names:
-        guess = nearest(params.service, names) or names[0]
-        observed = f"No service is named {params.service}. The node offers {a_list([shorten(name) for name in names])}."
-        text = f"The name is the second argument of create_service. It is {params.service}, with the slash."
-        if guess.endswith(params.service):
+        guess = nearest(service, names) or names[0]
+        observed = f"No service is named {service}. The node offers {a_list([shorten(name) for name in names])}."
+        text = f"The name is the second argument of create_service. It is {service}, with the slash."
+        if guess.endswith(service):
             text = (
                 "Without a slash at the beginning, a name is below the namespace of the node; with ~, below its name."
             )

@@ -46,12 +46,13 @@ class Square:
 
 @dataclass(frozen=True)
 class Sides:
-    """The straight parts: their lengths (m), the turns between them (rad), and their end points (m).
+    """The straight parts: their lengths (m), their headings and the turns between them (rad), and their end points (m).
 
-    After the fourth one, the turtle drives `more_m` (m) and turns by `more_rad` (rad).
+    After the last one of the figure, the turtle drives `more_m` (m) and turns by `more_rad` (rad).
     """
 
     lengths: tuple[float, ...]
+    headings: tuple[float, ...]
     corners: tuple[float, ...]
     ends: tuple[tuple[float, float], ...]
     curved_share: float
@@ -59,8 +60,8 @@ class Sides:
     more_rad: float
 
 
-def sides_of(trajectory: Trajectory) -> Sides:
-    """Split the trajectory at its corners."""
+def sides_of(trajectory: Trajectory, amount: int = SIDES) -> Sides:
+    """Split the trajectory of a figure with this number of sides at its corners."""
     moves = trajectory.steps > RESTS_M
     straight = moves & (np.abs(trajectory.turn) <= STRAIGHT_RAD_M * trajectory.steps)
     curved = moves & ~straight
@@ -69,15 +70,21 @@ def sides_of(trajectory: Trajectory) -> Sides:
     # A side ends where the heading changes by more than noise before the next straight frame.
     breaks = np.flatnonzero(np.abs(np.diff(turned[frames])) > math.radians(10.0)) + 1
     pieces = [piece for piece in np.split(frames, breaks) if trajectory.steps[piece].sum() > SHORT_M]
-    after = int(pieces[SIDES - 1][-1]) + 1 if len(pieces) >= SIDES else len(trajectory.steps)
+    after = int(pieces[amount - 1][-1]) + 1 if len(pieces) >= amount else len(trajectory.steps)
     return Sides(
         lengths=tuple(float(trajectory.steps[piece].sum()) for piece in pieces),
+        headings=tuple(_heading(trajectory, int(piece[0]), int(piece[-1]) + 1) for piece in pieces),
         corners=tuple(float(turned[after[0]] - turned[before[-1]]) for before, after in pairwise(pieces)),
         ends=tuple((float(trajectory.x[piece[-1] + 1]), float(trajectory.y[piece[-1] + 1])) for piece in pieces),
         curved_share=float(trajectory.steps[curved].sum()) / trajectory.length_m if trajectory.length_m else 0.0,
         more_m=float(trajectory.steps[after:].sum()),
         more_rad=float(trajectory.turn[after:].sum()),
     )
+
+
+def _heading(trajectory: Trajectory, begin: int, end: int) -> float:
+    x, y = trajectory.x, trajectory.y
+    return math.atan2(float(y[end] - y[begin]), float(x[end] - x[begin]))
 
 
 def square(evidence: Evidence, params: Square) -> Finding:

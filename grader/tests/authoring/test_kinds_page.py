@@ -25,7 +25,20 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
-WITHOUT_UNIT = {"turns", "first", "nth", "goes_on", "red", "green", "blue", "at_least", "at_most", "value"}
+WITHOUT_UNIT = {
+    "turns",
+    "total",
+    "sides",
+    "first",
+    "nth",
+    "goes_on",
+    "red",
+    "green",
+    "blue",
+    "at_least",
+    "at_most",
+    "value",
+}
 """Parameters that are numbers and have no unit, or have the unit of the parameter or field that they refer to."""
 
 

@@ -1,0 +1,48 @@
+"""Why a type, a future, or a message of an action or a service was used in the wrong way, which raised an exception."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.why_attributes import NO_ATTRIBUTE
+from grader.common.words import shorten
+
+if TYPE_CHECKING:
+    from grader.checks.causes.crash_scene import CrashScene
+
+WRAPPED = {"_FeedbackMessage": "feedback", "_GetResult_Response": "result"}
+"""The ending of a type in which an action client receives something -> the field with the content."""
+OF_A_RESULT = ("status", "result")
+NO_OBJECT = re.compile(r"^(Action|Service) classes can not be instantiated")
+OF_AN_ACTION = re.compile(r"service type provided is not valid \(<class '\w+\.action\.")
+PARTS = {"Action": "Goal", "Service": "Request"}
+"""What a client of an action or of a service creates."""
+OF_A_TYPE = "_TYPE_SUPPORT"
+"""rclpy needs this attribute of each type."""
+
+
+def why_interface(scene: CrashScene) -> Cause | None:
+    """Return the cause if the wrong level of a type or of an answer was used, else None."""
+    whole = NO_OBJECT.match(scene.crash.message)
+    if whole is not None:
+        part = PARTS[whole[1]]
+        text = f"The type has several parts, and only these make objects: add .{part} before the parentheses."
+        return Cause("interface-part", text)
+    if OF_AN_ACTION.search(scene.crash.message):
+        return Cause("wrong-type", "This is the type of an action. create_client is for services; see ActionClient.")
+    match = NO_ATTRIBUTE.search(scene.crash.message)
+    if match is None:
+        return None
+    owner, name = match["object"] or match["type"] or "", match["name"]
+    if owner == "str" and name == OF_A_TYPE:
+        return Cause("arguments-swapped", "A string stands where the type belongs. The type comes before the name.")
+    if owner == "Future":
+        text = f"This is a future. Its method result() returns the answer, and that one may have {shorten(name)}."
+        return Cause("future-for-answer", text)
+    inner = next((field for ending, field in WRAPPED.items() if owner.endswith(ending)), None)
+    if inner is None or name in OF_A_RESULT:
+        return None
+    text = f"rclpy puts the {inner} into a message of its own: {shorten(name)} is a field of its field {inner}."
+    return Cause("message-field", text)

@@ -1,0 +1,122 @@
+"""Checks of a goal that is cancelled when the trial asks for it, and that no goal follows it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_no_goal import why_aborted
+from grader.checks.causes.why_unasked import waits_in_callback
+from grader.checks.kind import Kind, number, string
+from grader.checks.outcome import Finding, Status, failed, passed
+from grader.checks.subjects.goals import goals_of, no_goal
+from grader.checks.subjects.services import calls_of, no_response
+from grader.checks.tolerance import Band
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.trial.observed import Call, Goal
+
+
+@dataclass(frozen=True, kw_only=True)
+class CancelsGoal:
+    """The service that the trial calls, upon which the node cancels its goal within `within_s` (s)."""
+
+    service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
+    type: str = string("a service type, as in std_srvs/srv/Trigger", about="Its type.")
+    within_s: float = number(0.5, above=0, about="How long it may take until the goal is cancelled.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class NoGoalAfter:
+    """The service that the trial calls, after which the node sends no goal."""
+
+    service: str = string("the full name of a service", start="/", about="The service that the trial calls.")
+
+
+def cancels_goal(evidence: Evidence, params: CancelsGoal) -> Finding:
+    """The goal that the turtle follows when the trial calls the service is cancelled in time."""
+    expected = f"The goal is cancelled within {params.within_s:g} s after a call of {params.service}."
+    calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
+    if not any(call.response is not None for call in calls):
+        return no_response(evidence, params.service, params.type, calls[0] if calls else None, expected)
+    goals = goals_of(evidence)
+    found = _stopped(goals, calls)
+    if found is None:
+        if not goals:
+            return no_goal(evidence, expected)
+        observed = f"The turtle followed no goal when {params.service} was called."
+        text = "Until it is told to stop, the node sends the next goal as soon as the last one has ended."
+        return failed(observed, expected, Cause("goal-not-sent", text, evidence.place("send_goal_async")))
+    call, goal = found
+    took = Band.at_most(params.within_s)
+    if goal.status == "aborted" and goal.ended_s is not None and took.holds(goal.ended_s - call.t_s):
+        observed, cause = why_aborted(evidence, goals, goal)
+        return failed(f"{observed} It was not cancelled.", expected, cause)
+    took_s = float("inf") if goal.cancel_asked_s is None or goal.ended_s is None else goal.ended_s - call.t_s
+    if goal.status == "canceled" and took.holds(took_s):
+        return passed("The goal was cancelled.", near_edge=took.near(took_s))
+    return _goes_on(evidence, params, goal, took_s, expected)
+
+
+def _goes_on(evidence: Evidence, params: CancelsGoal, goal: Goal, took_s: float, expected: str) -> Finding:
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
+    where = evidence.place("cancel_goal_async", "create_service")
+    if goal.status == "canceled":
+        return failed(
+            f"The goal was cancelled {took_s:.1f} s after the call.",
+            expected,
+            Cause("goal-goes-on", "Ask for it in the callback of the service.", where),
+            near_edge=Band.at_most(params.within_s).near(took_s),
+        )
+    text = "cancel_goal_async, called on the handle of the goal, asks to cancel it."
+    cause = waits_in_callback(evidence) or Cause("goal-goes-on", text, where)
+    return failed(f"After the call of {params.service}, the turtle went on to its goal.", expected, cause)
+
+
+def no_goal_after(evidence: Evidence, params: NoGoalAfter) -> Finding:
+    """After the call of the service, no goal arrives."""
+    expected = f"After a call of {params.service}, the turtle stays as it is."
+    calls = [call for call in calls_of(evidence) if call.by_trial and call.service == params.service]
+    goals = goals_of(evidence)
+    found = _stopped(goals, calls)
+    if found is None:
+        return Finding(Status.SKIPPED, "Not judged, because no goal was stopped.")
+    after = [goal for goal in goals if goal.t_s > found[0].t_s]
+    if after:
+        observed = f"The node sent another goal {after[0].t_s - found[0].t_s:.1f} s after the call."
+        text = "A cancelled goal has a result, too, and its callback is called. Look at the status in it."
+        return failed(observed, expected, Cause("goal-after-cancel", text, evidence.place("get_result_async")))
+    return passed("No goal came after the call.")
+
+
+def _stopped(goals: list[Goal], calls: list[Call]) -> tuple[Call, Goal] | None:
+    """Return the first call that came while the turtle followed a goal, with that goal; else None."""
+    for call in calls:
+        for goal in goals:
+            if goal.t_s < call.t_s and (goal.ended_s is None or goal.ended_s > call.t_s):
+                return call, goal
+    return None
+
+
+CANCELS_GOAL = Kind(
+    "cancels_goal",
+    "trial",
+    "The node cancels its goal",
+    CancelsGoal,
+    cancels_goal,
+    about="When a `[[trial.call]]` asks for it, the node cancels the goal of `/turtle1/rotate_absolute` in time.",
+)
+NO_GOAL_AFTER = Kind(
+    "no_goal_after",
+    "trial",
+    "No goal follows a cancelled one",
+    NoGoalAfter,
+    no_goal_after,
+    about="After a `[[trial.call]]` of the service, the node sends no goal to `/turtle1/rotate_absolute` any more.",
+)

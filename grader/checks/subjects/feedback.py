@@ -1,0 +1,152 @@
+"""Check of logged feedback: while the turtle follows a goal, lines say how far it still has to turn."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.why_unasked import waits_in_callback
+from grader.checks.kind import Kind, number, string
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.goals import goals_of, no_goal
+from grader.checks.subjects.log import LogFormat, log_lines
+from grader.checks.tolerance import Band
+from grader.common.lazy import np
+from grader.evidence import activity, student_log
+from grader.turtlesim.turtle import normalize
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from grader.evidence.evidence import Evidence
+    from grader.evidence.student_log import Line
+    from grader.trial.observed import Goal
+
+BEGIN_S = 0.1
+"""In this time after a goal was accepted, a line may still be about the goal before (s)."""
+FRAME_S = 0.016
+LONG = 2.0
+"""A goal counts if it lasts at least this many periods. A shorter one may end between two lines."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LogFeedback:
+    """One line per `period_s` while a goal runs, with the angle that remains, at most `lag_s` old."""
+
+    format: str = string("a log line with remaining in it", about="The format of a line with the number `remaining`.")
+    period_s: float = number(0.5, above=0, about="The time from one line to the next.")
+    tolerance_rad: float = number(0.05, above=0, about="How far the angle may be off.")
+    lag_s: float = number(0.15, above=0, about="How old the angle in a line may be.")
+
+
+def log_feedback(evidence: Evidence, params: LogFeedback) -> Finding:
+    """While the turtle follows a goal, lines say how far it still has to turn."""
+    example = student_log.Format(params.format).example(1.25)
+    expected = f'While the turtle turns, a line such as "{example}" comes every {params.period_s:g} s.'
+    goals = [goal for goal in goals_of(evidence) if _ended_s(evidence, goal) - goal.t_s >= LONG * params.period_s]
+    if not goals:
+        return no_goal(evidence, expected)
+    lines = student_log.in_format(evidence.recording, params.format)
+    told = [
+        (line, goal)
+        for goal in goals
+        for line in lines
+        if goal.t_s + BEGIN_S < line.t_s < _ended_s(evidence, goal) and not evidence.recording.stalled(line.t_s)
+    ]
+    wrong = [pair for pair in told if not _holds(evidence, params, *pair)]
+    if not lines:
+        return _none_in_format(evidence, params, goals, expected)
+    where = evidence.place("info")
+    if wrong:
+        return _wrong(evidence, params, told, wrong[0], expected)
+    turning_s = sum(_ended_s(evidence, goal) - goal.t_s for goal in goals)
+    amount = Band(0.5 * turning_s / params.period_s - 1.0, 2.0 * turning_s / params.period_s + 1.0)
+    if not amount.holds(len(told)):
+        observed = f"{len(told)} such lines came while the turtle turned for {turning_s:.1f} s."
+        if len(told) > turning_s / params.period_s:
+            text = "The feedback comes 62 times per second. Only remember it, and let the timer log."
+            return failed(observed, expected, Cause("every-message", text, where))
+        text = "Log in the callback of the timer, as long as there is a goal."
+        return failed(observed, expected, _unheard(evidence) or Cause("feedback-not-logged", text, where))
+    return passed("The lines say how far the turtle still has to turn.")
+
+
+def _unheard(evidence: Evidence) -> Cause | None:
+    """Return the cause if no goal is sent with a method for its feedback, else None."""
+    sends = evidence.code.calls("send_goal_async")
+    if not sends or any(call.argument(1, "feedback_callback") is not None for call in sends):
+        return None
+    text = "Nothing in the node receives the feedback. send_goal_async takes a feedback_callback."
+    return Cause("feedback-not-logged", text, sends[0].where)
+
+
+def _none_in_format(evidence: Evidence, params: LogFeedback, goals: list[Goal], expected: str) -> Finding:
+    """Return the failed finding about a log without lines in the format. Only lines during a goal are compared."""
+    cause = waits_in_callback(evidence) or _unheard(evidence)
+    if cause is not None:
+        return failed("The log has no such line.", expected, cause)
+    recording = evidence.recording
+    during = tuple(
+        line for line in recording.log if any(goal.t_s < line.t_s < _ended_s(evidence, goal) for goal in goals)
+    )
+    seen = evidence.with_run(replace(evidence.run, recording=replace(recording, log=during)))
+    return log_lines(seen, LogFormat(format=params.format))
+
+
+def _ended_s(evidence: Evidence, goal: Goal) -> float:
+    return activity.end_s(evidence.recording) if goal.ended_s is None else goal.ended_s
+
+
+def _near(evidence: Evidence, params: LogFeedback, line: Line, matches: Callable[[float, float], bool]) -> bool:
+    """Return whether `matches` is true for the time and heading of a frame that the line may be about."""
+    frames = evidence.recording.frames
+    near = (frames.t_s >= line.t_s - params.lag_s) & (frames.t_s <= line.t_s + FRAME_S)
+    pairs = zip(frames.t_s[near].tolist(), frames.theta[near].tolist(), strict=True)
+    return any(matches(t_s, theta) for t_s, theta in pairs)
+
+
+def _holds(evidence: Evidence, params: LogFeedback, line: Line, goal: Goal, *, factor: float = 1.0) -> bool:
+    def matches(_: float, theta: float) -> bool:
+        remaining = normalize(normalize(goal.request["theta"]) - theta)
+        return abs(line.numbers["remaining"] / factor - remaining) <= params.tolerance_rad
+
+    return _near(evidence, params, line, matches)
+
+
+def _wrong(
+    evidence: Evidence,
+    params: LogFeedback,
+    told: list[tuple[Line, Goal]],
+    worst: tuple[Line, Goal],
+    expected: str,
+) -> Finding:
+    line, goal = worst
+    frames = evidence.recording.frames
+    theta = float(frames.theta[max(int(np.searchsorted(frames.t_s, line.t_s)) - 1, 0)])
+    remaining = normalize(normalize(goal.request["theta"]) - theta)
+    observed = (
+        f"At {line.t_s:.1f} s the line says {line.numbers['remaining']:.2f}, "
+        f"but the turtle still had to turn by {remaining:.2f} rad."
+    )
+    where = evidence.place("info")
+    if all(_holds(evidence, params, *pair, factor=-1.0) for pair in told):
+        return failed(observed, expected, Cause("wrong-sign", "Log the number as it is in the feedback.", where))
+    if all(_holds(evidence, params, *pair, factor=math.degrees(1.0)) for pair in told):
+        return failed(observed, expected, Cause("degrees", "The feedback is in radians, and so is the line.", where))
+    if len({line.numbers["remaining"] for line, _ in told}) == 1:
+        text = "The number never changes. Store it in self each time feedback arrives."
+        return failed(observed, expected, Cause("stale-feedback", text, where))
+    text = "The message has a field feedback, and that one has the field remaining."
+    return failed(observed, expected, Cause("wrong-feedback", text, where))
+
+
+LOG_FEEDBACK = Kind(
+    "log_feedback",
+    "trial",
+    "The log shows the feedback",
+    LogFeedback,
+    log_feedback,
+    about="While the turtle follows a goal of `/turtle1/rotate_absolute`, lines say how far it must turn.",
+)

@@ -1,0 +1,176 @@
+"""Checks of an action client of rotate_absolute: the goals that arrive, their ends, and the requests for results."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.why_crashed import crash_finding
+from grader.checks.causes.why_no_goal import SENDS, why_aborted, why_no_goal
+from grader.checks.causes.why_unasked import waits_in_callback
+from grader.checks.kind import Kind, NoParams, number
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.tolerance import Band
+from grader.common.words import count
+from grader.evidence import activity
+from grader.turtlesim.turtle import normalize
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.trial.observed import Goal
+
+ROTATE = "/turtle1/rotate_absolute"
+TYPE = "turtlesim/action/RotateAbsolute"
+SAME_RAD = 0.02
+LARGE_RAD = 7.0
+"""A larger angle than this is more than a full turn, so it may be in degrees."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SendsGoals:
+    """Goals of rotate_absolute: `total` of them from the `nth` on (from 1), each `turn_deg` further than the last."""
+
+    heading_deg: float = number(about="The heading of the goal, in degrees: 0 is to the right, 90 is up.")
+    nth: float = number(1, at_least=1, about="Which goal of the trial it is, from 1.")
+    total: float = number(1, at_least=1, about="How many goals are compared, from this one on.")
+    turn_deg: float = number(0.0, about="How much further to the left each goal is than the one before.")
+    tolerance_deg: float = number(1.0, above=0, about="How far a heading may be off.")
+
+
+def sends_goals(evidence: Evidence, params: SendsGoals) -> Finding:
+    """The goals arrive one after the other, with these headings, and each one is reached."""
+    goals = goals_of(evidence)
+    first, amount = int(params.nth) - 1, int(params.total)
+    headings = [params.heading_deg + each * params.turn_deg for each in range(amount)]
+    expected = f"Goal {first + 1} of the node is a heading of {headings[0]:g} degrees, and the turtle reaches it."
+    if amount > 1:
+        expected = f"{amount} goals, from {headings[0]:g} degrees on in steps of {params.turn_deg:g}, each one reached."
+    if not goals:
+        return no_goal(evidence, expected)
+    for goal in goals[: first + amount]:
+        if goal.status == "aborted":
+            observed, cause = why_aborted(evidence, goals, goal)
+            return failed(observed, expected, cause)
+    near = Band.around(0.0, params.tolerance_deg)
+    edge = False
+    for index, (goal, heading) in enumerate(zip(goals[first : first + amount], headings, strict=False)):
+        off = math.degrees(normalize(goal.request["theta"] - math.radians(heading)))
+        edge |= near.near(off)
+        if not near.holds(off):
+            turned = _other_turn(goals[first + index - 1], goal, params.turn_deg) if index else ""
+            return _other_heading(evidence, goal, heading, turned, expected, near_edge=near.near(off))
+        if not _reached(evidence, goal):
+            where = evidence.place(*SENDS)
+            crash = crash_of(evidence)
+            if crash is not None:
+                return crash_finding(evidence, crash, end_observed(evidence), expected)
+            observed = f"The goal of {goal.t_s:.1f} s was not reached until the end: it is {goal.status}."
+            text = "The node itself cancelled it." if goal.status == "canceled" else "The node begins too late."
+            return failed(observed, expected, Cause("goal-not-reached", text, where))
+    if len(goals) < first + amount:
+        return _no_more(evidence, goals, expected)
+    return passed(f"The turtle reached {count(amount, 'goal')}.", near_edge=edge)
+
+
+def goals_of(evidence: Evidence) -> list[Goal]:
+    """Return the goals for turtle1 before SIGINT, in order."""
+    until = activity.end_s(evidence.recording)
+    return [goal for goal in evidence.recording.goals if goal.action == ROTATE and goal.t_s < until]
+
+
+def first_call_s(evidence: Evidence) -> float:
+    """Return when the trial first called a service of the node (s)."""
+    return min((call.t_s for call in evidence.recording.calls if call.by_trial), default=math.inf)
+
+
+def _reached(evidence: Evidence, goal: Goal) -> bool:
+    """Return whether the turtle reached the goal, or the trial had it cancelled."""
+    by_trial = goal.cancel_asked_s is not None and goal.cancel_asked_s >= first_call_s(evidence)
+    return goal.status == "succeeded" or (goal.status == "canceled" and by_trial)
+
+
+def no_goal(evidence: Evidence, expected: str) -> Finding:
+    """Return the failed finding about a node that sent no goal."""
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
+    return failed(f"No goal arrived at {ROTATE}.", expected, why_no_goal(evidence, ROTATE, TYPE))
+
+
+def _no_more(evidence: Evidence, goals: list[Goal], expected: str) -> Finding:
+    crash = crash_of(evidence)
+    observed = f"The node sent {count(len(goals), 'goal')}, and then no more."
+    if crash is not None:
+        return crash_finding(evidence, crash, observed, expected)
+    if goals[-1].result_asked_s is None:
+        return failed(observed, expected, waits_in_callback(evidence) or _no_result(evidence))
+    text = "The callback that receives the result must lead to the next goal."
+    cause = waits_in_callback(evidence) or Cause("goal-not-sent", text, evidence.place("get_result_async", *SENDS))
+    return failed(observed, expected, cause)
+
+
+def _no_result(evidence: Evidence) -> Cause:
+    text = (
+        "The answer to a goal only says that it was accepted. get_result_async, called on that answer, "
+        "asks for the result, which arrives when the goal ends."
+    )
+    return Cause("result-not-awaited", text, evidence.place("get_result_async", *SENDS))
+
+
+def _other_turn(before: Goal, goal: Goal, turn_deg: float) -> str:
+    """Return a sentence about a heading that does not follow from the one before."""
+    theta = float(goal.request["theta"])
+    if abs(normalize(theta - math.radians(turn_deg))) <= SAME_RAD:
+        return "A goal is an absolute heading, not a turn: 0 is to the right, wherever the turtle looks before."
+    more = round(math.degrees(normalize(theta - float(before.request["theta"]))))
+    return f"It is {more} degrees further to the left than the goal before; the exercise asks for {turn_deg:g}."
+
+
+def _other_heading(
+    evidence: Evidence, goal: Goal, heading: float, turned: str, expected: str, *, near_edge: bool
+) -> Finding:
+    theta = float(goal.request["theta"])
+    where = evidence.code.assigned("theta") or evidence.place("Goal", *SENDS)
+    observed = f"The goal of {goal.t_s:.1f} s has theta={theta:.2f} rad, which is {math.degrees(theta):.0f} degrees."
+    if abs(theta) > LARGE_RAD and abs(theta - heading) < 1.0:
+        text = "The field theta is in radians. math.radians converts degrees."
+        return failed(observed, expected, Cause("degrees", text, where), near_edge=near_edge)
+    if abs(normalize(theta + math.radians(heading))) <= SAME_RAD:
+        text = "A positive angle is to the left, which is counter-clockwise."
+        return failed(observed, expected, Cause("wrong-sign", text, where), near_edge=near_edge)
+    text = turned or "Compare this heading with the one that the exercise asks for. It is absolute: 0 is to the right."
+    return failed(observed, expected, Cause("wrong-goal", text, where), near_edge=near_edge)
+
+
+def awaits_result(evidence: Evidence, _: NoParams) -> Finding:
+    """The node asked for the result of each goal that was reached."""
+    expected = "The node asks for the result of each goal."
+    reached = [goal for goal in goals_of(evidence) if goal.status == "succeeded"]
+    if not reached:
+        return no_goal(evidence, expected)
+    without = [goal for goal in reached if goal.result_asked_s is None]
+    if without:
+        observed = f"The node never asked for the result of the goal of {without[0].t_s:.1f} s."
+        return failed(observed, expected, waits_in_callback(evidence) or _no_result(evidence))
+    return passed(f"The node asked for the result of {count(len(reached), 'goal')}.")
+
+
+SENDS_GOALS = Kind(
+    "sends_goals",
+    "trial",
+    "The node sends a goal",
+    SendsGoals,
+    sends_goals,
+    about="The node sends goals to `/turtle1/rotate_absolute`, one after the other, and the turtle reaches each one.",
+)
+AWAITS_RESULT = Kind(
+    "awaits_result",
+    "trial",
+    "The node asks for the result",
+    NoParams,
+    awaits_result,
+    about="The node asks for the result of each goal that the turtle reached.",
+)
