@@ -46,8 +46,7 @@ def scene_of(evidence: Evidence) -> Scene:
     """Return what to draw for a run."""
     recording = evidence.run.recording
     if recording is None:
-        called = evidence.run.called is not None
-        return Scene(notice="No turtle drives in this step." if called else "The node was not run.")
+        return _bag_scene(evidence) or Scene(notice="The node was not run.")
     trajectory = evidence.trajectory
     shapes: list[Line | Ring | Arrow] = []
     legend: list[tuple[Role, str]] = []
@@ -88,6 +87,20 @@ def scene_of(evidence: Evidence) -> Scene:
     if not trajectory.finite:
         notice = "The turtle's position became NaN (not a number)."
     return Scene(tuple(shapes), tuple(legend), tuple(facts), notice)
+
+
+def _bag_scene(evidence: Evidence) -> Scene | None:
+    """Return what to draw for a step in which students record a bag: the path in it. None for other steps."""
+    folder = next((str(spec.params["bag"]) for spec in evidence.exercise.checks if "bag" in spec.params), None)
+    if folder is None:
+        return None
+    for topic, poses in evidence.bag(folder).poses.items():
+        points = tuple(zip(poses.x, poses.y, strict=True))
+        if len(points) > 1 and all(math.isfinite(each) for point in points for each in point):
+            legend: tuple[tuple[Role, str], ...] = (("trajectory", f"the path in {shorten(folder)}"),)
+            facts = (f"{len(points)} messages on {shorten(topic)}",)
+            return Scene((Line("trajectory", points),), legend, facts)
+    return Scene(notice=f"There are no poses in {shorten(folder)}.")
 
 
 def _drawn(evidence: Evidence, points: list[Point]) -> list[Line]:

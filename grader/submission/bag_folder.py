@@ -13,13 +13,15 @@ from typing import TYPE_CHECKING, Literal
 from grader.common.words import shorten
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
+
+    from mcap.records import McapRecord
 
 METADATA = "metadata.yaml"
 POSE_TYPE = "turtlesim/msg/Pose"
 MOST_MESSAGES = 200_000
-MOST_RECORD_BYTES = 64 * 1024 * 1024
-"""The maximum size of one record of a bag, after decompression (bytes)."""
+MOST_CHUNK_BYTES = 16 * 1024 * 1024
+"""The maximum size of one record of a bag, and of a chunk after decompression (bytes). rosbag2 writes 0.8 MB."""
 _POSE = {0: struct.Struct(">4x2f"), 1: struct.Struct("<4x2f")}
 """How x and y stand in a serialized pose, by the second byte of its header."""
 
@@ -76,8 +78,7 @@ def _unread(problem: Problem, detail: str) -> BagFolder:
 
 
 def _read(stored: list[bytes]) -> BagFolder:
-    from mcap.records import Channel, Footer, Message, Schema
-    from mcap.stream_reader import StreamReader
+    from mcap.records import Channel, Message, Schema
 
     types: dict[str, str] = {}
     counts: dict[str, int] = {}
@@ -85,7 +86,7 @@ def _read(stored: list[bytes]) -> BagFolder:
     for data in stored:
         schemas: dict[int, str] = {}
         channels: dict[int, str] = {}
-        for record in StreamReader(BytesIO(data), record_size_limit=MOST_RECORD_BYTES).records:
+        for record in _records(data):
             if isinstance(record, Schema):
                 schemas[record.id] = record.name
             elif isinstance(record, Channel):
@@ -98,11 +99,26 @@ def _read(stored: list[bytes]) -> BagFolder:
                 if types[topic] == POSE_TYPE:
                     x, y = _POSE[record.data[1]].unpack_from(record.data)
                     rows.setdefault(topic, []).append((record.log_time / 1e9, x, y))
-            elif isinstance(record, Footer):
-                break
             if sum(counts.values()) > MOST_MESSAGES:
                 return _unread("damaged", f"it has more than {MOST_MESSAGES} messages")
     poses = {
         topic: Poses(*(tuple(column) for column in zip(*sorted(each), strict=True))) for topic, each in rows.items()
     }
     return BagFolder("", "", types, counts, poses)
+
+
+def _records(data: bytes) -> Iterator[McapRecord]:
+    """Yield the records of a file up to its summary. Raises ValueError if a chunk is too large."""
+    from mcap.records import Chunk, DataEnd
+    from mcap.stream_reader import StreamReader, breakup_chunk
+
+    for record in StreamReader(BytesIO(data), emit_chunks=True, record_size_limit=MOST_CHUNK_BYTES).records:
+        if isinstance(record, Chunk):
+            if record.uncompressed_size > MOST_CHUNK_BYTES:
+                message = f"a chunk has more than {MOST_CHUNK_BYTES // 1024**2} MiB"
+                raise ValueError(message)
+            yield from breakup_chunk(record)
+        elif isinstance(record, DataEnd):
+            return
+        else:
+            yield record

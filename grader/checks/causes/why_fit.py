@@ -68,7 +68,10 @@ RADIUS_OF_C: tuple[Diagnosis, str] = (
     "The third unknown is c = r² - a² - b², and not yet r²: the squares of the centre are missing.",
 )
 """What makes a wrong radius, or NaN, beside the right centre."""
-_FIRST_TRY = "Try it with four points of a circle that you know, and print what lstsq returns."
+_FIRST_TRY = (
+    "The equations are not right, or the circle is not what their solution says. Try it with four points of a circle "
+    "that you know."
+)
 
 
 def _why_radius(fit: Fit) -> tuple[Diagnosis, str] | None:

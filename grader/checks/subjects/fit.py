@@ -138,10 +138,12 @@ def refuses(evidence: Evidence, params: OneCall) -> Finding:
         return late
     where = evidence.place("ValueError", "lstsq", "solve")
     if called.ended == "exit 0":
-        cause = "Look at the points first, and `raise ValueError(...)`. A printed message, NaN or None is no error."
+        cause = (
+            "The points are not looked at before the computation. A printed message, NaN or None is not an exception."
+        )
         return failed(f"{name} returned {_form(called)}.", expected, Cause("no-error", cause, where))
     if crash is not None and called.kind:
-        cause = "Whoever calls the function cannot know what this error means. Look at the points before you compute."
+        cause = "The caller expects ValueError, and cannot know what another exception means."
         return failed(f"{name} raised {crash.observed}.", expected, Cause("other-error", cause, crash.where or where))
     cause = "sys.exit ends the whole program. A function raises an exception, and its caller decides."
     return failed(f"{name} ended the program.", expected, Cause("other-error", cause, where))

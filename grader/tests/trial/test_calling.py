@@ -1,0 +1,140 @@
+"""A function or a program of a student's is called in the cell, and can do no more than return its own numbers."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import tarfile
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from grader.ros.installation import environment, find_ros
+from grader.sandbox import bubblewrap
+from grader.trial import calling
+from grader.trial.called import MOST_TEXT, TOO_LATE, Called, read_called
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from grader.ros.installation import Ros
+
+PACKAGE = "my_package"
+POINTS = [{"id": id_, "x": [1.0, 2.0], "y": [3.0, 4.0], "lists": False} for id_ in ("first", "second")]
+
+
+@pytest.fixture(scope="module")
+def ros() -> Ros:
+    return find_ros()
+
+
+def tree_of(ros: Ros, path: str, source: str) -> bytes:
+    """An install tree with one file. A module's `path` begins with "python/", a program's with "lib/"."""
+    home = bubblewrap.WORKSPACE
+    python = environment(ros, home=home, overlays=[home / PACKAGE])["PYTHONPATH"].split(":")[0]
+    place = path.replace("python/", python.removeprefix(f"{home}/{PACKAGE}/") + f"/{PACKAGE}/")
+    stream = io.BytesIO()
+    with tarfile.open(fileobj=stream, mode="w|") as tar:
+        member = tarfile.TarInfo(f"./{PACKAGE}/{place}")
+        member.size = len(source.encode())
+        tar.addfile(member, io.BytesIO(source.encode()))
+    return stream.getvalue()
+
+
+def called(ros: Ros, source: str) -> list[Called]:
+    """What two calls of the function `f` in this module did."""
+    tree = tree_of(ros, "python/module.py", source)
+    output = calling.make_calls(
+        ros, PACKAGE, tree, POINTS, {}, function=f"{PACKAGE}.module:f", in_cell=bubblewrap.usable()
+    )
+    return list(read_called(output, ["first", "second"]))
+
+
+def test_numbers_come_back(ros: Ros) -> None:
+    first, second = called(ros, "def f(x, y):\n    print('hello')\n    return x.sum(), y.sum(), float('nan')\n")
+    assert (first.ended, first.stdout, first.kind) == ("exit 0", "hello\n", "tuple")
+    assert first.values is not None
+    assert first.values[:2] == (3.0, 7.0)
+    assert math.isnan(first.values[2])
+    assert second.values is not None
+
+
+def test_an_exception_comes_back_with_its_classes_and_without_our_frames(ros: Ros) -> None:
+    first, second = called(ros, "class Mine(ValueError):\n    pass\n\ndef f(x, y):\n    raise Mine('no')\n")
+    assert "ValueError" in first.kind.split()
+    assert first.stderr.count("File ") == 1
+    assert first.stderr.splitlines()[-1] == f"{PACKAGE}.module.Mine: no"
+    assert second.ended == "exit 1"
+
+
+def test_each_call_has_a_process_of_its_own(ros: Ros) -> None:
+    source = "calls = []\n\ndef f(x, y):\n    calls.append(1)\n    return calls\n"
+    assert [each.values for each in called(ros, source)] == [(1.0,), (1.0,)]
+
+
+def test_a_call_that_does_not_end_is_stopped_and_the_others_are_not_made(
+    ros: Ros, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    script = tmp_path / "cell_calls.py"
+    script.write_text(calling._SCRIPT.read_text("utf-8").replace("CALL_S = 5.0", "CALL_S = 0.5"), "utf-8")
+    monkeypatch.setattr(calling, "_SCRIPT", script)
+    first, second = called(ros, "def f(x, y):\n    while True:\n        pass\n")
+    assert (first.ended, second.ended) == (TOO_LATE, "")
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "import os, signal; os.kill(os.getppid(), signal.SIGKILL)",
+        "import os; os._exit(0)",
+        "raise SystemExit(0)",
+        "import os\n    while True: os.write(1, b'x' * 65536)",
+    ],
+)
+def test_who_breaks_the_call_gets_no_numbers(ros: Ros, body: str) -> None:
+    assert [each.values for each in called(ros, f"def f(x, y):\n    {body}\n")] == [None, None]
+
+
+def test_a_program_reads_the_files_beside_it(ros: Ros) -> None:
+    source = "import sys\nprint(open(sys.argv[1]).read())\nsys.exit('the end')\n"
+    tree = tree_of(ros, f"lib/{PACKAGE}/program", source)
+    output = calling.make_calls(
+        ros,
+        PACKAGE,
+        tree,
+        [{"id": "one", "arguments": ["bags/file"]}],
+        {"bags/file": b"content"},
+        executable="program",
+        in_cell=bubblewrap.usable(),
+    )
+    (one,) = read_called(output, ["one"])
+    assert (one.ended, one.stdout, one.stderr) == ("exit 1", "content\n", "the end\n")
+
+
+GOOD = {"id": "one", "ended": "exit 0", "stdout": "", "stderr": "", "values": [1, 2], "kind": "list"}
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "",
+        "null",
+        "[]",
+        "[" * 5000,
+        json.dumps({**GOOD, "values": "many"}),
+        json.dumps({**GOOD, "values": [[1]]}),
+        json.dumps({**GOOD, "values": {"a": 1}}),
+        json.dumps({**GOOD, "stdout": 1}),
+        json.dumps({**GOOD, "values": [10**400]}),
+        json.dumps({"id": "one"}),
+    ],
+)
+def test_a_line_that_is_no_result_is_left_out(line: str) -> None:
+    assert read_called(line.encode(), ["one"]) == (Called("one"),)
+
+
+def test_long_results_are_cut() -> None:
+    line: dict[str, Any] = {**GOOD, "stdout": "x" * 2 * MOST_TEXT, "values": list(range(1000))}
+    (one,) = read_called(json.dumps(line).encode(), ["one"])
+    assert (len(one.stdout), len(one.values or ())) == (MOST_TEXT, 10)
