@@ -19,6 +19,7 @@ from threading import Thread
 from typing import IO, TYPE_CHECKING, Literal
 
 from grader.common.interpreter import interpreter
+from grader.common.lazy import load_catkin_pkg, load_numpy
 
 if TYPE_CHECKING:
     from grader.classroom.task import Done, Pace, Task
@@ -108,6 +109,10 @@ def main(descriptor: int) -> None:
 
 def _import_all() -> None:
     """Import everything that grading would import on first use, before the first task arrives and its time starts."""
+    import grader.report.html  # noqa: F401
+
+    load_catkin_pkg()
+    load_numpy()
 
 
 def _end_with_owner(descriptor: int) -> None:

@@ -1,6 +1,7 @@
-"""Import numpy when it is first used, because the import takes 0.1 s and most commands do not need it.
+"""Import numpy and catkin_pkg when they are first used, because that takes 0.1 s and most commands do not need them.
 
-Use `from grader.common.lazy import np` in modules that many commands import but only a few commands use.
+Use `from grader.common.lazy import np` in modules that many commands import but only a few commands use. What is first
+used in a child process is imported in each child again: `load_numpy` and `load_catkin_pkg` import it before.
 
 A thread may be importing numpy while another one forks (grader/submission/reader.py). The child would then wait for
 ever for a module that nobody finishes. So code that forks must hold `IMPORTING`.
@@ -35,6 +36,8 @@ class _Lazy:
 
 
 _NUMPY = _Lazy("numpy")
+catkin_package: Any = _Lazy("catkin_pkg.package")
+"""The module catkin_pkg.package."""
 if TYPE_CHECKING:
     import numpy as np
 else:
@@ -46,4 +49,9 @@ def load_numpy() -> None:
     _NUMPY.load()
 
 
-__all__ = ["IMPORTING", "load_numpy", "np"]
+def load_catkin_pkg() -> None:
+    """Import the parser of package.xml now, before processes are forked that read submissions."""
+    catkin_package.load()
+
+
+__all__ = ["IMPORTING", "catkin_package", "load_catkin_pkg", "load_numpy", "np"]

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from grader.checks.judge import Early, Judgement, in_words, judge_early, judge_so_far
+from grader.common.lazy import load_catkin_pkg
 from grader.errors import UnreadableError
 from grader.evidence.evidence import Fault
 from grader.grading.clock import Clock, ClockChoice, first_clock
@@ -40,6 +41,7 @@ class Judging:
 
     def early(self, evidence: Evidence) -> Early:
         """Return the results that are already certain from the files alone."""
+        load_catkin_pkg()  # two of the child processes need it
         try:
             early, self._clocks = read(_early, evidence, self.choice)
         except UnreadableError as error:

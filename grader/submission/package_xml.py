@@ -33,11 +33,9 @@ def read_manifest(data: bytes) -> Manifest:
     """Read a package.xml. An error is stored in `problem` and never raised."""
     if len(data) > MAX_BYTES:
         return Manifest(problem=f"it is larger than {MAX_BYTES // 1000} kB")
-    from catkin_pkg.package import parse_package_string  # type: ignore[import-untyped]  # takes 0.07 s (pyparsing)
-
     warnings: list[str] = []
     try:
-        package = parse_package_string(data, "package.xml", warnings)
+        package = catkin_package.parse_package_string(data, "package.xml", warnings)
     except Exception as error:  # InvalidPackage, and any other exception that a broken file causes
         text = str(error)
         at = AT_LINE.search(text)
