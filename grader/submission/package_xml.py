@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from xml.parsers.expat import ExpatError, ParserCreate
 
+from grader.common.lazy import catkin_package
 from grader.common.words import shorten
 
 MAX_BYTES = 200_000
