@@ -32,7 +32,7 @@ def written(messages: int, size: int, chunk: int = 1024 * 1024) -> bytes:
     channel = writer.register_channel("/turtle1/pose", "cdr", schema)
     for number in range(messages):
         writer.add_message(channel, number, b"\0\1" + bytes(size), number)
-    writer.finish()
+    writer.finish()  # type: ignore[no-untyped-call]
     return stream.getvalue()
 
 

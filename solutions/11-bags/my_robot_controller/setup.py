@@ -28,6 +28,8 @@ setup(
             "two_pens = my_robot_controller.two_pens:main",
             "pausable_circle = my_robot_controller.pausable_circle:main",
             "tunable_circle = my_robot_controller.tunable_circle:main",
+            "lookout = my_robot_controller.lookout:main",
+            "draw_star = my_robot_controller.draw_star:main",
             # BEGIN SOLUTION
             "bag_report = my_robot_controller.bag_report:main",
             # END SOLUTION

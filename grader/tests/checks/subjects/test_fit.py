@@ -16,7 +16,11 @@ if TYPE_CHECKING:
     from grader.exercise.call_inputs import Arc
 
 EXERCISE = find_exercise("11-bags")
-ARCS = {each.id: each.arc for trial in EXERCISE.trials for each in (*trial.calls.points, *trial.calls.bags) if each.arc}
+CALLS = [trial.calls for trial in EXERCISE.trials]
+ARCS: dict[str, Arc] = {
+    **{each.id: each.arc for calls in CALLS for each in calls.points if each.arc},
+    **{each.id: each.arc for calls in CALLS for each in calls.bags},
+}
 SEEDS = range(40)
 ROUNDING_M = 1e-3
 

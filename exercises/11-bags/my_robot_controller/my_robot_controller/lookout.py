@@ -1,0 +1,80 @@
+"""Look to the left and to the right, again and again, until somebody asks to stop."""
+
+import math
+
+import rclpy
+from action_msgs.msg import GoalStatus
+from rclpy.action import ActionClient
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+from turtlesim.action import RotateAbsolute
+
+LEFT = math.radians(85)  # rad
+RIGHT = math.radians(-80)  # rad
+
+
+class LookoutNode(Node):
+    """Sends one goal after the other, and reports how far the turtle still has to turn."""
+
+    def __init__(self):
+        super().__init__("lookout")
+        self.client = ActionClient(self, RotateAbsolute, "/turtle1/rotate_absolute")
+        self.service = self.create_service(Trigger, "/stop", self.stop)
+        self.timer = self.create_timer(0.5, self.look)
+        self.begun = False
+        self.heading = LEFT
+        self.goal = None  # of the goal that the turtle follows, None if there is none
+        self.remaining = None  # rad, from the last feedback
+
+    def look(self):
+        if not self.begun and self.client.server_is_ready():
+            self.begun = True
+            self.turn()
+        if self.goal is not None and self.remaining is not None:
+            self.get_logger().info(f"{self.remaining:.2f} rad to go")
+
+    def turn(self):
+        goal = RotateAbsolute.Goal()
+        goal.theta = self.heading
+        future = self.client.send_goal_async(goal, feedback_callback=self.feedback_received)
+        future.add_done_callback(self.goal_accepted)
+
+    def goal_accepted(self, future):
+        self.goal = future.result()
+        self.goal.get_result_async().add_done_callback(self.goal_ended)
+
+    def feedback_received(self, message):
+        self.remaining = message.feedback.remaining
+
+    def goal_ended(self, future):
+        self.goal = None
+        self.remaining = None
+        if future.result().status != GoalStatus.STATUS_SUCCEEDED:
+            self.get_logger().info("stopped")
+            return
+        self.heading = RIGHT if self.heading == LEFT else LEFT
+        self.turn()
+
+    def stop(self, request, response):
+        response.success = self.goal is not None
+        response.message = "stopping" if response.success else "there is nothing to stop"
+        if self.goal is not None:
+            self.goal.cancel_goal_async()
+        return response
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = LookoutNode()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
