@@ -27,15 +27,15 @@ def call_rows(recording: Recording) -> list[tuple[str, ...]]:
 
 
 def goal_rows(recording: Recording) -> list[tuple[str, ...]]:
-    """Return each goal as strings: time, the action, the goal, how it ended, when it ended, the result."""
+    """Return each goal as strings: when it was sent, the goal, how and when it ended, the result, the action."""
     return [
         (
             f"{goal.t_s:.2f}",
-            goal.action,
             _fields(goal.request),
             goal.status,
             "" if goal.ended_s is None else f"{goal.ended_s:.2f}",
             _fields(goal.result),
+            goal.action,
         )
         for goal in recording.goals[:MOST_ROWS]
     ]

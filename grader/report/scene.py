@@ -6,10 +6,11 @@ The PNG, the page and the notebooks use the same scene, so they always show the 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from grader.common.words import a_list, shorten
+from grader.common.words import a_list, count, shorten
 from grader.evidence import activity
 from grader.evidence.pens import pen_spans
 from grader.report.expectations import requested_path, shapes_of
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 MOST_OTHERS = 40
 """The maximum number of other turtles that are drawn."""
 MOST_TICKS = 150
+TURNED_RAD = 0.1
+"""A turtle that turned by less did not turn."""
 TICK_M = 0.11
 """Half the length of a tick."""
 
@@ -50,7 +53,7 @@ def scene_of(evidence: Evidence) -> Scene:
     trajectory = evidence.trajectory
     shapes: list[Line | Ring | Arrow] = []
     legend: list[tuple[Role, str]] = []
-    facts = [f"{len(evidence.commands)} commands in {activity.end_s(recording):.1f} s"]
+    facts = [f"{len(evidence.commands)} commands in {activity.end_s(recording):.1f} s", *_goals(recording)]
     points = finite_points(trajectory)
     moved = trajectory.finite and len(trajectory.points[0]) > 1
     if len(points) > 1:
@@ -84,6 +87,8 @@ def scene_of(evidence: Evidence) -> Scene:
     shapes.append(Arrow("start", (recording.start.x, recording.start.y), recording.start.theta))
     legend.append(("start", "start"))
     notice = "" if moved else "The turtle did not move."
+    if not moved and trajectory.turned_rad > TURNED_RAD:
+        notice = "The turtle only turned."
     if not trajectory.finite:
         notice = "The turtle's position became NaN (not a number)."
     return Scene(tuple(shapes), tuple(legend), tuple(facts), notice)
@@ -101,6 +106,13 @@ def _bag_scene(evidence: Evidence) -> Scene | None:
             facts = (f"{len(points)} messages on {shorten(topic)}",)
             return Scene((Line("trajectory", points),), legend, facts)
     return Scene(notice=f"There are no poses in {shorten(folder)}.")
+
+
+def _goals(recording: Recording) -> list[str]:
+    """Return a sentence such as "3 goals: 2 succeeded, 1 canceled" if there were any."""
+    ends = Counter(goal.status for goal in recording.goals)
+    amounts = ", ".join(f"{amount} {status}" for status, amount in ends.items())
+    return [f"{count(len(recording.goals), 'goal')}: {amounts}"] if amounts else []
 
 
 def _drawn(evidence: Evidence, points: list[Point]) -> list[Line]:

@@ -13,10 +13,11 @@ from grader.checks.subjects.cancel import CANCELS_GOAL, NO_GOAL_AFTER
 from grader.checks.subjects.feedback import LOG_FEEDBACK
 from grader.checks.subjects.goals import AWAITS_RESULT, ROTATE, SENDS_GOALS, TYPE
 from grader.checks.subjects.star import STAR
+from grader.report.scene import scene_of
 from grader.tests.checks.made import DURATION_S, NODE, NODE_FILE, TICK_S, evidence, found, frames, recording, submission
 from grader.trial.observed import Call, Goal
 from grader.trial.recording import Endpoint, Frames, Graph, LogLine, Pose
-from grader.turtlesim.turtle import normalize
+from grader.turtlesim.turtle import Start, normalize
 
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
@@ -127,7 +128,7 @@ def test_no_goal_follows_a_cancelled_one() -> None:
 
 def turning(from_s: float, until_s: float) -> Frames:
     """The frames of a turtle that turns to the left at 1 rad/s between two times."""
-    still = frames([], Pose(5.5, 5.5, 0.0), DURATION_S)
+    still = frames([], Pose(*Start()), DURATION_S)
     theta = [normalize(min(max(t_s - from_s, 0.0), until_s - from_s)) for t_s in still.t_s.tolist()]
     return replace(still, theta=still.theta * 0.0 + theta)
 
@@ -192,6 +193,13 @@ def test_a_star_is_measured(commands: list[tuple[float, float, float]], diagnosi
 def test_a_star_may_be_turned_by_goals_and_not_by_teleports() -> None:
     trial = given(commands=star(), interventions=("rotate_absolute", "teleport_absolute"))
     assert found(STAR, trial, side_m=2.0, heading_deg=0.0).diagnosis == "intervention"
+
+
+def test_a_picture_of_a_turtle_that_only_turned_says_so() -> None:
+    scene = scene_of(given(goal(0.0, math.degrees(3.0), 3.0), frames=turning(0.0, 3.0)))
+    assert scene.notice == "The turtle only turned."
+    assert "1 goal: 1 succeeded" in scene.facts
+    assert scene_of(given()).notice == "The turtle did not move."
 
 
 def test_a_star_needs_its_first_heading() -> None:
