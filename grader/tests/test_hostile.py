@@ -214,7 +214,9 @@ def is_double(node: str) -> bool:
     return node.endswith(NAMESAKE) or node.startswith(OWN_NAMESPACE)
 
 
+@pytest.mark.exhaustive
 def test_an_attack_does_not_change_the_grading_of_the_next_submission(tmp_path: Path) -> None:
+    """In `make test`, the tests above find what an attack leaves, and test_hostile_class.py grades others beside it."""
     host = Host(tmp_path / "host", underlay.ensure(installation.find_ros()))
     chosen = [attack for attack in ATTACKS if attack.name[:3] in ("301", "304", "406")]
     commands = []

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import shutil
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from grader.authoring.release import main as release
-from grader.authoring.validate import validate
+from grader.authoring.validate import _Validation, validate
 from grader.errors import UsageError
 from grader.tests.case import copy_solution
 from grader.tests.console import blocks
@@ -61,8 +62,26 @@ def change(file: Path, old: str, new: str) -> None:
     file.write_text(text.replace(old, new))
 
 
+@pytest.mark.exhaustive
 def test_the_course_is_valid() -> None:
     assert validate([]) == []
+
+
+def test_the_course_is_valid_apart_from_its_solutions(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each lesson shows the verdict on its solution, and test_lessons.py runs the command."""
+    graded = _Validation._graded
+
+    def only_starting_points(self: _Validation, what: str, side: str) -> Any:  # noqa: ANN401 - a Report, or its part
+        return SimpleNamespace(outcomes=()) if what == "solution" else graded(self, what, side)
+
+    monkeypatch.setattr(_Validation, "_graded", only_starting_points)
+    assert validate([]) == []
+
+
+def test_each_lesson_shows_that_its_solution_passes() -> None:
+    for lesson in (ROOT / "course").glob("*/lesson.md"):
+        solved = [block.text for block in blocks(lesson.read_text("utf-8")) if block.about == "solved"]
+        assert any("$ grader check\n" in text and "Passed: 100 of 100 points." in text for text in solved), lesson
 
 
 def test_a_new_exercise_is_one_folder_per_side_without_python(root: Path) -> None:

@@ -13,6 +13,7 @@ from websockets.sync.client import connect
 from websockets.typing import Origin
 
 from grader.open.desk_server import LARGEST
+from grader.tests.open.course import CIRCLE
 from grader.tests.waiting import HANG_S
 
 if TYPE_CHECKING:
@@ -166,3 +167,10 @@ def test_clients_that_never_finish_do_not_stop_the_page(begun: Course) -> None:
     assert b" 408 " in slow[-1].recv(65536)
     for each in slow:
         each.close()
+
+
+def test_a_wrong_address_says_so(begun: Course, browser: Browser) -> None:
+    tab = browser.new_page()
+    tab.goto(f"http://{begun.host}/{CIRCLE}/index.html#{'x' * 22}")
+    tab.get_by_text("Open the address that grader open has printed").wait_for()
+    tab.close()

@@ -79,13 +79,6 @@ def test_the_page_survives_what_people_do(own: Course, browser: Browser) -> None
     page.close()
 
 
-def test_a_wrong_address_says_so(own: Course, browser: Browser) -> None:
-    tab = browser.new_page()
-    tab.goto(f"http://{own.host}/{CIRCLE}/index.html#{'x' * 22}")
-    tab.get_by_text("Open the address that grader open has printed").wait_for()
-    tab.close()
-
-
 def test_ctrl_c_during_a_grading_leaves_nothing(own: Course) -> None:
     pid = own.processes[-1].pid
     until(lambda: bool(children(pid)))
