@@ -20,7 +20,7 @@ known = set(sys.modules)
 reader._Child.inside = True  # all reading happens in this process, so it imports what a child process would import
 given = open_submission(Path(sys.argv[1]))
 task._with_page(task.grade(find_exercise("03-circle-publisher"), given, task.Options(in_cell=False), build=None))
-new = {name.partition(".")[0] for name in set(sys.modules) - known} - set(sys.stdlib_module_names)
+new = {name for name in sys.modules if "." not in name} - known - set(sys.stdlib_module_names)
 print(*(name for name in new if not name.startswith("_")))
 """
 
