@@ -33,6 +33,8 @@ from grader.checks.subjects import (
     square,
     star,
     stop,
+    tests_run,
+    tests_written,
     topic,
     values,
 )
@@ -99,6 +101,13 @@ KINDS: Mapping[str, Kind[Any]] = {
         program.ENDS,
         bag_answers.ANSWER,
         stop.STOP,
+        tests_written.DECLARED,
+        tests_written.OUTSIDE,
+        tests_written.STEADY,
+        tests_written.ASSERTS,
+        tests_run.FOUND,
+        tests_run.PASS,
+        tests_run.CATCHES,
         advice.USES_TIMER,
     )
 }

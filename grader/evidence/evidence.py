@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise, TrialSpec
     from grader.submission.package import Submission
     from grader.submission.where import Where
+    from grader.testbench.result import BenchResult
     from grader.trial.called import Called
     from grader.trial.recording import Command, Recording
 
@@ -51,11 +52,13 @@ class Run:
     """How the node brought the simulator down, twice. There is no recording in that case."""
     called: tuple[Called, ...] | None = None
     """What the calls of a trial without a simulator did. There is no recording in that case."""
+    bench: BenchResult | None = None
+    """The result of the student's tests, for a trial that runs them. There is no recording in that case."""
 
     @property
     def made(self) -> bool:
         """Whether the trial was run to its end."""
-        return self.recording is not None or self.called is not None
+        return self.recording is not None or self.called is not None or self.bench is not None
 
 
 @dataclass(frozen=True)
@@ -199,6 +202,14 @@ class Evidence:
             message = f"a check was judged without the call {id_}"
             raise ValueError(message)
         return found[0]
+
+    @property
+    def bench(self) -> BenchResult:
+        """The result of the student's tests. Only checks of a trial that runs tests may use it."""
+        if self.run.bench is None:
+            message = "a check of tests was judged without their result"
+            raise ValueError(message)
+        return self.run.bench
 
     @property
     def built(self) -> Build:

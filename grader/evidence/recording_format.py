@@ -1,7 +1,8 @@
 """Archive: a graded submission as a folder that contains everything needed to judge it again, without running it.
 
     trials/ID/       one folder per trial: bag/ with the messages (rosbag2, MCAP), trial.json with the rest;
-                     or calls.json, if functions or programs were called without a simulator
+                     or calls.json, if functions or programs were called without a simulator; or tests.json, if
+                     the student's tests were run
     build.json       the result of the build
     tries.json       the fixes that were tried, with their results; for instructors, since it gives solutions away
     submission.json  name, digest and paths
@@ -30,6 +31,7 @@ from grader.evidence.tries import Tries, Try
 from grader.exercise.model import FILE_NAME
 from grader.submission.package import Submission, open_answers, open_submission, write_copy
 from grader.submission.search import IGNORE_MARKER
+from grader.testbench.result import from_json as tests_from_json
 from grader.trial.called import called_from_json
 from grader.trial.recording import from_json, to_json
 
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
 
     from grader.evidence.stage import Stage
     from grader.exercise.model import Exercise
+    from grader.testbench.result import BenchResult
     from grader.trial.called import Called
     from grader.trial.recording import Recording
 
@@ -80,6 +83,9 @@ def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -
                 (folder / "trials" / trial).mkdir(parents=True)
                 calls = {"schema": _SCHEMA, "calls": [asdict(each) for each in run.called]}
                 _write(folder / "trials" / trial / "calls.json", calls)
+            if run.bench is not None:
+                (folder / "trials" / trial).mkdir(parents=True)
+                _write(folder / "trials" / trial / "tests.json", {"schema": _SCHEMA, **asdict(run.bench)})
     except OSError as error:
         message = f"The recording could not be written to {folder}: {error.strerror}."
         raise MachineError(message) from error
@@ -109,6 +115,10 @@ def _load_calls(folder: Path) -> tuple[Called, ...] | None:
     if not (folder / "calls.json").exists():
         return None
     return tuple(called_from_json(each) for each in _read(folder / "calls.json")["calls"])
+
+
+def _load_tests(file: Path) -> BenchResult | None:
+    return tests_from_json(_read(file)) if file.exists() else None
 
 
 def check_free(folder: Path) -> None:
@@ -153,6 +163,7 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
                 _load_recording(folder / "trials" / trial.id),
                 text_or_none(about["runs"][trial.id]["overwhelmed"]),
                 _load_calls(folder / "trials" / trial.id),
+                _load_tests(folder / "trials" / trial.id / "tests.json"),
             )
             for trial in kept.trials
             if trial.id in about["runs"]

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from grader.exercise.kind_spec import Param
+    from grader.exercise.node_under_test import TestsSpec
     from grader.exercise.own_numbers import NumbersSpec
 
 FILE_NAME = "exercise.toml"
@@ -87,7 +88,8 @@ class TrialSpec:
     """One `[[trial]]`: the executable, the name of its node (without a slash), and the scenario.
 
     If there is no executable, the simulator runs without a node. If there are `calls`, there is neither a simulator nor
-    a node: a function, or the executable, is called once with each of them.
+    a node: a function, or the executable, is called once with each of them. If there are `tests`, there is no simulator
+    either: the student's tests run.
     """
 
     id: str
@@ -95,6 +97,7 @@ class TrialSpec:
     node: str
     scenario: Scenario
     calls: CallsSpec = NO_CALLS
+    tests: TestsSpec | None = None
 
 
 @dataclass(frozen=True)

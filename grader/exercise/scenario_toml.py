@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from grader.common.words import shorten
 from grader.exercise.calls_toml import read_calls
 from grader.exercise.model import CallInput, Drive, Scenario, TrialSpec
+from grader.exercise.tests_toml import read_tests
 
 if TYPE_CHECKING:
     from grader.exercise.tables import Table
@@ -48,7 +49,10 @@ def _trial(table: Table, package: str) -> TrialSpec:
     id_ = table.string("id", ID, "small letters, digits and single dashes, as in figure-eight")
     if id_:
         table.place += f" ({id_})"
-    spec = _calls(table, id_) if any(key in table.values for key in CALLS) else _run(table, id_, package)
+    if "tests" in table.values:
+        spec = _tests(table, id_)
+    else:
+        spec = _calls(table, id_) if any(key in table.values for key in CALLS) else _run(table, id_, package)
     table.finish()
     return spec
 
@@ -67,6 +71,12 @@ def _calls(table: Table, id_: str) -> TrialSpec:
     calls = read_calls(table)
     executable = table.string("executable", ROS_NAME, NAME) if calls.bags else ""
     return TrialSpec(id_, executable, "", Scenario(0.0), calls)
+
+
+def _tests(table: Table, id_: str) -> TrialSpec:
+    """Return a trial without a simulator, in which the student's tests run."""
+    executable, node = table.string("executable", ROS_NAME, NAME), table.string("node", ROS_NAME, NAME)
+    return TrialSpec(id_, executable, node, Scenario(0.0), tests=read_tests(table))
 
 
 def _scenario(table: Table, node: str) -> Scenario:

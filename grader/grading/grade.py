@@ -17,6 +17,7 @@ from grader.evidence.evidence import Evidence, Fault
 from grader.grading.explain import explain
 from grader.grading.judging import Judging
 from grader.grading.stopwatch import Stopwatch
+from grader.grading.tests import Tests
 from grader.grading.trials import Trials
 from grader.grading.turns import Turns
 from grader.grading.turns import folder as turns_folder
@@ -172,10 +173,13 @@ class _Grading:
         self.evidence = self._trials(ros, Ahead(1)).run_alone(self.evidence).evidence
 
     def _build_and_run(self, ros: Ros, certain: Early) -> None:
-        with Ahead(self.options.trials_at_once) as ahead:
+        with Ahead(self.options.trials_at_once) as ahead, self._tests(ros) as tests:
             trials = self._trials(ros, ahead)
-            beside = _longest_first(self.evidence) if self.options.trials_at_once > 1 else [self.evidence]
+            views = _longest_first(self.evidence)
+            beside = views if self.options.trials_at_once > 1 else views[:1]
             trials.start(view for view in beside if certain.may_run(view))
+            if self.options.trials_at_once > 1:
+                tests.start(view for view in self._views_of_tests() if certain.may_run(view))
             with self.stopwatch.stage("build"):
                 built = self.build(self.submission, ros, in_cell=self.options.in_cell, tell=self.tell)
             self.evidence, trials.tree = dataclasses.replace(self.evidence, build=built.build), built.tree
@@ -185,15 +189,22 @@ class _Grading:
             for spec in self.exercise.trials:
                 self.settled = judgement.settled
                 if judgement.wants(spec.id):
-                    attempt = trials.run(self.evidence.from_trial(spec.id), self.settled)
+                    runs = trials if spec.tests is None else tests
+                    attempt = runs.run(self.evidence.from_trial(spec.id), self.settled)
                     self.evidence, judgement = attempt.evidence, attempt.judgement
             self.settled = judgement.settled
+
+    def _views_of_tests(self) -> list[Evidence]:
+        return [self.evidence.from_trial(spec.id) for spec in self.exercise.trials if spec.tests is not None]
+
+    def _tests(self, ros: Ros) -> Tests:
+        return Tests(ros, self.options, self.judging, self.stopwatch, self.tell)
 
     def _trials(self, ros: Ros, ahead: Ahead) -> Trials:
         return Trials(self.trial, ros, self.options, self.judging, ahead, self.turns, self.stopwatch, self.tell)
 
 
 def _longest_first(evidence: Evidence) -> list[Evidence]:
-    """Return a view of the evidence per trial. The longest comes first, so that it does not run alone at the end."""
-    views = [evidence.from_trial(spec.id) for spec in evidence.exercise.trials]
+    """Return a view of the evidence per trial of a node, the longest first, so that it is not alone at the end."""
+    views = [evidence.from_trial(spec.id) for spec in evidence.exercise.trials if spec.tests is None]
     return sorted(views, key=lambda view: -view.trial.scenario.duration_s)

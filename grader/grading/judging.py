@@ -88,4 +88,5 @@ def _all(evidence: Evidence, settled: Findings, choice: ClockChoice) -> tuple[Fi
 def _first_clocks(evidence: Evidence, choice: ClockChoice) -> Clocks:
     if not evidence.exercise.package:
         return {}
-    return {spec.id: first_clock(choice, evidence.from_trial(spec.id)) for spec in evidence.exercise.trials}
+    trials = [spec for spec in evidence.exercise.trials if spec.tests is None]
+    return {spec.id: first_clock(choice, evidence.from_trial(spec.id)) for spec in trials}

@@ -129,6 +129,8 @@ def _why_this_clock(evidence: Evidence) -> str:
     first = evidence.run.recording
     if first is None and evidence.run.called is not None:
         return "No node was run. Your code was called, without a simulator."
+    if evidence.run.bench is not None:
+        return f"Your tests were run {count(len(evidence.run.bench.runs), 'time')}."
     if first is None:
         return "The node was not run." if evidence.run.overwhelmed is None else "The trial could not be finished."
     others = [(view.trial.executable, view.run.recording) for view in evidence.views()]

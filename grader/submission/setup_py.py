@@ -48,6 +48,10 @@ class SetupPy:
     """The names of the groups in entry_points."""
     required: tuple[str, ...] = ()
     """The value of install_requires."""
+    tested_with: tuple[str, ...] = ()
+    """The packages in extras_require["test"], which say how colcon runs the tests."""
+    tests_require_line: int | None = None
+    """The line of the argument tests_require, which setuptools ignores since version 72."""
     stray: tuple[EntryPoint, ...] = ()
     """Strings outside console_scripts that look like entry points."""
     unreadable: Unreadable | None = None
@@ -84,6 +88,8 @@ def read_setup_py(data: bytes) -> SetupPy:
         setup_line=call.node.lineno,
         groups=tuple(groups or ()),
         required=tuple(_strings(call.argument(99, "install_requires"), module)),
+        tests_require_line=_value_line(call.argument(99, "tests_require"), module),
+        tested_with=tuple(_tested_with(call, module)),
         stray=_stray(module, points or ()),
     )
 
@@ -176,6 +182,14 @@ def _data_file(item: ast.expr, module: Module) -> tuple[str, tuple[str, ...]]:
         return "", ()
     folder, files = item.elts
     return _string(folder, module), tuple(_strings(files, module))
+
+
+def _tested_with(call: Call, module: Module) -> Iterator[str]:
+    table = _resolved(call.argument(99, "extras_require"), module)
+    if isinstance(table, ast.Dict):
+        for key, value in zip(table.keys, table.values, strict=True):
+            if evaluate(key, module.names) == "test":
+                yield from _strings(value, module)
 
 
 def _strings(node: ast.expr | None, module: Module) -> Iterator[str]:

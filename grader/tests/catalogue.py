@@ -38,6 +38,7 @@ SHOWN_BY_TESTS = {
     "pause-never-ends": "checks/subjects/test_services.py",
     "service-not-called": "checks/subjects/test_services.py",
     "slow-stop": "checks/subjects/test_running.py",
+    "unsteady-tests": "checks/subjects/test_tests_run.py",
     "wrong-speed": "checks/subjects/test_services.py",
     "square-gap": "checks/subjects/test_square.py",
     "too-soon": "checks/subjects/test_square.py",

@@ -20,10 +20,13 @@ MOST_LINES = 13
 """A correct package is close to a case if at most this many lines were removed and added."""
 FAR = {
     "answers-empty": "every line of the answers is missing",
+    "assert-in-loop": "any other test that needs a message notices that none comes",
     "empty-file": "every line of the file is missing",
     "loop-without-pause": "the clocks see a node that never rests differently, so only whole files of it are cases",
+    "no-test-function": "every test of the file is missing",
     "polygon": "a polygon is driven by other commands than a circle",
     "spin-once": "whether the first event is the timer depends on the machine; the case was written for both",
+    "test-class-init": "all tests are in a class, so every line of them is indented",
     "timer-in-callback": "thousands of timers slow a machine down; the case has a limit of its own",
 }
 """Diagnosis -> why no correct package is close to one of its cases."""

@@ -43,6 +43,7 @@ BEHIND_THE_DOOR = {
     ("scores", "_scores_in"): "scores",
     ("unpack", "_tar"): "archives: a process of its own, with limits",
     ("unpack", "_zip"): "archives: a process of its own, with limits",
+    ("result", "run_of"): "tests",
     ("runner", "_described"): "runner",
     ("runner", "_entry_points"): "runner",
 }
@@ -70,6 +71,10 @@ OURS = {
     ("relay", "read"): "an order of confined_autograde.py",
     ("release", "_read"): "a solution",
     ("released", "released_notebook"): "a notebook of the course",
+    ("bench", "pack"): "our own stream, written",
+    ("relayed_node", "_ask"): "what the grader says, in a cell",
+    ("session", "_run_tests"): "an order of the lane, in a cell",
+    ("session", "main"): "an order of the lane, in a cell",
     ("results", "load"): "a result of our own",
     ("source", "refreshed"): "a notebook of the course",
     ("trial", "_answer"): "what the conductor says",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import compileall
-import fcntl
 import json
 import os
 import signal
@@ -27,6 +26,7 @@ from grader.sandbox.control_group import ControlGroup, control_group
 from grader.sandbox.limits import MIB, NODE_LIMITS
 from grader.sandbox.user import cell_user
 from grader.trial.inputs import Inputs
+from grader.trial.own_domain import own_domain
 from grader.trial.recording import from_json
 
 if TYPE_CHECKING:
@@ -194,7 +194,7 @@ class Trial:
             )
             self._workspace, self._home = Path(folder), Path(folder) / "home"
             self._home.mkdir()
-            self._domain = self._own_domain()
+            self._domain = own_domain(self._stack)
         self._errors: IO[bytes] = self._stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
         env = installation.environment(self._ros, home=self._home, domain=self._domain)
         env["ROS_PYTHON_CHECK_FIELDS"] = (
@@ -278,17 +278,3 @@ class Trial:
         if code == -signal.SIGKILL:
             return OverwhelmedError("it was still busy long after the end", hung=True)
         return OverwhelmedError(f"it ended with exit code {code}")
-
-    def _own_domain(self) -> int:
-        """Return a ROS domain that no other trial on this machine is using, for a trial without its own network."""
-        # The ports of higher domains are in the range from which Linux assigns ports to any program.
-        for domain in range(1, 102):
-            path = Path(tempfile.gettempdir()) / f"grader-domain-{os.getuid()}-{domain}.lock"
-            file = self._stack.enter_context(path.open("w"))
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                file.close()
-                continue
-            return domain
-        raise MachineError("A hundred trials are running on this machine already: wait, or use --sandbox.")  # noqa: EM101

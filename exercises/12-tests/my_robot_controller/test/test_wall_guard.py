@@ -1,0 +1,19 @@
+"""Tests of wall_guard: each one checks a promise, from outside, as another node would."""
+
+import pytest
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.clock import ClockType
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.time import Time
+from turtlesim.msg import Pose
+
+from my_robot_controller.wall_guard import WallGuard
+
+# TODO 2: a class Bench with the guard, a listener beside it, and a clock that you move.
+
+# TODO 3: a fixture that gives each test a fresh bench.
+
+# TODO 4: one test for each promise in wall_guard.py.

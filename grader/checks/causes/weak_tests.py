@@ -1,0 +1,139 @@
+"""Tests that cannot fail although they look as if they could: no assert, or one that is never reached."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.common.words import shorten
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from grader.submission.code import Module
+    from grader.submission.pytest_files import TestCode, TestFunction
+
+RAISING = frozenset({"raises", "fail", "warns"})
+"""Functions of pytest that make a test fail."""
+CATCHES_ALL = frozenset({"AssertionError", "Exception", "BaseException"})
+
+
+def without_assert(code: TestCode) -> tuple[TestFunction, ...]:
+    """Return the tests that neither assert anything themselves nor call a function that does."""
+    functions = _functions(code.modules)
+    asserting = {name for name, node in functions if _asserts(node)}
+    before = -1
+    while len(asserting) != before:
+        before = len(asserting)
+        asserting |= {name for name, node in functions if asserting & _mentioned(node)}
+    return tuple(each for each in code.tests if not _asserts(each.node) and not asserting & _mentioned(each.node))
+
+
+def why_without_assert(test: TestFunction) -> Cause:
+    """Return why a test without an assert has none."""
+    for node in ast.walk(test.node):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Compare):
+            text = "Without the word assert before it, the result of a comparison is thrown away."
+            return Cause("compares-only", text, Where(test.module.file, node.lineno))
+        if isinstance(node, ast.Return) and isinstance(node.value, ast.Compare):
+            text = "pytest does not look at what a test returns. Write assert in place of return."
+            return Cause("compares-only", text, Where(test.module.file, node.lineno))
+    return Cause("no-assert", "A test without an assert passes on every node that does not crash.", test.where)
+
+
+def always_true(code: TestCode) -> Cause | None:
+    """Return the cause if an assert is always true: a tuple or a string as its condition."""
+    for module in code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.Assert) and isinstance(node.test, ast.Tuple) and node.test.elts:
+                text = "assert (condition, message) tests a tuple, which is always true. Leave out the parentheses."
+                return Cause("assert-tuple", text, Where(module.file, node.lineno))
+    return None
+
+
+def always_false(code: TestCode) -> Cause | None:
+    """Return the cause if a test fails whatever the node does."""
+    for test in code.tests:
+        for node in test.node.body:
+            value = node.test if isinstance(node, ast.Assert) else None
+            is_false = isinstance(value, ast.Constant) and not value.value
+            if is_false or _is_call_of(node, "fail"):
+                text = f"{shorten(test.node.name, 60)} fails on every node, the right one too."
+                return Cause("always-fails", text, Where(test.module.file, node.lineno))
+    return None
+
+
+def swallowed(code: TestCode) -> Cause | None:
+    """Return the cause if an except catches the failure of an assert."""
+    for module in code.modules:
+        for node in module.nodes:
+            if isinstance(node, ast.Try) and any(isinstance(each, ast.Assert) for each in _below(node.body)):
+                for handler in node.handlers:
+                    if _catches(handler) and not any(isinstance(each, ast.Raise) for each in ast.walk(handler)):
+                        text = "This except catches the AssertionError, so pytest never hears of the failure."
+                        return Cause("swallows-failure", text, Where(module.file, handler.lineno))
+    return None
+
+
+def in_a_loop(code: TestCode) -> Cause | None:
+    """Return the cause if all asserts of a test are in a loop over a list that may be empty."""
+    for test in code.tests:
+        asserts = [node for node in ast.walk(test.node) if isinstance(node, ast.Assert)]
+        loops = [node for node in ast.walk(test.node) if isinstance(node, ast.For)]
+        for node in loops if asserts else ():
+            inside = set(map(id, ast.walk(node)))
+            if not isinstance(node.iter, ast.Call | ast.List | ast.Tuple) and {id(each) for each in asserts} <= inside:
+                text = "When no message came, the list is empty, and the assert in this loop never runs."
+                return Cause("assert-in-loop", text, Where(test.module.file, node.lineno))
+    return None
+
+
+def _functions(modules: tuple[Module, ...]) -> list[tuple[str, ast.AST]]:
+    return [
+        (node.name, node)
+        for module in modules
+        for node in module.nodes
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+    ]
+
+
+def _asserts(node: ast.AST) -> bool:
+    """Return whether the function itself makes a test fail, by pytest's or by unittest's means."""
+    for each in ast.walk(node):
+        if isinstance(each, ast.Assert | ast.Raise):
+            return True
+        if isinstance(each, ast.Call):
+            name = _last(each.func)
+            if name in RAISING or name.startswith("assert"):
+                return True
+    return False
+
+
+def _mentioned(node: ast.AST) -> set[str]:
+    """Return the names of functions that a function may call, and of the fixtures that it asks for."""
+    names = {_last(each.func) for each in ast.walk(node) if isinstance(each, ast.Call)}
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        names |= {argument.arg for argument in node.args.args}
+    return names
+
+
+def _last(node: ast.expr) -> str:
+    return node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
+
+
+def _is_call_of(node: ast.stmt, name: str) -> bool:
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Call) and _last(node.value.func) == name
+
+
+def _below(body: list[ast.stmt]) -> Iterator[ast.AST]:
+    for statement in body:
+        yield from ast.walk(statement)
+
+
+def _catches(handler: ast.ExceptHandler) -> bool:
+    if handler.type is None:
+        return True
+    kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
+    return any(_last(kind) in CATCHES_ALL for kind in kinds)

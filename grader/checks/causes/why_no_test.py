@@ -1,0 +1,45 @@
+"""Why pytest finds no test in a package."""
+
+from __future__ import annotations
+
+import ast
+
+from grader.checks.cause import Cause
+from grader.common.words import shorten
+from grader.submission.pytest_files import Function, TestCode, has_init, is_fixture
+from grader.submission.where import Where
+
+
+def why_no_test(code: TestCode) -> Cause:
+    """Return why pytest finds no test in these files."""
+    if not code.files:
+        for module in code.modules:
+            if any(isinstance(node, ast.Assert) for node in module.nodes):
+                name = module.file.rpartition("/")[2]
+                text = f"pytest looks into files named test_SOMETHING.py. It passes over {shorten(name, 60)}."
+                return Cause("test-file-name", text, Where(module.file))
+        return Cause("no-test-file", "The tests belong into a file test/test_SOMETHING.py.", Where("test"))
+    for module in code.files:
+        for node in module.body:
+            if isinstance(node, ast.ClassDef) and node.name.startswith("Test") and has_init(node):
+                text = "pytest leaves out a class of tests with an __init__. Use a fixture, or setup_method."
+                return Cause("test-class-init", text, Where(module.file, node.lineno))
+        misnamed = _misnamed(module.nodes)
+        if misnamed is not None:
+            text = (
+                f"The names of tests begin with test. {shorten(misnamed.name, 60)} does not, so pytest passes over it."
+            )
+            return Cause("test-function-name", text, Where(module.file, misnamed.lineno))
+    return Cause("no-test-function", "A test is a function whose name begins with test_.", Where(code.files[0].file))
+
+
+def _misnamed(nodes: tuple[ast.AST, ...]) -> Function | None:
+    """Return a function with an assert that nothing in the file calls."""
+    called = {node.id for node in nodes if isinstance(node, ast.Name)}
+    called |= {node.attr for node in nodes if isinstance(node, ast.Attribute)}
+    for node in nodes:
+        if not isinstance(node, Function) or node.name in called or is_fixture(node):
+            continue
+        if not node.name.startswith(("test", "_")) and any(isinstance(each, ast.Assert) for each in ast.walk(node)):
+            return node
+    return None

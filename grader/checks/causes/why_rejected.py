@@ -1,0 +1,69 @@
+"""Why a student's tests do not pass on the right node."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.weak_tests import always_false
+from grader.common.words import shorten
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from grader.submission.pytest_files import TestCode
+    from grader.testbench.result import NodeRun
+
+FIXTURE = re.compile(r"fixture '(?P<name>\w+)' not found")
+TWICE = re.compile(r"Context\.init\(\) must only be called once")
+NOT_YET = re.compile(
+    r"NotInitializedException|rclpy\.init\(\) has not been called|[Cc]ontext (?:is|was) not (?:valid|initialized)"
+)
+OUTSIDE = re.compile(
+    r"no display|cannot connect to X|DISPLAY|tkinter|TclError|Network is unreachable|Name or service not known|"
+    r"Temporary failure in name resolution|gaierror|Connection refused"
+)
+ERROR = re.compile(r"^E\s+(?P<text>\w*(?:Error|Exception|Interrupt)\b.*)$", re.MULTILINE)
+
+
+def place_of(run: NodeRun, code: TestCode) -> Where | None:
+    """Return the line at which a test failed, if it is in the student's test files, or else the file of the test."""
+    for module in code.modules:
+        if run.file.endswith(f"/{module.file}") and run.line > 0:
+            return Where(module.file, run.line)
+    name = run.test.partition("::")[0]
+    return next((Where(module.file) for module in code.modules if module.file == name), None)
+
+
+def why_rejected(run: NodeRun, code: TestCode) -> Cause:
+    """Return why this run on the right node did not pass."""
+    where = place_of(run, code)
+    if run.over:
+        text = "A loop that waits for a message needs a deadline. rclpy.spin never returns."
+        return Cause("test-hangs", text, where or (code.tests[0].where if code.tests else None))
+    fixture = FIXTURE.search(run.message)
+    if fixture is not None:
+        text = f"No fixture is named {shorten(fixture['name'], 60)}. Is @pytest.fixture there, with the same name?"
+        return Cause("fixture-missing", text, where)
+    if TWICE.search(run.message):
+        text = "The test before has not called rclpy.shutdown. In a fixture, it stands after the yield."
+        return Cause("not-shut-down", text, where)
+    if NOT_YET.search(run.message):
+        text = "rclpy.init comes first, before any node is created. In a fixture, it stands before the yield."
+        return Cause("no-init", text, where)
+    if OUTSIDE.search(run.message):
+        text = "A test must run where there is no screen and no network, too."
+        return Cause("needs-the-outside", text, where)
+    if run.outcome == "import":
+        return Cause("test-import", shorten(last_error(run.message), 150), where)
+    false = always_false(code)
+    if false is not None:
+        return false
+    text = "Compare the test with the promise in wall_guard.py. Does the test leave the node the time that it needs?"
+    return Cause("rejects-right", text, where)
+
+
+def last_error(message: str) -> str:
+    """Return the exception in an excerpt of pytest, on one line."""
+    found = [match["text"] for match in ERROR.finditer(message)]
+    return found[-1] if found else " ".join(message.split())[:150]

@@ -1,0 +1,146 @@
+"""Checks of a student's tests by what they do: they pass on the right node, and fail on broken ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.weak_tests import in_a_loop, swallowed, why_without_assert, without_assert
+from grader.checks.causes.why_no_test import why_no_test
+from grader.checks.causes.why_rejected import last_error, why_rejected
+from grader.checks.kind import Kind, NoParams, string
+from grader.checks.outcome import Finding, failed, passed
+from grader.checks.subjects.tests_written import code_of
+from grader.common.words import count, shorten
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.exercise.node_under_test import Behaviour
+    from grader.submission.pytest_files import TestCode
+    from grader.testbench.result import NodeRun
+
+MOST_TEXT = 120
+
+
+def found(evidence: Evidence, _: NoParams) -> Finding:
+    """Pytest finds tests in the package."""
+    runs = evidence.bench.runs
+    most = max((run.collected for run in runs), default=0)
+    code = code_of(evidence)
+    if most or code.tests or any(run.outcome == "import" for run in runs):
+        return passed(f"pytest finds {count(max(most, len(code.tests)), 'test')}.")
+    expected = "pytest finds tests: functions named test_SOMETHING in files named test_SOMETHING.py."
+    return failed("pytest finds no test.", expected, why_no_test(code))
+
+
+def pass_(evidence: Evidence, _: NoParams) -> Finding:
+    """All tests pass on the right node, each time."""
+    spec = evidence.trial.tests
+    assert spec is not None
+    runs, code = evidence.bench.right, code_of(evidence)
+    expected = "All tests pass on the right node, each time."
+    rejected = [run for run in runs if not run.accepted]
+    if not rejected and len(runs) == spec.right_runs:
+        if any(run.passed for run in runs):
+            return passed(f"All tests pass on the right node ({count(len(runs), 'run')}).")
+        where = code.tests[0].where if code.tests else None
+        cause = Cause("all-skipped", "A skipped test tests nothing.", where)
+        return failed("No test ran: every one was skipped.", expected, cause)
+    if not rejected:
+        hung = next((run for run in evidence.bench.runs if run.over), None)
+        return _hung(expected, code, hung)
+    if len(rejected) < len(runs):
+        cause = Cause("unsteady-tests", UNSTEADY, why_rejected(rejected[0], code).where)
+        observed = f"The tests pass on the right node in {len(runs) - len(rejected)} of {count(len(runs), 'run')}."
+        return failed(observed, expected, cause)
+    return failed(_observed(rejected[0]), expected, why_rejected(rejected[0], code))
+
+
+UNSTEADY = (
+    "Something in the tests depends on luck: on the time that passes, on chance, or on what an earlier test left."
+)
+
+
+def _observed(run: NodeRun) -> str:
+    if run.over:
+        return "The tests on the right node did not end in time."
+    name = shorten(run.test.rpartition("::")[2] or run.test, 60)
+    if run.outcome == "import":
+        return f"{shorten(run.test, 60)} cannot be imported."
+    if not name:
+        return f"The tests on the right node ended with exit code {run.exit_code}."
+    message = last_error(f"E   {run.message}") if run.message else ""
+    return f"{name} fails on the right node: {shorten(_one_line(message), MOST_TEXT)}."
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split("\n")[0].split()).rstrip(".")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Catches:
+    """The broken node that the tests must reject, in words, and what no test looks at if they do not."""
+
+    broken: str = string("the id of a broken node", about="The `id` of the `[[trial.tests.broken]]`.")
+    does: str = string("a description", about="What the broken node does, as in: a node that turns right.")
+    cause: str = string("a reason", about="What the student reads if all tests pass on it.")
+
+
+def catches(evidence: Evidence, params: Catches) -> Finding:
+    """At least one test fails on the broken node."""
+    run = evidence.bench.of(params.broken)
+    expected = f"At least one test fails on {params.does}."
+    code = code_of(evidence)
+    if run is None or run.over:
+        return _hung(expected, code, run)
+    if not run.accepted:
+        return passed(f"The tests reject {params.does}.")
+    observed = f"All tests pass on {params.does}."
+    return failed(observed, expected, _why_accepted(evidence, params, code))
+
+
+def _why_accepted(evidence: Evidence, params: Catches, code: TestCode) -> Cause:
+    empty = without_assert(code)
+    if empty and len(empty) == len(code.tests):
+        return why_without_assert(empty[0])
+    cause = swallowed(code)
+    if cause is None and _is_silent(evidence, params.broken):
+        cause = in_a_loop(code)
+    where = code.tests[0].where if code.tests else None
+    return cause or Cause("accepts-broken", params.cause, where)
+
+
+def _is_silent(evidence: Evidence, broken: str) -> bool:
+    """Return whether nothing of the broken node arrives where commands belong."""
+    spec = evidence.trial.tests
+    assert spec is not None
+    behaviours: dict[str, Behaviour] = {each.id: each.behaviour for each in spec.broken}
+    of, right = behaviours.get(broken, spec.right), spec.right
+    return not of.publishes or of.topic != right.topic or of.type != right.type or of.listens != right.listens
+
+
+def _hung(expected: str, code: TestCode, run: NodeRun | None) -> Finding:
+    text = "A test that waits for a message that never comes must give up: it needs a deadline."
+    where = code.tests[0].where if code.tests else None
+    observed = "The tests did not end in time." if run is not None else "The tests did not end in time on other nodes."
+    return failed(observed, expected, Cause("test-hangs", text, where))
+
+
+FOUND = Kind("tests_found", "trial", "pytest finds tests", NoParams, found, about="pytest finds at least one test.")
+PASS = Kind(
+    "tests_pass",
+    "trial",
+    "The tests pass on the right node",
+    NoParams,
+    pass_,
+    about="All tests pass in every run on the right node.",
+)
+CATCHES = Kind(
+    "tests_catch",
+    "trial",
+    "The tests reject a broken node",
+    Catches,
+    catches,
+    about="At least one test fails on the broken node.",
+)

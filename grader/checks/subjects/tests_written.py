@@ -1,0 +1,181 @@
+"""Checks of a student's tests by their text: how colcon runs them, and what a good test does not do."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.weak_tests import always_true, why_without_assert, without_assert
+from grader.checks.kind import Kind, NoParams, strings
+from grader.checks.outcome import Finding, failed, passed
+from grader.common.words import a_list, shorten
+from grader.submission.pytest_files import TestCode, read_test_code
+from grader.submission.uses import uses_of
+from grader.submission.where import Where
+
+if TYPE_CHECKING:
+    from grader.evidence.evidence import Evidence
+    from grader.submission.uses import Use
+
+PYTEST = "pytest"
+TEST_DEPEND = "python3-pytest"
+READERS = frozenset(
+    {"open", "read_text", "read_bytes", "getsource", "getsourcelines", "getsourcefile", "find_spec", "get_data"}
+)
+"""Functions that read the file of a module."""
+SOURCE_MODULES = frozenset({"ast", "inspect", "dis", "linecache", "tokenize", "marshal", "py_compile", "pkgutil"})
+"""Modules whose purpose is to look at source or compiled code."""
+CODE_ATTRIBUTES = frozenset({"__code__", "co_code", "co_consts", "co_names"})
+STARTERS = frozenset({"Popen", "check_call", "check_output", "system", "generate_test_description"})
+"""Functions that start another process."""
+
+
+def code_of(evidence: Evidence) -> TestCode:
+    """Return the test code of the submission."""
+    return read_test_code(evidence.submission.files, evidence.exercise.package)
+
+
+def declared(evidence: Evidence, _: NoParams) -> Finding:
+    """setup.py says that pytest runs the tests, and package.xml that it must be installed."""
+    expected = f'setup.py names "{PYTEST}" as "test" in extras_require, and package.xml {TEST_DEPEND} as <test_depend>.'
+    setup, manifest = evidence.setup_py, evidence.manifest
+    if setup is not None and not any(_name(each) == PYTEST for each in setup.tested_with):
+        old = setup.tests_require_line
+        cause = "Without it, colcon test runs unittest, which finds no test function of pytest."
+        if old is not None:
+            cause = "setuptools ignores tests_require since version 72, and colcon test then runs unittest."
+        observed = f'setup.py does not name "{PYTEST}" in extras_require.'
+        where = Where("setup.py", old or setup.setup_line)
+        return failed(observed, expected, Cause("tests-require" if old else "pytest-undeclared", cause, where))
+    depends = () if manifest is None else (*manifest.run_depends, *manifest.other_depends)
+    if TEST_DEPEND not in depends:
+        cause = "On a computer without pytest, nothing would install it for your tests."
+        observed = f"package.xml does not declare {TEST_DEPEND}."
+        return failed(observed, expected, Cause("pytest-undeclared", cause, Where("package.xml")))
+    return passed("colcon test runs the tests with pytest.")
+
+
+def _name(requirement: str) -> str:
+    return requirement.split(" ")[0].split("[")[0].rstrip("<>=!~.0123456789")
+
+
+def outside(evidence: Evidence, _: NoParams) -> Finding:
+    """The tests do not read the source of the node, and do not start it as another process."""
+    code = code_of(evidence)
+    expected = "The tests create the node and watch what it publishes. They do not read its file."
+    for module in code.modules:
+        for node in module.nodes:
+            name = _source_module(node) or (getattr(node, "attr", "") if _is_of_code(node) else "")
+            if name:
+                return failed(
+                    f"The tests use {shorten(name, 60)}, which looks at the code of the node.",
+                    expected,
+                    Cause("looks-at-source", LOOKS, Where(module.file, getattr(node, "lineno", None))),
+                )
+    use = _first_use(code, READERS)
+    if use is not None:
+        observed = f"The tests use {shorten(use.written, 60)}, which reads a file."
+        return failed(observed, expected, Cause("looks-at-source", LOOKS, use.where))
+    use = _first_use(code, STARTERS)
+    if use is not None:
+        cause = (
+            "Import the class, create the node in the test, and spin it yourself. Then the test decides about the time."
+        )
+        observed = f"The tests use {shorten(use.written, 60)}, which starts another process."
+        return failed(observed, expected, Cause("starts-a-process", cause, use.where))
+    return passed("The tests watch the node from outside.")
+
+
+LOOKS = "Somebody may write the same node in another way. A test of its text would fail, although the node is right."
+
+
+def _source_module(node: ast.AST) -> str:
+    if isinstance(node, ast.Import):
+        return next((alias.name for alias in node.names if alias.name.partition(".")[0] in SOURCE_MODULES), "")
+    if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] in SOURCE_MODULES and not node.level:
+        return node.module or ""
+    return ""
+
+
+def _is_of_code(node: ast.AST) -> bool:
+    return isinstance(node, ast.Attribute) and node.attr in CODE_ATTRIBUTES
+
+
+@dataclass(frozen=True, kw_only=True)
+class Steady:
+    """The names of functions that make a test depend on luck."""
+
+    names: tuple[str, ...] = strings(about="Functions that wait for a fixed time, such as `sleep`.")
+    random: tuple[str, ...] = strings(about="Functions that give another result each time, such as `randint`.")
+
+
+def steady(evidence: Evidence, params: Steady) -> Finding:
+    """The tests neither sleep for a fixed time nor use random numbers."""
+    code = code_of(evidence)
+    expected = "The tests do the same in every run, on a slow computer, too."
+    use = _first_use(code, frozenset(params.names))
+    if use is not None:
+        cause = "On a slow computer it may be too short. Spin until the message is there, or set the clock."
+        observed = f"The tests call {shorten(use.written, 60)}."
+        return failed(observed, expected, Cause("sleeps-by-luck", cause, use.where))
+    use = _first_use(code, frozenset(params.random))
+    if use is not None:
+        cause = "A test that fails only sometimes cannot be repeated. Choose the values yourself."
+        observed = f"The tests call {shorten(use.written, 60)}."
+        return failed(observed, expected, Cause("by-chance", cause, use.where))
+    return passed(expected)
+
+
+def asserts(evidence: Evidence, _: NoParams) -> Finding:
+    """Every test asserts something."""
+    code = code_of(evidence)
+    expected = "Every test has an assert that can fail."
+    cause = always_true(code)
+    if cause is not None:
+        return failed("An assert is always true.", expected, cause)
+    empty = without_assert(code)
+    if empty:
+        names = a_list([shorten(each.node.name, 60) for each in empty[:3]])
+        return failed(f"There is no assert in {names}.", expected, why_without_assert(empty[0]))
+    return passed(expected)
+
+
+def _first_use(code: TestCode, names: frozenset[str]) -> Use | None:
+    uses = [use for module in code.modules for use in uses_of(code.modules, module.file, names)]
+    return uses[0] if uses else None
+
+
+DECLARED = Kind(
+    "tests_declared",
+    "source",
+    "colcon test runs the tests with pytest",
+    NoParams,
+    declared,
+    about="setup.py names pytest as `test` in `extras_require`, and package.xml declares python3-pytest.",
+)
+OUTSIDE = Kind(
+    "tests_outside",
+    "source",
+    "The tests watch the node from outside",
+    NoParams,
+    outside,
+    about="The test files do not read source code, and do not start another process.",
+)
+STEADY = Kind(
+    "tests_steady",
+    "source",
+    "The tests do not depend on luck",
+    Steady,
+    steady,
+    about="The test files call none of the given functions, whatever name they give them.",
+)
+ASSERTS = Kind(
+    "tests_assert",
+    "source",
+    "Every test asserts something",
+    NoParams,
+    asserts,
+    about="Every test function has an assert, or calls a function that has one.",
+)

@@ -1,0 +1,80 @@
+"""The student's tests of one grading: run them on the right node and on the broken ones, beside the build."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from grader.common.words import count
+from grader.evidence.evidence import Run
+from grader.grading.clock import Attempt
+from grader.submission.reader import read
+from grader.testbench.bench import Bench
+from grader.testbench.result import BenchResult, runs_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from grader.checks.outcome import Finding
+    from grader.evidence.evidence import Evidence
+    from grader.grading.judging import Judging
+    from grader.grading.options import Options
+    from grader.grading.stopwatch import Stopwatch
+    from grader.ros.installation import Ros
+
+
+class Tests:
+    """A context manager. Leaving it ends all runs of the tests."""
+
+    __test__ = False  # pytest must not take this class for a test
+
+    def __init__(
+        self, ros: Ros, options: Options, judging: Judging, stopwatch: Stopwatch, tell: Callable[[str], None]
+    ) -> None:
+        self._ros = ros
+        self._options = options
+        self._judging = judging
+        self._stopwatch = stopwatch
+        self._tell = tell
+        self._started: dict[str, Bench] = {}
+
+    def __enter__(self) -> Tests:  # noqa: PYI034 - typing.Self is Python 3.11's
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for bench in self._started.values():
+            bench.close()
+
+    def start(self, views: Iterable[Evidence]) -> None:
+        """Start the tests of each of these trials. They need no build."""
+        for view in views:
+            spec = view.trial.tests
+            assert spec is not None
+            bench = self._started[view.trial.id] = Bench(
+                spec,
+                view.trial.node,
+                view.exercise.package,
+                view.submission.files,
+                self._ros,
+                in_cell=self._options.in_cell,
+                lanes=self._options.trials_at_once,
+            )
+            bench.start()
+
+    def run(self, evidence: Evidence, settled: Mapping[str, Finding]) -> Attempt:
+        """Wait for the runs of this trial. Return the evidence with their result, judged after the `settled` findings.
+
+        Raises:
+            MachineError: the sandbox, pytest or rclpy does not work.
+        """
+        if evidence.trial.id not in self._started:
+            self.start([evidence])
+        spec = evidence.trial.tests
+        assert spec is not None
+        self._tell(f"Running your tests on {count(spec.right_runs + len(spec.broken), 'node')}")
+        begun = time.monotonic()
+        with self._stopwatch.stage("trial"):
+            ended = self._started[evidence.trial.id].result()
+        runs = read(runs_of, ended)
+        evidence = evidence.with_run(Run(bench=BenchResult(runs, time.monotonic() - begun)))
+        return Attempt(evidence, self._judging.so_far(evidence, settled))

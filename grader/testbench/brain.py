@@ -1,0 +1,93 @@
+"""The brain of a node under test: what it does in each event. It runs in the grader's own process, never in the cell.
+
+The node in the cell is the same in every run (relayed_node.py), and asks here what to do. So tests can tell a right
+node from a broken one only by what it does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from grader.exercise.node_under_test import FIELDS, SIDE_M
+
+if TYPE_CHECKING:
+    from grader.exercise.node_under_test import Behaviour
+
+MOST_NODES = 1000
+"""The maximum number of nodes in one run. A test creates one or two."""
+
+Values = list[float]
+"""The six values of a command, in the order of FIELDS."""
+
+
+@dataclass
+class _State:
+    """What one node remembers: the last pose (m), when it came (ns), and whether it is turning for ever."""
+
+    x: float = 0.0
+    y: float = 0.0
+    received_ns: int | None = None
+    turns: bool = False
+
+
+class Brain:
+    """Decides for all nodes that are created in one run of the tests. `node` is the name of the node."""
+
+    def __init__(self, behaviour: Behaviour, node: str) -> None:
+        self._behaviour = behaviour
+        self._node = node
+        self._states: list[_State] = []
+
+    @property
+    def used(self) -> bool:
+        """Whether a node was created."""
+        return bool(self._states)
+
+    def create(self) -> dict[str, Any]:
+        """Return the description of a new node."""
+        if len(self._states) < MOST_NODES:
+            self._states.append(_State())
+        of = self._behaviour
+        return {
+            "node": self._node,
+            "number": len(self._states) - 1,
+            "topic": of.topic,
+            "type": of.type,
+            "listens": of.listens,
+            "period_s": of.period_s,
+        }
+
+    def pose(self, number: int, now_ns: int, x: float, y: float) -> None:
+        """Node `number` has received this pose (m) at this time of its clock (ns)."""
+        if number < len(self._states):
+            state = self._states[number]
+            state.x, state.y, state.received_ns = x, y, now_ns
+
+    def tick(self, number: int, now_ns: int) -> Values | None:
+        """Return the command that node `number` publishes when its timer fires at this time (ns), or None."""
+        of = self._behaviour
+        if number >= len(self._states) or not of.publishes:
+            return None
+        state = self._states[number]
+        if state.received_ns is None:
+            return None if of.waits else self._command(of.speed_m_s, 0.0)
+        if of.timeout_s and now_ns - state.received_ns > of.timeout_s * 1e9:
+            return self._command(0.0, 0.0)
+        if self._near(state):
+            state.turns = True
+            return self._command(of.slow_m_s, of.turn_rad_s)
+        if state.turns and not of.straightens:
+            return self._command(of.slow_m_s, of.turn_rad_s)
+        state.turns = False
+        return self._command(of.speed_m_s, 0.0)
+
+    def _near(self, state: _State) -> bool:
+        distances = {"left": state.x, "right": SIDE_M - state.x, "bottom": state.y, "top": SIDE_M - state.y}
+        return any(distances[wall] < self._behaviour.margin_m for wall in self._behaviour.walls)
+
+    def _command(self, speed_m_s: float, turn_rad_s: float) -> Values:
+        values = dict.fromkeys(FIELDS, 0.0)
+        values[self._behaviour.speed_field] = speed_m_s
+        values[self._behaviour.turn_field] = turn_rad_s
+        return list(values.values())

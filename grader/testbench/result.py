@@ -1,0 +1,114 @@
+"""What the runs of a student's tests gave, in memory and as JSON."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+MOST_MESSAGE = 1500
+"""The maximum length of a message of pytest (characters)."""
+
+
+@dataclass(frozen=True)
+class NodeRun:
+    """One run of all tests. `node` is the id of the broken node, or "" for the right one.
+
+    `exit_code` is that of pytest, None if the run did not end by itself. `collected` is the number of tests that pytest
+    found. The rest is about the first test that did not pass: its name, whether the test failed ("failed"), what it
+    stood on failed ("setup"), or its file could not be imported ("import"), the message, the file and the line. A
+    student's process reports all of it, so only whether a run failed counts, and only together with the other runs.
+    """
+
+    node: str
+    exit_code: int | None
+    over: bool = False
+    """Whether the run did not end within its time."""
+    seconds: float = 0.0
+    collected: int = 0
+    passed: int = 0
+    skipped: int = 0
+    test: str = ""
+    outcome: str = ""
+    message: str = ""
+    file: str = ""
+    line: int = 0
+
+    @property
+    def accepted(self) -> bool:
+        """Whether all tests passed. A run without any passed test accepts nothing."""
+        return self.exit_code == 0
+
+
+@dataclass(frozen=True)
+class BenchResult:
+    """The runs on the right node and on the broken nodes. Runs that could no longer change the verdict are missing."""
+
+    runs: tuple[NodeRun, ...]
+    seconds: float = 0.0
+
+    @cached_property
+    def right(self) -> tuple[NodeRun, ...]:
+        """The runs on the right node."""
+        return tuple(run for run in self.runs if not run.node)
+
+    def of(self, node: str) -> NodeRun | None:
+        """Return the run on this broken node, or None if there was none."""
+        return next((run for run in self.runs if run.node == node), None)
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a run ended, before its report is read: a student's process may have written the report (JSON)."""
+
+    node: str
+    exit_code: int | None = None
+    over: bool = False
+    seconds: float = 0.0
+    report: bytes = b""
+
+
+def run_of(ended: Ended) -> NodeRun:
+    """Return the run with its report. What has another form than expected is left out."""
+    try:
+        report = json.loads(ended.report)
+    except ValueError:
+        report = None
+    report = report if isinstance(report, dict) else {}
+    listed = report.get("cases")
+    cases = [case for case in listed if isinstance(case, dict)] if isinstance(listed, list) else []
+    bad = next((case for case in cases if case.get("outcome") not in ("passed", "skipped")), {})
+    return NodeRun(
+        node=ended.node,
+        exit_code=ended.exit_code,
+        over=ended.over,
+        seconds=ended.seconds,
+        collected=int(_number(report.get("collected"))),
+        passed=sum(case.get("outcome") == "passed" for case in cases),
+        skipped=sum(case.get("outcome") == "skipped" for case in cases),
+        test=_text(bad.get("name")),
+        outcome=_text(bad.get("outcome")),
+        message=_text(bad.get("message")),
+        file=_text(bad.get("file")),
+        line=int(_number(bad.get("line"))),
+    )
+
+
+def runs_of(ended: tuple[Ended, ...]) -> tuple[NodeRun, ...]:
+    """Return the runs with their reports."""
+    return tuple(map(run_of, ended))
+
+
+def from_json(data: Any) -> BenchResult:  # noqa: ANN401 - JSON
+    """Return the result in a recording. Raises KeyError, TypeError or ValueError for anything else."""
+    return BenchResult(tuple(NodeRun(**run) for run in data["runs"]), float(data["seconds"]))
+
+
+def _text(value: object) -> str:
+    return value[:MOST_MESSAGE] if isinstance(value, str) else ""
+
+
+def _number(value: object) -> float:
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return float(value) if is_number and 0 <= value < 1e9 else 0.0  # type: ignore[operator, arg-type]

@@ -1,0 +1,68 @@
+"""What the runs of a student's tests say, with results that were made up."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING
+
+import pytest
+
+from grader.checks.exercises import find_exercise
+from grader.checks.kind import NoParams
+from grader.checks.outcome import Status
+from grader.checks.subjects.tests_run import CATCHES, PASS
+from grader.evidence.evidence import Evidence, Run
+from grader.testbench.result import BenchResult, Ended, NodeRun, run_of
+from grader.tests.checks import made
+
+if TYPE_CHECKING:
+    from grader.checks.outcome import Finding
+
+TESTS = "test/test_wall_guard.py"
+GOOD = NodeRun("", 0, collected=3, passed=3)
+BAD = NodeRun("", 1, collected=3, test=f"{TESTS}::test_it", outcome="failed", message="assert 9 == 10", line=2)
+SOURCE = "def test_it(bench):\n    assert bench.count() == 10\n"
+
+
+def given(*runs: NodeRun, source: str = SOURCE) -> Evidence:
+    evidence = Evidence(find_exercise("12-tests"), made.submission({TESTS: source}))
+    return evidence.with_run(Run(bench=BenchResult(runs)))
+
+
+def passes(*runs: NodeRun) -> Finding:
+    return PASS.check(given(*runs), NoParams())
+
+
+def test_tests_that_pass_each_time_pass() -> None:
+    assert passes(GOOD, GOOD, GOOD).status is Status.PASSED
+
+
+@pytest.mark.parametrize("order", [(GOOD, BAD, GOOD), (BAD, GOOD, GOOD), (BAD, BAD, GOOD)])
+def test_tests_that_pass_only_sometimes_are_named(order: tuple[NodeRun, ...]) -> None:
+    found = passes(*order)
+    assert (found.status, found.diagnosis) == (Status.FAILED, "unsteady-tests")
+    assert f"in {order.count(GOOD)} of 3 runs" in found.observed
+
+
+def test_a_missing_run_on_the_right_node_is_no_pass() -> None:
+    """The runs end after two that hung, so the right node may not have had all of its runs."""
+    hung = NodeRun("stop", None, over=True)
+    assert passes(GOOD, hung, dataclasses.replace(hung, node="rate")).diagnosis == "test-hangs"
+    assert passes().diagnosis == "test-hangs"
+
+
+def test_a_broken_node_that_was_not_run_is_not_caught() -> None:
+    check = next(check for check in find_exercise("12-tests").checks if check.id == "stop")
+    assert CATCHES.judge(given(GOOD), check.params).diagnosis == "test-hangs"
+    assert CATCHES.judge(given(dataclasses.replace(BAD, node="stop")), check.params).status is Status.PASSED
+    hung = NodeRun("stop", None, over=True)
+    assert CATCHES.judge(given(hung), check.params).diagnosis == "test-hangs"
+
+
+@pytest.mark.parametrize(
+    "report",
+    [b"", b"[]", b"{", b'{"cases": 3, "collected": "x"}', b'{"cases": [1, {"outcome": []}], "collected": -1}', b"\xff"],
+)
+def test_a_forged_report_is_read_as_far_as_it_can_be(report: bytes) -> None:
+    assert run_of(Ended("rate", 1, report=report)).exit_code == 1
+    assert run_of(Ended("rate", 1, report=report)).collected == 0

@@ -1,0 +1,54 @@
+"""Tests of wall_guard: each one checks a promise, from outside, as another node would."""
+
+import pytest
+import rclpy
+from geometry_msgs.msg import Twist
+from rclpy.clock import ClockType
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.time import Time
+from turtlesim.msg import Pose
+
+from my_robot_controller.wall_guard import WallGuard
+
+STEP = 100_000_000  # 0.1 s in nanoseconds
+
+
+class Bench:
+    """The node under test, a listener beside it, and a clock that stands still until `run` moves it."""
+
+    def __init__(self):
+        self.guard = WallGuard()
+        self.guard.set_parameters([Parameter("use_sim_time", value=True)])
+        self.listener = Node("listener")
+        self.heard = []
+        self.listener.create_subscription(Twist, "/turtle1/cmd_vel", self.heard.append, 10)
+        self.poses = self.listener.create_publisher(Pose, "/turtle1/pose", 10)
+        self.executor = SingleThreadedExecutor()
+        self.executor.add_node(self.guard)
+        self.executor.add_node(self.listener)
+        self.now = 0
+        self.run(1)
+
+    def spin(self):
+        # Each turn does at most one thing: the guard's timer, the listener's message. Six turns are more than enough.
+        for _ in range(6):
+            self.executor.spin_once(timeout_sec=0)
+
+    def run(self, steps):
+        for _ in range(steps):
+            self.now += STEP
+            self.guard.get_clock().set_ros_time_override(Time(nanoseconds=self.now, clock_type=ClockType.ROS_TIME))
+            self.spin()
+
+    def pose(self, x, y):
+        self.poses.publish(Pose(x=x, y=y))
+        self.spin()
+
+
+@pytest.fixture
+def bench():
+    rclpy.init()
+    yield Bench()
+    rclpy.shutdown()
