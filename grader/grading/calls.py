@@ -7,7 +7,6 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from grader.evidence.bag import write_bag
 from grader.grading.plan import DEFAULT_SEED
 from grader.submission.reader import read
 from grader.trial.called import read_called
@@ -66,6 +65,8 @@ def _run(bag: BagInput) -> dict[str, Any]:
 
 def _bag_files(bag: BagInput, ros: Ros, seed: int) -> dict[str, bytes]:
     """Return the files of the bag by their paths."""
+    from grader.evidence.bag import write_bag  # rosbags takes 0.1 s to import, and most exercises do not need it
+
     with tempfile.TemporaryDirectory(prefix="grader-") as made:
         folder = Path(made) / bag.id
         write_bag(folder, _messages(bag, seed), ros.all_prefixes)
