@@ -74,7 +74,7 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
 
 
 def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
-    """Yield the same submissions. One with an unknown exercise is repeated for each exercise of the others.
+    """Yield each submission with its exercise. If it is unknown, yield one for each exercise of the others.
 
     Raises:
         UsageError: no exercise is known.

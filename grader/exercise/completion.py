@@ -12,5 +12,5 @@ def steps(incomplete: str) -> list[str]:
 
 
 def steps_or_next(incomplete: str) -> list[str]:
-    """Return the same with "next", which `grader start` takes, too."""
+    """Return the same steps for `grader start`, which also accepts "next"."""
     return [*steps(incomplete), *(["next"] if "next".startswith(incomplete) else [])]

@@ -6,7 +6,7 @@ There are two walls, both made by bubblewrap:
   with their own processes and a network of their own that has only loopback. They read what a student's node sends,
   with libraries that may have security holes;
 - a **cell** contains a student's process. It has its own user, pid, ipc, uts, cgroup and mount namespaces, no network
-  but that of the room, nothing of the disk but what `View` names, a filter of system calls (system_calls.py), and
+  but that of the room, nothing of the disk except what `View` names, a filter of system calls (system_calls.py), and
   limits on memory, processes, files, CPU and disk. usage.py watches totals for which there is no limit.
 
 These functions only make command lines. The caller starts the process and owns it. Input and output use pipes.

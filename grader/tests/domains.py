@@ -13,8 +13,8 @@ from typing import IO
 from grader.tests.waiting import HANG_S
 
 FIRST, LAST = 2, 101
-"""Domain 1 is root's own, where the machine's user may be at work; above 101 a domain's ports would lie among those
-that Linux gives to anybody."""
+"""The domains that tests use. Domain 1 belongs to root, who may be using this machine. Above 101, the ports of a domain
+are among those that Linux gives to any program."""
 MOST = 8
 """A process keeps this many domains besides its default one. Then it reuses the one that was unused for longest."""
 _held: dict[int, IO[str]] = {}

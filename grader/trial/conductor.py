@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 LAUNCHER = Path(__file__).absolute().with_name("launcher.py")
 BUSY = 0.5
 BUSY_S = 0.04
-"""The node itself caused a stall if its processes worked for the share BUSY of it, and for at least BUSY_S (s). If they
-worked for the share BUSY of the trial, the node caused all of its stalls."""
+"""The node itself caused a stall if its processes worked during at least the fraction BUSY of the stall, and for at
+least BUSY_S (s). It caused all stalls if they worked during the fraction BUSY of the whole trial."""
 REQUESTS_HZ = 500
 """If the simulator answers more requests from the node than this (Hz), the node caused all stalls, on any machine.
 
@@ -49,8 +49,9 @@ MESSAGES_HZ = 1000
 """The same for the messages that arrive from other nodes than the simulator (Hz)."""
 STARTED = 0.4
 STARTED_LEAST = 1.2
-"""The same for the processes that the node started: they were ready to run for more than this share of the time of all
-processors, and for more than STARTED_LEAST of one processor, which a single process cannot be."""
+"""The node also caused all stalls if the processes that it started could use the machine alone: together, they were
+ready to run for at least the fraction STARTED of the time of all processors, and for at least STARTED_LEAST times the
+length of the trial. A single process cannot reach this."""
 SIMULATORS = ("/pose", "/color_sensor")
 """The simulator publishes on topics with these last parts, for each turtle and in each frame."""
 

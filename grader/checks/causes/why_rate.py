@@ -120,7 +120,7 @@ def _made_in_callback(evidence: Evidence, maker: str) -> tuple[str, Where] | Non
 
 
 PLACES = {"create_timer": 1, "add_done_callback": 0, "add_on_set_parameters_callback": 0}
-"""The position of the callback among the arguments; 2 for all others."""
+"""Function -> the index of the argument that is the callback. For all other functions, it is 2."""
 
 
 def callbacks_of(evidence: Evidence, *makers: str) -> Iterator[tuple[Module, str]]:

@@ -104,7 +104,7 @@ def _unnoticed(
     notice: Callable[[Iterable[str]], bool],
     at_once: int,
 ) -> list[Mutant]:
-    """Return the mutants that no test notices. Of the tests that run the same lines, `alike` are tried."""
+    """Return the mutants that no test notices. At most `alike` tests that run the same lines are tried."""
 
     def job(mutant: Mutant) -> judging.Job:
         names = judging.requested(mutant, lines, alike)

@@ -189,7 +189,7 @@ FORBIDDEN: dict[str, Callable[[Path], object]] = {
     "a mode": lambda file: file.chmod(0o777),
     "a date": lambda file: os.utime(file),
 }
-"""Code that an attacker could run in this process by a hole in a parser."""
+"""Code that an attacker could run in this process through a hole in a parser."""
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="the filter is for x86-64")
