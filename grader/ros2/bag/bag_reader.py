@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import heapq
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -50,14 +51,31 @@ def messages(
     if not chosen:
         return
     found = reader.messages(chosen, start=start)
+    nothing = True
     while True:
         try:
             connection, stamp, data = next(found)
         except StopIteration:
+            if nothing and any(connection.msgcount for connection in chosen):
+                yield from _without_index(path, topics, start)
             return
         except Exception as error:
             raise _damaged(path, error) from error
+        nothing = False
         yield connection.topic, stamp, bytes(data)
+
+
+def _without_index(path: Path, topics: set[str], start: int | None) -> Iterator[tuple[str, int, bytes]]:
+    """Yield the messages of an MCAP bag without chunks, which rosbags does not find.
+
+    rosbag2 writes such bags with `--storage-preset-profile fastwrite`.
+    """
+    from grader.ros2.bag.recovery import saved_messages
+
+    files = sorted(path.glob("*.mcap")) if path.is_dir() else [path]
+    for saved in heapq.merge(*map(saved_messages, files), key=lambda saved: saved.stamp_ns):
+        if saved.topic in topics and (start is None or saved.stamp_ns >= start):
+            yield saved.topic, saved.stamp_ns, saved.data
 
 
 def _damaged(path: Path, error: Exception) -> Ros2Error:

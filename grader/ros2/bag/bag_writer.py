@@ -29,6 +29,8 @@ _VERSION: Literal[9] = 9
 _INFORMATION = "rosbag2_bagfile_information"
 _KEEP_S = 1.0
 """The interval at which messages are written to the file. A killed recorder loses at most this much of a recording."""
+_NO_HASH = f"RIHS01_{64 * '0'}"
+"""Stands for the hash of a type that is not installed, because the hash cannot be computed from its name."""
 _ENDINGS = {"mcap": ".mcap", "sqlite3": ".db3"}
 
 
@@ -60,17 +62,25 @@ class BagWriter:
             message = f"[ERROR] [ros2bag]: Could not create bag folder '{folder}'.\n{reason}"
             raise Ros2Error(message) from error
 
-    def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = ()) -> None:
+    def add_topic(self, topic: str, kind: str, offered: Sequence[Qos] = (), definition: str | None = None) -> None:
         """Add a topic, so that its messages can be written.
 
+        `definition` is that of the type in another bag. It is used if the type is not installed, and may be empty.
+
         Raises:
-            Ros2Error: the type of the topic is not installed.
+            Ros2Error: the type of the topic is not installed, and there is no definition.
         """
         register(self._types, kind, index.prefixes())
-        if kind not in self._types.types:
+        profiles = list(offered)
+        if kind in self._types.types:
+            made = self._writer.add_connection(topic, kind, typestore=self._types, offered_qos_profiles=profiles)
+        elif definition is not None:
+            made = self._writer.add_connection(
+                topic, kind, msgdef=definition, rihs01=_NO_HASH, offered_qos_profiles=profiles
+            )
+        else:
             message = f"The type {kind} is not installed"
             raise Ros2Error(message)
-        made = self._writer.add_connection(topic, kind, typestore=self._types, offered_qos_profiles=list(offered))
         self._connections[topic, kind] = made
 
     def write(self, topic: str, kind: str, stamp_ns: int, data: bytes) -> None:

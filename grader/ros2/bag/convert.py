@@ -57,16 +57,17 @@ def run(args: argparse.Namespace) -> int:
             reader = stack.enter_context(open_bag(path))
             kinds = {one.topic: one.msgtype for one in reader.connections}
             profiles = {one.topic: getattr(one.ext, "offered_qos_profiles", []) for one in reader.connections}
-            sources.append((path, reader, kinds, profiles))
+            definitions = {one.topic: one.msgdef.data for one in reader.connections}
+            sources.append((path, reader, kinds, profiles, definitions))
         for options in wanted:
             with BagWriter(Path(options["uri"]), options["storage_id"], _compression(options)) as writer:
                 known: set[tuple[str, str]] = set()
                 found: list[Iterator[tuple[int, str, str, bytes]]] = []
-                for path, reader, kinds, profiles in sources:
+                for path, reader, kinds, profiles, definitions in sources:
                     topics = {topic for topic in kinds if _chosen(options, topic)}
                     for topic in sorted(topics):
                         if (topic, kinds[topic]) not in known:
-                            writer.add_topic(topic, kinds[topic], profiles[topic])
+                            writer.add_topic(topic, kinds[topic], profiles[topic], definitions[topic])
                             known.add((topic, kinds[topic]))
                     found.append(_typed(messages(reader, path, topics), kinds))
                 for stamp, topic, kind, data in heapq.merge(*found, key=lambda one: one[0]):

@@ -28,6 +28,8 @@ class Saved(NamedTuple):
     topic: str
     type: str
     data: bytes
+    definition: str
+    """The definition of the type. It is empty if the file has none."""
 
 
 def recover(folder: Path) -> None:
@@ -49,9 +51,9 @@ def recover(folder: Path) -> None:
         made = Path(temporary, folder.resolve().name)
         with BagWriter(made, storage) as writer:
             known: set[tuple[str, str]] = set()
-            for saved in heapq.merge(*map(_messages, files), key=lambda saved: saved.stamp_ns):
+            for saved in heapq.merge(*map(saved_messages, files), key=lambda saved: saved.stamp_ns):
                 if (saved.topic, saved.type) not in known:
-                    writer.add_topic(saved.topic, saved.type)
+                    writer.add_topic(saved.topic, saved.type, definition=saved.definition)
                     known.add((saved.topic, saved.type))
                 writer.write(saved.topic, saved.type, saved.stamp_ns, saved.data)
         # The new data come first, so that nothing is lost if this is killed. The metadata come last: a bag without them
@@ -67,24 +69,27 @@ def recover(folder: Path) -> None:
     log.info("Reindexing complete.")
 
 
-def _messages(file: Path) -> Iterator[Saved]:
+def saved_messages(file: Path) -> Iterator[Saved]:
+    """Return all readable messages of a file in order, without the help of its index."""
     return iter(sorted(_mcap(file) if file.suffix == ".mcap" else _sqlite(file), key=lambda saved: saved.stamp_ns))
 
 
 def _mcap(file: Path) -> Iterator[Saved]:
-    schemas: dict[int, str] = {}
+    schemas: dict[int, Schema] = {}
     channels: dict[int, Channel] = {}
     with file.open("rb") as stream:
         try:
             for record in StreamReader(stream).records:
                 match record:
                     case Schema():
-                        schemas[record.id] = record.name
+                        schemas[record.id] = record
                     case Channel():
                         channels[record.id] = record
                     case Message():
                         channel = channels[record.channel_id]
-                        yield Saved(record.log_time, channel.topic, schemas[channel.schema_id], record.data)
+                        schema = schemas[channel.schema_id]
+                        text = schema.data.decode("utf-8", "replace")
+                        yield Saved(record.log_time, channel.topic, schema.name, record.data, text)
         except (McapError, EOFError, ValueError, KeyError):
             # The file ends in the middle of a record.
             return
@@ -95,7 +100,17 @@ def _sqlite(file: Path) -> Iterator[Saved]:
     try:
         # Opening the database rolls back an incomplete write.
         with closing(sqlite3.connect(file)) as database:
-            yield from (Saved(*row) for row in database.execute(query))
+            definitions = _sqlite_definitions(database)
+            for stamp, topic, kind, data in database.execute(query):
+                yield Saved(stamp, topic, kind, data, definitions.get(kind, ""))
     except sqlite3.Error as error:
         message = f"[ERROR] [ros2bag]: '{file}' cannot be read: {error}"
         raise Ros2Error(message) from error
+
+
+def _sqlite_definitions(database: sqlite3.Connection) -> dict[str, str]:
+    """Return the definitions of the types. Before ROS 2 Iron, rosbag2 did not store them."""
+    tables = {name for (name,) in database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
+    if "message_definitions" not in tables:
+        return {}
+    return dict(database.execute("SELECT topic_type, encoded_message_definition FROM message_definitions"))

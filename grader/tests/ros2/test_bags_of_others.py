@@ -1,0 +1,66 @@
+"""Bags that rosbag2 records and the course's recorder does not: of types that are not installed, and without chunks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer as McapWriter
+from rosbags.rosbag2 import Reader, StoragePlugin, Writer
+
+from grader.ros2.bag.bag_reader import messages, open_bag
+from grader.ros2.bag.recovery import recover
+from grader.tests import made_bag
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+DEFINITION = "int32 strange_field\n"
+HASH = "RIHS01_" + 64 * "1"
+SENT = [(number, bytes([0, 1, 0, 0, number, 0, 0, 0])) for number in range(1, 6)]
+
+
+@pytest.mark.parametrize("storage", [StoragePlugin.MCAP, StoragePlugin.SQLITE3])
+def test_a_bag_of_an_unknown_type_is_reindexed(storage: StoragePlugin, tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    with Writer(folder, version=9, storage_plugin=storage) as writer:
+        connection = writer.add_connection("/strange", "not_here/msg/Strange", msgdef=DEFINITION, rihs01=HASH)
+        for stamp, data in SENT:
+            writer.write(connection, stamp, data)
+    (folder / "metadata.yaml").unlink()
+    recover(folder)
+    with Reader(folder) as reader:
+        (connection,) = reader.connections
+        assert (connection.msgtype, connection.msgdef.data) == ("not_here/msg/Strange", DEFINITION)
+        assert [(stamp, bytes(data)) for _, stamp, data in reader.messages()] == SENT
+
+
+def without_chunks(folder: Path) -> None:
+    """Rewrite the only file of a bag without chunks, as rosbag2 does with the profile fastwrite."""
+    (file,) = folder.glob("*.mcap")
+    with file.open("rb") as stream:
+        found = list(make_reader(stream).iter_messages())
+    with file.open("wb") as stream:
+        writer = McapWriter(stream, use_chunking=False)
+        writer.start(profile="ros2")
+        channels: dict[str, int] = {}
+        for schema, channel, message in found:
+            assert schema is not None
+            if channel.topic not in channels:
+                id_ = writer.register_schema(schema.name, schema.encoding, schema.data)
+                channels[channel.topic] = writer.register_channel(channel.topic, "cdr", id_, channel.metadata)
+            writer.add_message(channels[channel.topic], message.log_time, message.data, message.publish_time)
+        writer.finish()  # type: ignore[no-untyped-call]
+
+
+@pytest.mark.parametrize("start", [None, 3_000_000_000])
+def test_a_bag_without_chunks_is_read(start: int | None, tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    made_bag.record(folder, [*made_bag.poses(), *made_bag.commands()])
+    with open_bag(folder) as reader:
+        expected = list(messages(reader, folder, {"/turtle1/pose"}, start))
+    assert len(expected) > 400
+    without_chunks(folder)
+    with open_bag(folder) as reader:
+        assert list(messages(reader, folder, {"/turtle1/pose"}, start)) == expected
