@@ -49,7 +49,7 @@ def scene_of(evidence: Evidence) -> Scene:
     """Return what to draw for a run."""
     recording = evidence.run.recording
     if recording is None:
-        return _bag_scene(evidence) or Scene(notice="The node was not run.")
+        return _without_recording(evidence)
     trajectory = evidence.trajectory
     shapes: list[Line | Ring | Arrow] = []
     legend: list[tuple[Role, str]] = []
@@ -92,6 +92,12 @@ def scene_of(evidence: Evidence) -> Scene:
     if not trajectory.finite:
         notice = "The turtle's position became NaN (not a number)."
     return Scene(tuple(shapes), tuple(legend), tuple(facts), notice)
+
+
+def _without_recording(evidence: Evidence) -> Scene:
+    if evidence.run.bench is not None:
+        return Scene(notice="The tests need no turtle.")
+    return _bag_scene(evidence) or Scene(notice="The node was not run.")
 
 
 def _bag_scene(evidence: Evidence) -> Scene | None:

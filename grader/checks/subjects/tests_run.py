@@ -95,7 +95,8 @@ def catches(evidence: Evidence, params: Catches) -> Finding:
     if run is None or run.over:
         return _hung(expected, code, run)
     if not run.accepted:
-        return passed(f"The tests reject {params.does}.")
+        name = shorten(run.test.rpartition("::")[2], 60)
+        return passed(f"{name or 'A test'} fails on {params.does}, as it should.")
     observed = f"All tests pass on {params.does}."
     return failed(observed, expected, _why_accepted(evidence, params, code))
 

@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING
 import pytest
 
 from grader.checks.exercises import find_exercise
+from grader.checks.judge import judge
 from grader.checks.kind import NoParams
 from grader.checks.outcome import Status
 from grader.checks.subjects.tests_run import CATCHES, PASS
 from grader.evidence.evidence import Evidence, Run
+from grader.report.html import html_page
+from grader.report.report import report_of
+from grader.report.scene import scene_of
 from grader.testbench.result import BenchResult, Ended, NodeRun, run_of
 from grader.tests.checks import made
 
@@ -66,3 +70,11 @@ def test_a_broken_node_that_was_not_run_is_not_caught() -> None:
 def test_a_forged_report_is_read_as_far_as_it_can_be(report: bytes) -> None:
     assert run_of(Ended("rate", 1, report=report)).exit_code == 1
     assert run_of(Ended("rate", 1, report=report)).collected == 0
+
+
+def test_a_report_about_tests_does_not_say_that_the_node_was_not_run() -> None:
+    evidence = given(BAD, BAD, BAD)
+    report = report_of(evidence, judge(evidence), "none", {})
+    assert "The node was not run, so" not in html_page(evidence, report)
+    assert scene_of(evidence).notice == "The tests need no turtle."
+    assert report.clock_why == "Your tests were run 3 times."
