@@ -125,8 +125,8 @@ def _other_turn(before: Goal, goal: Goal, turn_deg: float) -> str:
     theta = float(goal.request["theta"])
     if abs(normalize(theta - math.radians(turn_deg))) <= SAME_RAD:
         return "A goal is an absolute heading, not a turn: 0 is to the right, wherever the turtle looks before."
-    more = round(math.degrees(normalize(theta - float(before.request["theta"]))))
-    return f"It is {more} degrees further to the left than the goal before; the exercise asks for {turn_deg:g}."
+    more = math.degrees(normalize(theta - float(before.request["theta"])))
+    return f"It is {more:.0f} degrees further to the left than the goal before; the exercise asks for {turn_deg:g}."
 
 
 def _other_heading(

@@ -61,6 +61,8 @@ def given(*goals: Goal, **changes: Any) -> Evidence:  # noqa: ANN401
         ([goal(1.0, 80.0, 2.4, result_asked_s=None)], {"nth": 2}, "result-not-awaited"),
         ([goal(1.0, 80.0, 2.4), goal(3.0, 224.0, 5.0)], {"total": 2, "turn_deg": 144.0}, None),
         ([goal(1.0, 80.0, 2.4), goal(3.0, 144.0, 5.0)], {"total": 2, "turn_deg": 144.0}, "wrong-goal"),
+        ([goal(1.0, 80.0, 2.4), goal(3.0, math.nan, 5.0)], {"total": 2, "turn_deg": 144.0}, "wrong-goal"),
+        ([goal(1.0, math.inf, 2.4)], {}, "wrong-goal"),
     ],
 )
 def test_goals_count_in_order_with_their_headings(
