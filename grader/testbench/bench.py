@@ -17,7 +17,6 @@ from threading import Lock
 from typing import TYPE_CHECKING
 
 from grader.testbench.lane import Lane, Package
-from grader.trial.own_domain import own_domain
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -51,8 +50,7 @@ class Bench:
         self._spec = spec
         self._ros = ros
         self._in_cell = in_cell
-        # Without a cell, the runs would share the network.
-        self._count = max(1, min(lanes, MOST_LANES)) if in_cell else 1
+        self._count = max(1, min(lanes, MOST_LANES))
         self._queue = _Queue(spec)
         self._stack = ExitStack()
         self._opened: list[Lane] = []
@@ -94,7 +92,7 @@ class Bench:
         if self._in_cell:
             return Lane(self._ros, self._tests, self._spec.duration_s)
         folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="grader-", ignore_cleanup_errors=True))
-        return Lane(self._ros, self._tests, self._spec.duration_s, folder=Path(folder), domain=own_domain(stack))
+        return Lane(self._ros, self._tests, self._spec.duration_s, Path(folder))
 
 
 class _Queue:

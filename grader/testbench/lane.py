@@ -56,19 +56,16 @@ class Package:
 class Lane:
     """A context manager: the cell with its session. Entering it starts the imports.
 
-    `folder` is a folder of its own for a lane without a cell, which also gets a ROS domain of its own.
+    `folder` is a folder of its own for a lane without a cell. Its nodes then find no others on the machine.
     """
 
-    def __init__(
-        self, ros: Ros, package: Package, duration_s: float, *, folder: Path | None = None, domain: int | None = None
-    ) -> None:
+    def __init__(self, ros: Ros, package: Package, duration_s: float, folder: Path | None = None) -> None:
         self._ros = ros
         self._package = package
         self._duration_s = duration_s
         self._in_cell = folder is None
         self._workspace = folder or bubblewrap.WORKSPACE
         self._home = bubblewrap.HOME if folder is None else folder / "home"
-        self._domain = domain
         self._stack = ExitStack()
         self._out_of = ""
         self._started = False
@@ -90,9 +87,11 @@ class Lane:
         os.set_blocking(self._answers, False)
         for kept in (self._asks, self._answers):
             self._stack.callback(os.close, kept)
-        env = installation.environment(self._ros, home=self._home, domain=self._domain)
+        env = installation.environment(self._ros, home=self._home)
         env |= {"GRADER_TESTBENCH": f"{child_asks} {child_answers}", "PYTHONDONTWRITEBYTECODE": "1"}
         env["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+        if not self._in_cell:
+            env["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"
         start = interpreter(str(SESSION), python=str(self._ros.python), env=env, searches=True)
         with ExitStack() as only_now:
             for childs in (child_asks, child_answers):

@@ -43,9 +43,9 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return dict(open_submission(given).files)
 
 
-def run(nodes: TestsSpec, files: dict[str, bytes], *, lanes: int = 1) -> tuple[NodeRun, ...]:
+def run(nodes: TestsSpec, files: dict[str, bytes], *, lanes: int = 1, in_cell: bool = True) -> tuple[NodeRun, ...]:
     ros = underlay.with_turtlesim(find_ros())
-    bench = Bench(nodes, "wall_guard", "my_robot_controller", files, ros, in_cell=True, lanes=lanes)
+    bench = Bench(nodes, "wall_guard", "my_robot_controller", files, ros, in_cell=in_cell, lanes=lanes)
     bench.start()
     try:
         return runs_of(bench.result())
@@ -173,3 +173,26 @@ def test_a_rejected_right_node_ends_the_others(files: dict[str, bytes]) -> None:
     assert nodes is not None
     runs = run(nodes, {**files, TESTS: b"def test_it():\n    assert False\n"})
     assert sum(not each.node for each in runs) == nodes.right_runs
+
+
+LISTENS = """
+import rclpy
+from rclpy.node import Node
+from turtlesim.msg import Pose
+from my_robot_controller.wall_guard import WallGuard
+
+def test_it():
+    rclpy.init()
+    guard, sender = WallGuard(), Node("sender")
+    sender.create_publisher(Pose, "/turtle1/pose", 10).publish(Pose(x=5.0, y=5.0))
+    rclpy.spin_once(guard, timeout_sec=5.0)
+    names = {name for name, _ in guard.get_node_names_and_namespaces()}
+    rclpy.shutdown()
+    assert names == {"wall_guard", "sender"}
+    assert guard.pose.x == 5.0
+"""
+
+
+def test_without_a_cell_no_other_program_takes_part(files: dict[str, bytes]) -> None:
+    runs = run(spec(right_runs=4), {**files, TESTS: LISTENS.encode()}, lanes=2, in_cell=False)
+    assert [(each.exit_code, each.message) for each in runs] == [(0, "")] * 4

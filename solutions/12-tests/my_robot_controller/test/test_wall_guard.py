@@ -1,5 +1,7 @@
 """Tests of wall_guard: each one checks a promise, from outside, as another node would."""
 
+import os
+
 import pytest
 import rclpy
 from geometry_msgs.msg import Twist
@@ -11,6 +13,8 @@ from rclpy.time import Time
 from turtlesim.msg import Pose
 
 from my_robot_controller.wall_guard import WallGuard
+
+os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"  # no other program takes part in the tests
 
 # BEGIN SOLUTION
 STEP = 100_000_000  # 0.1 s in nanoseconds
