@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -80,7 +81,9 @@ COMMANDS = ("grader", "ros2", "rqt", "rqt_console", "rqt_graph", "rqt_plot")
 def test_our_commands_import_nothing_from_the_current_folder(folder: Path, name: str) -> None:
     (folder.parent / "here" / "grader.py").write_text("print('TRAP grader')\n")
     listed = {"PYTHONPATH": f":{folder}:x y", "PYTHONHOME": "here", "LD_LIBRARY_PATH": ":", "PYTHONIOENCODING": "ascii"}
-    env = {**SOURCED_ENV, "PATH": ":/usr/bin:/bin", "HOME": str(folder), **listed}
+    # With another home folder, `ros2` would build the turtlesim interfaces there.
+    cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    env = {**SOURCED_ENV, "PATH": ":/usr/bin:/bin", "HOME": str(folder), "XDG_CACHE_HOME": cache, **listed}
     if SOURCED_ENV:
         env["PYTHONPATH"] += f":{SOURCED_ENV['PYTHONPATH']}"
         env["LD_LIBRARY_PATH"] += f":{SOURCED_ENV['LD_LIBRARY_PATH']}"

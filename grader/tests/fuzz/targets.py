@@ -105,6 +105,8 @@ def output(data: bytes) -> None:
 
 def notebooks(data: bytes) -> None:
     """Run `gradebook sync` on this notebook, alone or with a package beside it."""
+    import nbgrader.utils  # noqa: F401 - otherwise each process that reads would import it
+
     if data[:1] == b"j":
         data = odd_json(next(iter(TARGETS["notebooks"].seeds())), Choices(data[1:]))
     with tempfile.TemporaryDirectory() as folder:
