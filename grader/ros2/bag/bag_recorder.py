@@ -23,13 +23,14 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
     from grader.ros2.bag.bag_writer import BagWriter
+    from grader.ros2.bag.split_writer import SplitWriter
 
 
 class Recorder:
     """Records a bag with the options of `bag record` until it is interrupted."""
 
     def __init__(
-        self, node: Node, writer: BagWriter, args: argparse.Namespace, wanted: Callable[[str, str], bool]
+        self, node: Node, writer: BagWriter | SplitWriter, args: argparse.Namespace, wanted: Callable[[str, str], bool]
     ) -> None:
         self._node = node
         self._writer = writer

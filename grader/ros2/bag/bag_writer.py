@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 
 _VERSION: Literal[9] = 9
 """The version of rosbag2's metadata that Jazzy reads and writes."""
-_INFORMATION = "rosbag2_bagfile_information"
+INFORMATION = "rosbag2_bagfile_information"
+"""The only key of metadata.yaml."""
 _KEEP_S = 1.0
 """The interval at which messages are written to the file. A killed recorder loses at most this much of a recording."""
 _NO_HASH = f"RIHS01_{64 * '0'}"
@@ -134,7 +135,7 @@ def _as_rosbag2_names_it(folder: Path, ending: str) -> None:
     data = yaml.safe_load(metadata.read_text("utf-8"))
     (file,) = (path for path in folder.iterdir() if ending in path.suffixes)
     renamed = file.with_name(file.name.replace(ending, f"_0{ending}", 1))
-    information = data[_INFORMATION]
+    information = data[INFORMATION]
     information["relative_file_paths"] = [renamed.name]
     information["files"][0]["path"] = renamed.name
     information["ros_distro"] = os.environ.get("ROS_DISTRO", "jazzy")

@@ -14,6 +14,9 @@ from grader.ros2.completion import completes, message_types, topics
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from grader.ros2.bag.bag_writer import BagWriter
+    from grader.ros2.bag.split_writer import SplitWriter
+
 _SELECTS = ("all", "all_topics", "topic_types", "regex")
 _PROFILES = {"none": "none", "fastwrite": "none", "zstd_fast": "storage", "zstd_small": "storage"}
 """The preset profiles of the MCAP storage, and the compression mode of each."""
@@ -21,8 +24,6 @@ NOT_HERE = (
     "services",
     "all_services",
     "exclude_services",
-    "max_bag_size",
-    "max_bag_duration",
     "snapshot_mode",
     "storage_config_file",
     "qos_profile_overrides_path",
@@ -44,6 +45,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     _add_topics(parser)
     _add_discovery(parser)
     parser.add_argument("-f", "--serialization-format", default="", choices=("", "cdr"), help=argparse.SUPPRESS)
+    _add_splitting(parser)
     parser.add_argument("--start-paused", action="store_true", help="begin paused; SPACE starts the recording")
     parser.add_argument(
         "--use-sim-time",
@@ -116,6 +118,23 @@ def _add_topics(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _add_splitting(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "-b",
+        "--max-bag-size",
+        type=int,
+        default=0,
+        help="begin a new file before the messages of one take more bytes (default: 0, only one file)",
+    )
+    parser.add_argument(
+        "-d",
+        "--max-bag-duration",
+        type=int,
+        default=0,
+        help="begin a new file after so many seconds (default: 0, only one file)",
+    )
+
+
 def _add_discovery(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--include-unpublished-topics",
@@ -149,15 +168,24 @@ def run(args: argparse.Namespace) -> int:
     _validate(args, folder)
     from grader.graph.discovery import cli_node
     from grader.ros2.bag.bag_recorder import Recorder
-    from grader.ros2.bag.bag_writer import BagWriter
 
     compression = args.compression_mode if args.compression_mode != "none" else _PROFILES[args.storage_preset_profile]
     with (
         cli_node(args.node_name, use_sim_time=args.use_sim_time) as node,
-        BagWriter(folder, args.storage, compression) as writer,
+        _writer(folder, args, compression) as writer,
     ):
         Recorder(node, writer, args, wanted(args)).run()
     return 0
+
+
+def _writer(folder: Path, args: argparse.Namespace, compression: str) -> BagWriter | SplitWriter:
+    from grader.ros2.bag.bag_writer import BagWriter
+    from grader.ros2.bag.split_writer import SplitWriter
+
+    size, duration_s = args.max_bag_size, args.max_bag_duration
+    if not size and not duration_s:
+        return BagWriter(folder, args.storage, compression)
+    return SplitWriter(folder, args.storage, compression, most_bytes=size, most_s=duration_s)
 
 
 def wanted(args: argparse.Namespace) -> Callable[[str, str], bool]:
@@ -195,6 +223,7 @@ def _validate(args: argparse.Namespace, folder: Path) -> None:
         "--exclude-topic-types argument requires either --all, --all-topics or --regex": args.exclude_topic_types
         and not selects,
         f"Output folder '{folder}' already exists.": folder.exists(),
+        "--max-bag-size and --max-bag-duration must not be negative": min(args.max_bag_size, args.max_bag_duration) < 0,
         "--use-sim-time and --no-discovery both set, but are incompatible settings. The /clock topic needs to be "
         "discovered to record with sim time.": args.use_sim_time and args.no_discovery,
         "Invalid choice: Cannot specify compression format without a compression mode.": args.compression_format

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import glob
 import heapq
 import sqlite3
 import tempfile
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -40,7 +41,10 @@ def recover(folder: Path) -> None:
     Raises:
         Ros2Error: the folder has no files of a bag, or they cannot be read.
     """
-    files = sorted(file for file in folder.iterdir() if file.suffix in (".mcap", ".db3"))
+    # The last file of a split bag is in a folder of its own until it is complete (split_writer.py).
+    part = f"{glob.escape(folder.resolve().name)}_[0-9]*"
+    found = (*folder.iterdir(), *folder.glob(f"{part}/{part}"))
+    files = sorted(file for file in found if file.suffix in (".mcap", ".db3"))
     if not files:
         message = f"[ERROR] [ros2bag]: No .mcap or .db3 file in '{folder}'"
         raise Ros2Error(message)
@@ -62,9 +66,11 @@ def recover(folder: Path) -> None:
         for path in data:
             path.replace(folder / path.name)
         kept = {path.name for path in data}
-        for old in (*files, *folder.glob("*.db3-journal")):
-            if old.name not in kept:
+        for old in (*files, *folder.glob("*.db3-journal"), *folder.glob(f"{part}/{part}.db3-journal")):
+            if old.name not in kept or old.parent != folder:
                 old.unlink()
+                with suppress(OSError):  # the folder of the bag is never empty
+                    old.parent.rmdir()
         (made / "metadata.yaml").replace(folder / "metadata.yaml")
     log.info("Reindexing complete.")
 
