@@ -44,6 +44,8 @@ class Attack:
 
     name: str
     why: str
+    base: str = "03-circle-publisher"
+    """The step whose solution it is laid over, and whose exercise grades it."""
     points: float = -1.0
     """The exact points. If below 0, the points are not checked, because the node may be partly right."""
     most: float = 100.0
@@ -91,7 +93,7 @@ def _read(folder: Path) -> Attack:
 def make_attack(attack: Attack, to: Path) -> Path:
     """Write the package below the new folder `to`. Return its path."""
     package = to / "my_robot_controller"
-    copy_solution("03-circle-publisher", package)
+    copy_solution(attack.base, package)
     apply_edits(attack.edit, package, attack.name)
     files = FOLDER / attack.name / "files"
     if files.is_dir():

@@ -61,9 +61,11 @@ class Graded:
 
     @property
     def said(self) -> str:
-        """The output of the build and of the node."""
+        """The output of the build and of the node, or what the student's tests reported."""
         evidence = self.evidence
         log = evidence.build.log if evidence.build else ""
+        if evidence.run.bench is not None:
+            return log + "".join(run.message for run in evidence.run.bench.runs)
         if evidence.run.recording is None:
             return log
         return log + evidence.run.recording.stdout.text + evidence.run.recording.stderr.text
@@ -90,7 +92,7 @@ def run(attack: Attack, mode: str, folder: Path) -> Graded:
         script = f"cd my_robot_controller && {{ {raw}; }} 2>&1"
         return Graded(host.run(["sh", "-c", script], defended=False), host.work)
     wanted = ["--json", "report.json", "--html", "report.html", "--recording", "recording", "--clock", attack.clock]
-    check = [sys.executable, "-m", "grader.cli", "check", "my_robot_controller", "--exercise", EXERCISE, *wanted]
+    check = [sys.executable, "-m", "grader.cli", "check", "my_robot_controller", "--exercise", attack.base, *wanted]
     return Graded(host.run(check, defended=mode != "undefended"), host.work)
 
 

@@ -30,7 +30,7 @@ HONEST = (
     "mistakes/332-clockwise",
 )
 """The submissions of the honest students: our solution, or a case."""
-ATTACKS = read_attacks()
+ATTACKS = tuple(attack for attack in read_attacks() if attack.base == STEP)
 SAMPLE = tuple(attack for attack in ATTACKS if attack.sample)[:4]
 EACH = CLASS - len(HONEST)
 
