@@ -1,7 +1,7 @@
-"""The mistakes that `make test` grades: the fewest cases that together show everything that must be seen there.
+"""The mistakes that `make test` grades: few cases that together show everything that `make test` must show.
 
-Seen must be: each group of diagnoses in each exercise, and each diagnosis that no test of the checks expects. A test of
-the checks judges an invented recording, which takes milliseconds. A case takes one to three seconds, and ten or more if
+They show each group of diagnoses in each exercise, and each diagnosis that no test of the checks expects. A test of the
+checks judges an invented recording, which takes milliseconds. A case takes one to three seconds, and at least ten if
 wall time judges it.
 """
 
@@ -24,7 +24,7 @@ OF_BASES = "03-circle-publisher"
 WALL = re.compile(r"\btime\b|spin_once|sleep|thread|asyncio|datetime|subprocess")
 """Source code with one of these words is likely to be judged in wall time."""
 WALL_COST = 5
-"""A case in wall time must show so many times as much as another one, to be chosen instead of it."""
+"""A case in wall time is chosen only if it shows more than this many times as much as any other case."""
 
 
 def sample(cases: Sequence[Case]) -> frozenset[str]:

@@ -1,4 +1,4 @@
-"""What several test processes of one session need is made once: the first process makes it, the others wait for it."""
+"""Folders that several test processes of a session share: the first process makes them, and the others wait."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ def contents(case: Case, folder: Path) -> dict[str, list[str]]:
 
 
 def lines_of(path: Path) -> list[str]:
-    """The lines of a file. A file of a bag is one line, because a recording is made anew or not at all."""
+    """The lines of a file. A file of a bag counts as one line, because a learner records it again as a whole."""
     text = path.read_bytes().decode("latin-1")
     return [text] if path.suffix == ".mcap" or path.name == "metadata.yaml" else text.splitlines()
 

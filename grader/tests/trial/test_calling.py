@@ -1,4 +1,4 @@
-"""A function or a program of a student's is called in the cell, and can do no more than return its own numbers."""
+"""The cell calls a student's function or program. The call can only return its own numbers."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def tree_of(ros: Ros, path: str, source: str) -> bytes:
 
 
 def called(ros: Ros, source: str) -> list[Called]:
-    """What two calls of the function `f` in this module did."""
+    """Return what two calls of the function `f` in this module did."""
     tree = tree_of(ros, "python/module.py", source)
     output = calling.make_calls(
         ros, PACKAGE, tree, POINTS, {}, function=f"{PACKAGE}.module:f", in_cell=bubblewrap.usable()
