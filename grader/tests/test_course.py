@@ -48,9 +48,11 @@ def test_a_solution_passes_from_any_start(step: str, seed: int) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("step", ["02-discover-topics", pytest.param("07-challenges", marks=pytest.mark.exhaustive)])
+@pytest.mark.parametrize(
+    "step", ["02-discover-topics", "11-bags", pytest.param("07-challenges", marks=pytest.mark.exhaustive)]
+)
 def test_a_recording_is_judged_again(step: str, tmp_path: Path) -> None:
-    """One step has no package, and the other one has several trials."""
+    """One step has no package, one has no simulator, and one has several trials."""
     first, again, kept = tmp_path / "first.json", tmp_path / "again.json", tmp_path / "kept"
     assert grader("check", f"solutions/{step}", "--json", first, "--recording", kept).returncode == 0
     done = grader("regrade", kept, "--json", again)
