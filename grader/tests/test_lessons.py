@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import pexpect
 import pytest
 
+from grader.common.interpreter import interpreter
 from grader.ros.installation import environment, find_ros
 from grader.ros.underlay import with_turtlesim
 from grader.submission.answers_toml import read_answers
@@ -220,3 +221,19 @@ def test_the_thermometer_runs_on_the_real_rclpy(block: Block, tmp_path: Path) ->
         check=False,
     )
     assert (done.returncode, done.stdout) == (0, "thermometer 2000000000\n"), done.stderr
+
+
+def test_the_tests_of_the_kettle_pass(tmp_path: Path) -> None:
+    """The blocks of lesson 12 together are a file that pytest runs. A kettle that never switches off fails."""
+    shown = blocks((ROOT / "course/12-tests/lesson.md").read_text("utf-8"))
+    code = "\n\n".join(block.text for block in shown if (block.language, block.about) == ("python", "example"))
+    (tmp_path / "test_kettle.py").write_text(code, "utf-8")
+    (tmp_path / "test_broken.py").write_text(code.replace("self.degrees < 90.0", "True"), "utf-8")
+    ros = find_ros()
+    start = interpreter(
+        "-m", "pytest", "-q", python=str(ros.python), env=environment(ros, home=tmp_path), searches=True
+    )
+    env = {**start.env, "ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}
+    done = subprocess.run(start.argv, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=300, check=False)
+    assert "2 failed, 8 passed" in done.stdout, done.stdout
+    assert "test_kettle" not in done.stdout.partition("short test summary")[2]
