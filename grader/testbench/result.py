@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from grader.common.json_types import number, text, whole_or_none
+
 MOST_MESSAGE = 1500
 """The maximum length of a message of pytest (characters)."""
 
@@ -102,7 +104,24 @@ def runs_of(ended: tuple[Ended, ...]) -> tuple[NodeRun, ...]:
 
 def from_json(data: Any) -> BenchResult:  # noqa: ANN401 - JSON
     """Return the result in a recording. Raises KeyError, TypeError or ValueError for anything else."""
-    return BenchResult(tuple(NodeRun(**run) for run in data["runs"]), float(data["seconds"]))
+    return BenchResult(tuple(map(_run, data["runs"])), number(data["seconds"]))
+
+
+def _run(data: dict[str, Any]) -> NodeRun:
+    return NodeRun(
+        node=text(data["node"]),
+        exit_code=whole_or_none(data["exit_code"]),
+        over=data["over"] is True,
+        seconds=number(data["seconds"]),
+        collected=int(number(data["collected"])),
+        passed=int(number(data["passed"])),
+        skipped=int(number(data["skipped"])),
+        test=text(data["test"]),
+        outcome=text(data["outcome"]),
+        message=text(data["message"]),
+        file=text(data["file"]),
+        line=int(number(data["line"])),
+    )
 
 
 def _text(value: object) -> str:

@@ -38,8 +38,8 @@ _TYPES_AHEAD = (
 )
 _HEADER = struct.Struct("<i?dI")
 _MOST_REPORT = 64 * 1024
-_DUMPABLE = 4
-"""PR_SET_DUMPABLE of prctl(2). Processes of the same user cannot look into one that is not dumpable."""
+_DUMPABLE, _PARENT_DEATH = 4, 1
+"""PR_SET_DUMPABLE and PR_SET_PDEATHSIG of prctl(2). A run cannot look into a session that is not dumpable."""
 _GONE_S = 5.0
 
 
@@ -121,6 +121,8 @@ def _run_tests(order: dict[str, Any], source: bytes) -> NoReturn:
     code: int = 1
     try:
         ctypes.CDLL(None).prctl(_DUMPABLE, 1, 0, 0, 0)
+        # Without a cell, nothing else ends a run whose session is killed.
+        ctypes.CDLL(None).prctl(_PARENT_DEATH, signal.SIGKILL, 0, 0, 0)
         os.setpgid(0, 0)
         null = os.open(os.devnull, os.O_RDWR)
         for number in (0, 1, 2):

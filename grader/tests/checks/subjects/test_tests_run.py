@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from grader.checks.exercises import find_exercise
+from grader.checks.exercises import find_exercise, load_exercise
 from grader.checks.judge import judge
 from grader.checks.kind import NoParams
 from grader.checks.outcome import Status
 from grader.checks.subjects.tests_run import CATCHES, PASS
+from grader.errors import UsageError
 from grader.evidence.evidence import Evidence, Run
+from grader.evidence.recording_format import load, save
 from grader.report.html import html_page
 from grader.report.report import report_of
 from grader.report.scene import scene_of
@@ -20,6 +22,8 @@ from grader.testbench.result import BenchResult, Ended, NodeRun, run_of
 from grader.tests.checks import made
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from grader.checks.outcome import Finding
 
 TESTS = "test/test_wall_guard.py"
@@ -78,3 +82,19 @@ def test_a_report_about_tests_does_not_say_that_the_node_was_not_run() -> None:
     assert "The node was not run, so" not in html_page(evidence, report)
     assert scene_of(evidence).notice == "The tests need no turtle."
     assert report.clock_why == "Your tests were run 3 times."
+
+
+def test_a_recording_of_tests_is_judged_again(tmp_path: Path) -> None:
+    evidence = given(GOOD, GOOD, GOOD, dataclasses.replace(BAD, node="stop"))
+    save(tmp_path / "kept", evidence, "none", ())
+    again = load(tmp_path / "kept", load_exercise).evidence
+    assert again.bench == evidence.bench
+    assert judge(again) == judge(evidence)
+
+
+def test_a_damaged_recording_of_tests_is_refused(tmp_path: Path) -> None:
+    save(tmp_path / "kept", given(GOOD), "none", ())
+    file = tmp_path / "kept/trials/tests/tests.json"
+    file.write_text(file.read_text("utf-8").replace('"message": ""', '"message": 3'), "utf-8")
+    with pytest.raises(UsageError, match="cannot be read as a recording"):
+        load(tmp_path / "kept", load_exercise)
