@@ -73,6 +73,11 @@ def arc(evidence: Evidence, params: Arc) -> Finding:
 def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> Finding:
     trajectory = evidence.trajectory
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
+    if params.color is not None and _pieces(evidence, chosen) > 1:
+        color = ", ".join(map(str, params.color))
+        observed = f"The turtle drew with the colour {color}, then with another one, and then with the first one again."
+        text = "The node begins again after its last arc. The last state must be one in which it sends only zeros."
+        return failed(observed, expected, Cause("drives-on", text, evidence.place("publish")))
     points = np.append(np.flatnonzero(chosen)[0], np.flatnonzero(chosen) + 1)
     x, y = trajectory.x[points], trajectory.y[points]
     fitted = fit_circle(x, y)
@@ -100,18 +105,29 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
         Band.around(params.speed_m_s, params.speed_tolerance_m_s) if params.speed_m_s else Band(None, None),
     )
     near = near or wide.near(angle) or pace.near(speed)
-    if not wide.holds(angle) and params.color is not None and _goes_on(evidence, chosen):
-        text = "The pen must have this colour before the turtle moves: drive when the response has arrived."
-        cause = Cause("not-in-colour", text, evidence.place("publish"))
-        return failed("A part of this arc was drawn in another colour.", expected, cause, near_edge=near)
     if not wide.holds(angle):
-        text = "The angle is angular.z times the time: the number of calls of the timer times its period."
-        cause = Cause("wrong-angle", text, where)
-        return failed(f"This arc has an angle of {angle:.0f} degrees.", expected, cause, near_edge=near)
+        observed, cause = _other_angle(evidence, params, chosen, angle)
+        return failed(observed, expected, cause, near_edge=near)
     if not pace.holds(speed):
         cause = _not_followed(evidence, params) or Cause("wrong-speed", where=where)
         return failed(f"The turtle drove this arc at {speed:.2f} m/s.", expected, cause, near_edge=near)
     return passed(f"The turtle drove an arc of radius {fitted.radius:.2f} m.", near_edge=near)
+
+
+def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -> tuple[str, Cause]:
+    """Return what was seen of an arc with another angle (degrees), and its cause."""
+    too_long = angle > params.angle_deg
+    if too_long and np.flatnonzero(chosen)[-1] == len(chosen) - 1:
+        observed = f"This arc has an angle of {angle:.0f} degrees, and the turtle was still driving it at the end."
+        text = "The state does not change after the last call of this arc. From which value does the counter count?"
+        return observed, Cause("drives-on", text, evidence.place("publish"))
+    if not too_long and params.color is not None and _goes_on(evidence, chosen):
+        text = "The pen must have this colour before the turtle moves: drive when the response has arrived."
+        cause = Cause("not-in-colour", text, evidence.place("publish"))
+        return "A part of this arc was drawn in another colour.", cause
+    where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
+    text = "The angle is angular.z times the time: the number of calls of the timer times its period."
+    return f"This arc has an angle of {angle:.0f} degrees.", Cause("wrong-angle", text, where)
 
 
 def _not_followed(evidence: Evidence, params: Arc) -> Cause | None:
@@ -143,11 +159,19 @@ def _chosen(evidence: Evidence, params: Arc) -> Steps:
     return chosen & drawn
 
 
+def _pieces(evidence: Evidence, chosen: Steps) -> int:
+    """Return how many pieces of the trajectory these are. The turtle moves between two pieces, too."""
+    moves = evidence.trajectory.steps > RESTS_M
+    return int((np.diff(np.flatnonzero(chosen[moves])) > 1).sum()) + 1
+
+
 def _goes_on(evidence: Evidence, chosen: Steps) -> bool:
-    """Return whether the turtle moved in the frame before this piece, or in the one after it."""
-    moves, ends = evidence.trajectory.steps > RESTS_M, np.flatnonzero(chosen)
+    """Return whether the turtle drove this arc in the frame before this piece too, or in the one after it."""
+    trajectory, ends = evidence.trajectory, np.flatnonzero(chosen)
+    side = np.sign(np.median(trajectory.turn[chosen]))
+    same = (trajectory.steps > RESTS_M) & (np.sign(trajectory.turn) == side)
     before, after = int(ends[0]) - 1, int(ends[-1]) + 1
-    return (before >= 0 and bool(moves[before])) or (after < len(moves) and bool(moves[after]))
+    return (before >= 0 and bool(same[before])) or (after < len(same) and bool(same[after]))
 
 
 def _nothing(evidence: Evidence, params: Arc, expected: str) -> Finding:
