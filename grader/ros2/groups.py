@@ -33,6 +33,7 @@ GROUPS = {
     "bag": Group(
         "Various rosbag related sub-commands",
         {
+            "burst": "Burst data from a bag",
             "convert": "Given an input bag, write out a new bag with different settings",
             "info": "Print information about a bag to the screen",
             "play": "Play back ROS data from a bag",

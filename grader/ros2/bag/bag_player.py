@@ -37,7 +37,9 @@ class Player:
         chosen: list[Connection],
         rules: dict[str, str],
         args: argparse.Namespace,
+        burst: float = 0,
     ) -> None:
+        self._burst = burst
         self._reader = reader
         self._args = args
         self._log = Logger("rosbag2_player", args.log_level)
@@ -117,6 +119,9 @@ class Player:
 
     def _wait(self, key: Callable[[float], str], played: int, stamp: int) -> int:
         """Wait while the time of the recording advances from `played` to `stamp` (ns); return `stamp`."""
+        if self._burst > 0:
+            self._burst -= 1
+            return stamp
         while played < stamp or self._paused:
             begun = time.monotonic()
             left_s = _STEP_S if self._paused else min(_STEP_S, (stamp - played) / 1e9 / self._rate)

@@ -77,6 +77,15 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published here.
     """
+    return play(args)
+
+
+def play(args: argparse.Namespace, *, burst: float = 0) -> int:
+    """Play the bag with these options. The first `burst` messages are published without waiting, even if it is paused.
+
+    Raises:
+        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published here.
+    """
     rules = remapping(args.remap)
     from grader.graph.discovery import cli_node
     from grader.ros2.bag.bag_player import Player
@@ -84,7 +93,7 @@ def run(args: argparse.Namespace) -> int:
 
     with open_bag(args.bag_path) as reader, cli_node("rosbag2_player") as node:
         chosen = [one for one in reader.connections if wanted(args, one.topic)]
-        Player(node, reader, chosen, rules, args).run()
+        Player(node, reader, chosen, rules, args, burst).run()
     return 0
 
 

@@ -98,6 +98,18 @@ def test_a_bag_is_played_in_its_rhythm_to_another_topic(quiet: World) -> None:
     assert [line.split()[1] for line in listener.lines if "heard" in line] == [str(number) for number in range(50)]
 
 
+def test_a_burst_does_not_wait_and_pauses_after_so_many_messages(quiet: World) -> None:
+    record(quiet, count=30).stop()
+    listener = quiet.start("python3 listener.py", "listening")
+    burst = quiet.start("ros2 bag burst bag -n 10 --remap /count:=/heard", "Playback until")
+    listener.wait_for("heard", 10)
+    burst.stop(signal.SIGINT)
+    assert quiet.run("ros2 bag burst bag --remap /count:=/heard").code == 0
+    listener.wait_for("heard", 40)
+    heard = [line.split()[1] for line in listener.lines if "heard" in line]
+    assert heard == [str(number) for number in (*range(10), *range(30))]
+
+
 @pytest.mark.parametrize(("storage", "ending"), [("mcap", ".mcap"), ("sqlite3", ".db3")])
 def test_a_killed_recording_is_made_whole(quiet: World, storage: str, ending: str) -> None:
     recorder = record(quiet, f"-s {storage} /count")

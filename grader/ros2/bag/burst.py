@@ -1,0 +1,52 @@
+"""The verb `bag burst`: publish the messages of a bag as fast as possible, and then pause."""
+
+from __future__ import annotations
+
+import argparse
+import math
+
+from grader.ros2.bag.options import add_bag, add_log_level, not_negative
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments."""
+    add_bag(parser)
+    parser.add_argument("--read-ahead-queue-size", type=int, default=1000, help=argparse.SUPPRESS)
+    parser.add_argument("--topics", default=[], metavar="topic", nargs="+", help="publish only these topics")
+    parser.add_argument("--remap", "-m", default=[], nargs="+", help="publish on other topics: /old:=/new")
+    parser.add_argument(
+        "--start-offset", type=not_negative, default=0.0, help="leave out the first seconds of the recording"
+    )
+    parser.add_argument(
+        "-n",
+        "--num-messages",
+        type=not_negative,
+        default=0,
+        help="pause after so many messages; SPACE goes on (default: 0, all messages)",
+    )
+    add_log_level(parser)
+    # What `bag play` lets its user choose.
+    parser.set_defaults(
+        rate=1.0,
+        regex="",
+        exclude_regex="",
+        exclude_topics=[],
+        loop=False,
+        clock=0.0,
+        delay=0.0,
+        playback_duration=-1.0,
+        playback_until_sec=-1.0,
+        disable_keyboard_controls=False,
+        start_paused=True,
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Publish the messages, until the end of the bag or Ctrl-C.
+
+    Raises:
+        Ros2Error: the path is not a bag, the bag is damaged, or none of its topics can be published here.
+    """
+    from grader.ros2.bag.play import play
+
+    return play(args, burst=args.num_messages or math.inf)
