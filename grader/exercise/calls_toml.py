@@ -5,9 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from grader.common.words import shorten
 from grader.exercise.call_inputs import Arc, BagInput, CallsSpec, PointsInput
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from grader.exercise.model import CheckSpec, TrialSpec
     from grader.exercise.tables import Table
 
 ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
@@ -31,6 +35,17 @@ def read_calls(table: Table) -> CallsSpec:
     for id_ in sorted({each for each in ids if ids.count(each) > 1}):
         table.problem(f'the id "{id_}" is used twice; each call needs one of its own.')
     return calls
+
+
+def unknown_calls(trials: Sequence[TrialSpec], checks: Sequence[CheckSpec]) -> Iterator[str]:
+    """Yield one sentence for each check that names a call which its trial does not have."""
+    calls = {trial.id: trial.calls.ids for trial in trials}
+    for check in checks:
+        wanted = check.params.get("call")
+        known = calls.get(check.trial, ())
+        if wanted is not None and wanted not in known:
+            has = f"the calls {', '.join(known)}" if known else "no calls"
+            yield f'[[check]] ({check.id}): "call" is "{shorten(str(wanted))}"; the trial {check.trial} has {has}.'
 
 
 def _points(table: Table) -> PointsInput:

@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any
 
 from grader.common.words import nearest, shorten
 from grader.errors import UsageError
+from grader.exercise.calls_toml import unknown_calls
 from grader.exercise.kind_spec import Allowed
 from grader.exercise.model import CheckSpec, Exercise, Hint
 from grader.exercise.own_numbers import NumbersSpec, Own
@@ -96,6 +97,8 @@ def _read(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) 
     numbers = _numbers(top.table("numbers"), id_) if "numbers" in top.values else None
     trials = read_trials(top, package)
     checks = _checks(top, tuple(trial.id for trial in trials), kinds, numbers)
+    for problem in unknown_calls(trials, checks):
+        top.problem(problem)
     exercise = Exercise(
         id=id_,
         title=head.string("title"),
