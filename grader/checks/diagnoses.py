@@ -22,6 +22,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "node-name-invalid": "the node name contains characters that are not allowed",
         "topic-name-invalid": "the topic name contains characters or slashes that are not allowed",
         "parameter-undeclared": "a parameter is read before it is declared",
+        "parameter-itself": "a parameter is used where its value is needed",
         "timer-period-negative": "the period of a timer is negative",
         "no-init": "rclpy.init is not called",
         "init-twice": "rclpy.init is called twice",

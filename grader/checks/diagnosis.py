@@ -14,6 +14,7 @@ Diagnosis = Literal[
     "node-name-invalid",
     "topic-name-invalid",
     "parameter-undeclared",
+    "parameter-itself",
     "timer-period-negative",
     "no-init",
     "init-twice",

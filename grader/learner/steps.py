@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from grader.checks.exercises import exercise_of_folder, find_exercise
 from grader.checks.kinds import KINDS
-from grader.common.words import count
+from grader.common.words import a_list, count
 from grader.errors import GraderError, UsageError
 from grader.exercise.model import catalogue
 from grader.learner import progress, workspace
@@ -70,6 +70,7 @@ def begin_message(begun: Begun) -> str:
         lines.append(f"Left as {'it is' if len(started.present) == 1 else 'they are'}: {', '.join(started.present)}.")
     for path, lacking in started.lacking.items():
         lines += [f"This step needs more lines in {path}. Add to yours:", *(f"    {line}" for line in lacking)]
+    lines += [f"To do in {path}: {task}" for path, tasks in started.tasks.items() for task in tasks]
     lesson = begun.exercise.folder / "lesson.md"
     lines += [
         "",
@@ -112,12 +113,13 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
         return ""
     if all(known.step(name).passed for name in catalogue()):
         return "That was the last step. You have passed all of them."
+    waiting = _waiting(known)
     part = next((title for title, names in parts().items() if exercise.id == names[-1]), "")
     lines = [f"That was the last step of {part.lower()}."] if part else []
     return "\n".join(
         [
             *lines,
-            "The next step: grader start next",
+            "The next step: grader start next" if waiting else _open_steps(known),
             f'Our solution, beside yours, and answers to "To think about": grader solution {exercise.id[:2]}',
         ]
     )
@@ -178,13 +180,12 @@ def print_status(folder: Path | None, console: Console) -> None:
     elif passed == len(catalogue()):
         console.print("You have finished the course.")
     elif known.step(known.current).passed:
-        console.print("Continue with: grader start next")
+        console.print("Continue with: grader start next" if _waiting(known) else _open_steps(known), soft_wrap=True)
 
 
 def _next(known: progress.Progress) -> Exercise:
-    names = list(catalogue())
-    if known.current is None or known.current not in names:
-        return find_exercise(names[0])
+    if known.current is None or known.current not in catalogue():
+        return find_exercise(next(iter(catalogue())))
     if not known.step(known.current).passed:
         message = (
             f"{known.current} has not passed yet: `grader check` shows what is missing, and `grader hint` helps. To "
@@ -192,12 +193,23 @@ def _next(known: progress.Progress) -> Exercise:
             "it for now, name another step, as in `grader start 04`."
         )
         raise UsageError(message)
-    later = names[names.index(known.current) + 1 :]
-    waiting = [name for name in later if not known.step(name).passed] or later
+    waiting = _waiting(known)
     if not waiting:
-        message = (
-            f"{known.current} was the last step, and it has passed. You have finished the course. `grader status` "
-            "shows all steps."
-        )
-        raise UsageError(message)
+        raise UsageError(_open_steps(known))
     return find_exercise(waiting[0])
+
+
+def _waiting(known: progress.Progress) -> list[str]:
+    """Return the steps after the current one that have not passed yet; all of them if they have all passed."""
+    names = list(catalogue())
+    later = names[names.index(known.current or names[0]) + 1 :]
+    return [name for name in later if not known.step(name).passed] or later
+
+
+def _open_steps(known: progress.Progress) -> str:
+    """Say after the last step which ones have not passed yet."""
+    missing = [name for name in catalogue() if not known.step(name).passed]
+    if not missing:
+        return f"{known.current} was the last step. You have finished the course. `grader status` shows all steps."
+    names = a_list([name[:2] for name in missing])
+    return f"This was the last step. Not passed yet: {names}. Go on with `grader start {missing[0][:2]}`."

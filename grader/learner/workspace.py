@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,7 @@ APART = "apart"
 """The folder in a workspace that holds other workspaces, which colcon must not build with it."""
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
 """Package files that need new lines from step to step, although the steps are about something else."""
+_TASK = re.compile(r"(?:#|<!--)\s*(TODO \d+: .+?)\s*(?:-->)?$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,8 @@ class Started:
     """What `start` did; the paths of files are relative to `folder`.
 
     `kept` is the folder to which older work was moved (with --fresh). `lacking` maps each package file that was left
-    unchanged to the lines of the step's version that it does not have.
+    unchanged to the lines of the step's version that it does not have, and `tasks` to its tasks (TODO 1: ...),
+    if the step is new to the folder.
     """
 
     folder: Path
@@ -38,6 +41,7 @@ class Started:
     present: tuple[str, ...]
     kept: Path | None = None
     lacking: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    tasks: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def starting_point(exercise: Exercise) -> Path:
@@ -96,14 +100,16 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
         own = exercise.numbers
         numbers = {own.file: to_toml(draw_numbers(own, student)).encode()} if own is not None else {}
         added, present = add_missing(source, folder, numbers)
-        lacking = {path: _lacking(source / path, folder / path) for path in present if path in _PACKAGE_FILES}
+        changed = [path for path in present if path in _PACKAGE_FILES]
+        lacking = {path: lines for path in changed if (lines := _lacking(source / path, folder / path))}
+        tasks = {path: lines for path in changed if added and (lines := _tasks(source / path, folder / path))}
     except (FileExistsError, NotADirectoryError) as error:
         message = f"{error.filename} is a file, but a folder is needed. Name another workspace with --workspace."
         raise UsageError(message) from error
     except OSError as error:
         message = f"{error.filename or folder} could not be written: {error.strerror}."
         raise MachineError(message) from error
-    return Started(folder, added, present, kept, {path: lines for path, lines in lacking.items() if lines})
+    return Started(folder, added, present, kept, lacking, tasks)
 
 
 def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -144,6 +150,13 @@ def _lacking(theirs: Path, mine: Path) -> tuple[str, ...]:
     known = plain(mine.read_text(encoding="utf-8", errors="replace"))
     lines = (line.strip() for line in theirs.read_text(encoding="utf-8").splitlines())
     return tuple(line for line in lines if not line.startswith(("#", "<!--")) and plain(line) not in known)
+
+
+def _tasks(theirs: Path, mine: Path) -> tuple[str, ...]:
+    """Return the tasks in the comments of the step's file, unless the learner's file has the same one."""
+    known = mine.read_text(encoding="utf-8", errors="replace")
+    tasks = (task.strip() for task in _TASK.findall(theirs.read_text(encoding="utf-8")))
+    return tuple(task for task in tasks if task not in known)
 
 
 def _ignored(folder: Path) -> Path:

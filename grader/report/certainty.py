@@ -21,6 +21,7 @@ OF_EXCEPTIONS = frozenset(
         "node-name-invalid",
         "topic-name-invalid",
         "parameter-undeclared",
+        "parameter-itself",
         "timer-period-negative",
         "init-twice",
     }

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grader.checks.cause import Cause
 from grader.checks.causes import ros_names
 from grader.checks.causes.crash_scene import attributes_set, methods
+from grader.checks.causes.why_parameters import too_few, too_many
 from grader.checks.edit import at
 from grader.common.words import a_list, shorten
 from grader.submission.constants import dotted
@@ -129,6 +130,8 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
         return _with_init(scene) or _after_shutdown(scene)
     if "rclpy_resolve_name(): incompatible" in text:
         return Cause("crash", "A topic name must be a string in quotation marks, or a variable that holds a string.")
+    if "'Parameter'" in text:
+        return Cause("parameter-itself", "get_parameter returns the parameter itself. Its content is in .value.")
     if "Expected QoSProfile or int" in text:
         return Cause("queue-size", "The last argument is the queue size, a whole number.")
     return None
@@ -157,18 +160,9 @@ def _after_shutdown(scene: CrashScene) -> Cause | None:
 def _too_few(scene: CrashScene, function: str, names: str) -> Cause:
     if function == "__init__" and "node_name" in names:
         return _init_misspelt(scene) or Cause("node-name-missing", "Pass the node name, a string, to super().__init__.")
-    own = scene.functions(function)
-    if own and not any(own[0] in methods(each) for each in scene.classes):
-        text = (
-            f"{function} is called without a value for {shorten(names)}. A parameter with a default value needs none."
-        )
-        return Cause("argument-missing", text, scene.at(own[0]))
-    if own:
-        text = (
-            f"Nothing is passed for {shorten(names)}. "
-            "A timer calls its callback without arguments; a subscription passes the message."
-        )
-        return Cause("callback-parameters", text, scene.at(own[0]))
+    own = too_few(scene, function, names)
+    if own is not None:
+        return own
     if function in TAKES:
         return Cause("argument-missing", f"{function} takes {TAKES[function]}.")
     return Cause("argument-missing", f"{function} needs more arguments: {shorten(names)}.")
@@ -190,19 +184,9 @@ def _init_misspelt(scene: CrashScene) -> Cause | None:
 
 
 def _too_many(scene: CrashScene, function: str) -> Cause | None:
-    own = scene.functions(function)
-    if own:
-        first = [each.arg for each in (*own[0].args.posonlyargs, *own[0].args.args)][:1]
-        inside = any(own[0] in methods(each) for each in scene.classes)
-        if inside and first != ["self"]:
-            place, more = scene.at(own[0]), ", " if first else ""
-            fix = at(place, f"{function}(", f"{function}(self{more}")
-            return Cause(
-                "self-parameter", f"{function} is a method, so its first parameter must be self.", place
-            ).fixed_by(fix)
-        text = f"{function} is called with an argument but has no parameter for it. A subscription passes the message."
-        place = scene.at(own[0])
-        return Cause("callback-parameters", text, place).fixed_by(at(place, "(self)", "(self, _)"))
+    own = too_many(scene, function)
+    if own is not None:
+        return own
     if function in ros_names.OTHERS["RcutilsLogger"]:
         return Cause(
             "log-arguments",

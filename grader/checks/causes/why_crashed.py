@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -14,6 +15,7 @@ from grader.checks.causes.why_interface import why_interface
 from grader.checks.causes.why_names import why_no_name, why_unbound
 from grader.checks.causes.why_response import why_response
 from grader.checks.outcome import Finding, failed
+from grader.common.words import a_list, shorten
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,6 +43,15 @@ def _why_no_topic(scene: CrashScene) -> Cause:
     return Cause("topic-name-invalid", next(rules, scene.crash.meaning))
 
 
+def _why_undeclared(scene: CrashScene) -> Cause:
+    calls = scene.evidence.code.calls("declare_parameter")
+    names = [
+        call.node.args[0].value for call in calls if call.node.args and isinstance(call.node.args[0], ast.Constant)
+    ]
+    declared = f" Declared here: {a_list([shorten(str(name)) for name in names])}." if names else ""
+    return Cause("parameter-undeclared", f"{scene.crash.meaning}{declared}")
+
+
 EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "AssertionError": why_field,
     "AttributeError": why_no_attribute,
@@ -51,7 +62,7 @@ EXPLANATIONS: dict[str, Callable[[CrashScene], Cause | None]] = {
     "ModuleNotFoundError": why_no_import,
     "NameError": why_no_name,
     "NotInitializedException": _always("no-init"),
-    "ParameterNotDeclaredException": _always("parameter-undeclared"),
+    "ParameterNotDeclaredException": _why_undeclared,
     "RCLError": why_refused,
     "RuntimeError": why_refused,
     "TypeError": why_type,

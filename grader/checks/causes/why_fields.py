@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from grader.checks.edit import Edit
 
 FIELD = re.compile(r"The '(?P<field>\w+)' field must be (?:of|a sub message of) type '(?P<type>\w+)'")
+LIST = re.compile(r"The '(?P<field>\w+)' field must be a set or sequence")
 FLOAT = ("float", "double")
 READS = ("input", "get", "str", "format", "getenv")
 """Functions that return a string."""
@@ -24,6 +25,10 @@ def why_field(scene: CrashScene) -> Cause | None:
     """Return the cause of a wrong value, such as an int, a string or a NumPy number in a float field."""
     match = FIELD.search(scene.crash.message)
     if match is None:
+        many = LIST.search(scene.crash.message)
+        if many is not None:
+            text = f"The field {many['field']} is a list, also with one element: write it in square brackets."
+            return Cause("field-type", text)
         if "Invalid arguments passed to constructor" in scene.crash.message:
             return Cause("message-arguments", "Create the message without arguments, then set its fields one by one.")
         return None

@@ -32,4 +32,13 @@ def why_response(scene: CrashScene) -> Cause | None:
         if scene.crash.error == "TypeError" and not scene.crash.message and not returns:
             text = f"{method.name} returns nothing. The callback of a service must return its response."
             return Cause("response-not-returned", text, where)
+        if scene.crash.error == "TypeError" and (wrong := _returned_instead(method)):
+            text = f"{method.name} returns {wrong}. The callback of a service must return its response."
+            return Cause("response-not-returned", text, where)
     return None
+
+
+def _returned_instead(method: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
+    """Return the first constant that the method returns, or an empty string."""
+    returned = (node.value for node in ast.walk(method) if isinstance(node, ast.Return))
+    return next((repr(value.value) for value in returned if isinstance(value, ast.Constant)), "")

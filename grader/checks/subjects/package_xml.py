@@ -153,7 +153,7 @@ def _why_not_declared(
     if name in imported:
         cause = f"{imported[name]} imports it. {cause}"
     elif imported:
-        cause = f"Your code does not import it, but your node needs its programs. {cause}"
+        cause = f"Your code does not import it, but the task needs it. {cause}"
     return Cause("missing-depend", cause, where)
 
 

@@ -172,9 +172,9 @@ def _same(given: object, wanted: object) -> bool:
 
 
 def _value(value: object) -> str:
-    if isinstance(value, bool) or value is None:
+    if isinstance(value, int) or value is None:
         return str(value)
-    return shown(round(value, 3)) if isinstance(value, int | float) else f'"{shorten(str(value))}"'
+    return shown(round(value, 3)) if isinstance(value, float) else f'"{shorten(str(value))}"'
 
 
 CALLS = Kind(

@@ -140,11 +140,24 @@ def test_next_waits_until_the_step_has_passed(home: Path) -> None:
 
 
 def test_there_is_no_next_step_after_the_last_one() -> None:
-    last = list(catalogue())[-1]
+    *others, last = catalogue()
     steps.start(last, None)
     passed(last)
+    with pytest.raises(UsageError, match=r"Not passed yet: 01, 02.* Go on with `grader start 01`"):
+        steps.start("next", None)
+    for name in others:
+        passed(name)
     with pytest.raises(UsageError, match="You have finished the course"):
         steps.start("next", None)
+
+
+def test_start_names_the_tasks_in_package_files_that_stay_as_they_are() -> None:
+    steps.start("07", None)
+    begun = steps.start("08", None)
+    text = steps.begin_message(begun)
+    assert "To do in setup.py: TODO 1: add the entry points two_pens and pausable_circle.\n" in text
+    assert "To do in package.xml: TODO 2: which package has the type SetBool?\n" in text
+    assert "TODO" not in steps.begin_message(steps.start("08", None))
 
 
 def test_a_failure_in_the_folder_that_a_lesson_names_points_to_the_workspace(home: Path) -> None:

@@ -1,0 +1,70 @@
+"""Why a call had too few or too many arguments for a function of the student's own."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from grader.checks.cause import Cause
+from grader.checks.causes.crash_scene import methods
+from grader.checks.causes.why_rate import callbacks_of
+from grader.checks.edit import at
+from grader.common.words import shorten
+
+if TYPE_CHECKING:
+    from grader.checks.causes.crash_scene import CrashScene
+
+PASSED = {
+    "create_timer": "A timer calls its callback without arguments.",
+    "create_subscription": "A subscription passes the message to its callback.",
+    "create_service": "A service passes the request and the response to its callback.",
+    "add_done_callback": "A future passes itself to its callback.",
+    "add_on_set_parameters_callback": "The callback for parameters gets the list of new parameters.",
+}
+"""A method that takes a callback -> what the callback gets."""
+IN_GENERAL = "A timer calls its callback without arguments; a subscription passes the message."
+
+
+def too_few(scene: CrashScene, function: str, names: str) -> Cause | None:
+    """Return the cause if a function of the student's own was called without a value for `names`, else None."""
+    own = scene.functions(function)
+    if not own:
+        return None
+    inside = any(own[0] in methods(each) for each in scene.classes)
+    if not inside:
+        text = (
+            f"{function} is called without a value for {shorten(names)}. A parameter with a default value needs none."
+        )
+        return Cause("argument-missing", text, scene.at(own[0]))
+    called = next(iter(scene.calls_on_line(function)), None)
+    if called is not None:
+        text = f"{function} is called here without a value for {shorten(names)}."
+        if any(called in node.args for node in scene.on_line if isinstance(node, ast.Call)):
+            text = (
+                f"With () after its name, {function} is called immediately. To pass the method itself, write its name."
+            )
+        return Cause("callback-called", text, scene.at(called))
+    text = f"Nothing is passed for {shorten(names)}. {_passed(scene, function)}"
+    return Cause("callback-parameters", text, scene.at(own[0]))
+
+
+def too_many(scene: CrashScene, function: str) -> Cause | None:
+    """Return the cause if a function of the student's own was called with more than it takes, else None."""
+    own = scene.functions(function)
+    if not own:
+        return None
+    first = [each.arg for each in (*own[0].args.posonlyargs, *own[0].args.args)][:1]
+    inside = any(own[0] in methods(each) for each in scene.classes)
+    place = scene.at(own[0])
+    if inside and first != ["self"]:
+        fix = at(place, f"{function}(", f"{function}(self{', ' if first else ''}")
+        text = f"{function} is a method, so its first parameter must be self."
+        return Cause("self-parameter", text, place).fixed_by(fix)
+    passed = _passed(scene, function) if not scene.calls_on_line(function) else ""
+    text = f"{function} is called with an argument but has no parameter for it. {passed}".rstrip()
+    return Cause("callback-parameters", text, place).fixed_by(at(place, "(self)", "(self, _)"))
+
+
+def _passed(scene: CrashScene, function: str) -> str:
+    makers = [maker for maker in PASSED if any(name == function for _, name in callbacks_of(scene.evidence, maker))]
+    return PASSED[makers[0]] if len(makers) == 1 else IN_GENERAL
