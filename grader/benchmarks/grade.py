@@ -76,7 +76,7 @@ def main() -> None:
         bare = _bare(folder, arguments.times)
         rows = []
         for size in sizes:
-            rows.append((f"{size} here", _local(folder, size, arguments.jobs, arguments.mix)))
+            rows.append((f"{size} here", class_cost(folder, size, arguments.jobs, arguments.mix)))
             _say(rows[-1])
         for amount in workers:
             rows.append(
@@ -96,7 +96,8 @@ def _bare(folder: Path, times: int) -> list[float]:
     return found
 
 
-def _local(folder: Path, size: int, jobs: int | None, mix: str) -> ClassCost:
+def class_cost(folder: Path, size: int, jobs: int | None, mix: str) -> ClassCost:
+    """Grade a class on this machine, below a folder. `mix` is "right" or "all", as in the option."""
     submitted = _class(folder / f"class-{size}", size, mix)
     options = ["--jobs", str(jobs)] if jobs else []
     return _graded(submitted, size, folder / f"grades-{size}", options)

@@ -64,17 +64,24 @@ def main() -> None:
 def _making(submission: Path, folder: Path, times: int) -> None:
     recording = folder / "recording"
     cost([_GRADER, "check", str(submission), "--recording", str(recording), "--json", str(folder / "report.json")])
-    bare, pages, size = [], [], "0"
+    bare, pages, size_kb = [], [], 0.0
     for number in range(times):
         home = folder / f"bare{number}"
         home.mkdir()
         bare.append(sum(each.wall_s for each in bare_costs(submission, home).values()))
-        argv = interpreter("-c", _PAGE, str(recording), str(folder / "page.html")).argv
-        seconds, size = subprocess.run(argv, check=True, capture_output=True, text=True).stdout.split()
-        pages.append(float(seconds))
+        seconds, size_kb = page_cost(recording, folder / "page.html")
+        pages.append(seconds)
     f_s, page_s = statistics.median(bare), statistics.median(pages)
     print(f"F = {f_s:.2f} s wall (medians of {times})")
-    print(f"making a page       {page_s:6.3f} s = {page_s / f_s:.2f} F   ({int(size) / 1024:.0f} KB)")
+    print(f"making a page       {page_s:6.3f} s = {page_s / f_s:.2f} F   ({size_kb:.0f} KB)")
+
+
+def page_cost(recording: Path, page: Path) -> tuple[float, float]:
+    """Write the page of a recording. Return how long that took (s), and the size of the page (KB)."""
+    start = interpreter("-c", _PAGE, str(recording), str(page))
+    done = subprocess.run(start.argv, check=True, capture_output=True, text=True)
+    seconds, size = done.stdout.split()
+    return float(seconds), int(size) / 1024
 
 
 def _showing(folder: Path, times: int) -> None:

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.benchmarks.cpu_group import cpu_group
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
@@ -31,29 +33,37 @@ class Cost:
 def cost(argv: Sequence[str], *, env: Mapping[str, str] | None = None, cwd: Path | None = None) -> Cost:
     """Run a command until it exits, and return its cost.
 
-    Raises: RuntimeError: the command failed.
+    Where we may not make a control group, the CPU time lacks that of processes in cells for which nobody waited.
+
+    Raises:
+        RuntimeError: the command failed.
     """
     # Adopt orphaned processes, so that the processes that a sandbox leaves are counted too.
     ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    begun = time.monotonic()
-    with subprocess.Popen(argv, env=env, cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as child:
-        peak_mb = 0.0
-        while child.poll() is None:
-            peak_mb = max(peak_mb, _peak_mb(child.pid))
-            time.sleep(0.02)
-        wall_s = time.monotonic() - begun
-        assert child.stdout is not None
-        output = child.stdout.read()
-    with suppress(ChildProcessError):
-        while True:
-            os.waitpid(-1, 0)
+    with cpu_group() as group:
+        begun = time.monotonic()
+        with subprocess.Popen(
+            group.joined(argv), env=env, cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        ) as child:
+            peak_mb = 0.0
+            while child.poll() is None:
+                peak_mb = max(peak_mb, _peak_mb(child.pid))
+                time.sleep(0.02)
+            wall_s = time.monotonic() - begun
+            assert child.stdout is not None
+            output = child.stdout.read()
+        with suppress(ChildProcessError):
+            while True:
+                os.waitpid(-1, 0)
+        group.wait()
+        counted_s = group.cpu_s()
     if child.returncode != 0:
         message = f"{' '.join(argv)} ended with {child.returncode}:\n{output}"
         raise RuntimeError(message)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return Cost(wall_s, cpu_s, peak_mb)
+    waited_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return Cost(wall_s, waited_s if counted_s is None else counted_s, peak_mb)
 
 
 def median(run: Callable[[], Cost], times: int) -> Cost:

@@ -92,6 +92,16 @@ def hand_in(root: Path, students: int) -> None:
         (folder.parent / node).write_text(f"# {number}\n{solution}")
 
 
+def sync_s(root: Path, students: int) -> float:
+    """Make a class in an empty folder, and autograde its notebooks. Return the seconds of gradebook sync after that."""
+    make_class(root, None)
+    nbgrader(root, "generate_assignment", STEP)
+    hand_in(root, students)
+    nbgrader(root, "autograde", STEP)
+    sync = [str(Path(sys.prefix, "bin", "grader")), "gradebook", "sync", "--course", str(root / "course")]
+    return seconds(sync, root)
+
+
 def main() -> None:
     """Measure everything and print a table."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])

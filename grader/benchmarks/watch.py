@@ -42,7 +42,7 @@ def main() -> None:
     for _ in range(arguments.times):
         with tempfile.TemporaryDirectory() as folder:
             package = Path(shutil.copytree(arguments.submission, Path(folder) / "home" / arguments.submission.name))
-            saves.append(_save_s(package, arguments.exercise, package / arguments.file))
+            saves.append(seconds_to_verdict(package, arguments.exercise, package / arguments.file))
             # Measure F only now, because this waits until all children of this process exit.
             scratch = Path(folder) / "bare"
             scratch.mkdir()
@@ -52,7 +52,7 @@ def main() -> None:
     print(f"save to verdict {save_s:.2f} s = {save_s / f_s:.2f} F, worst {max(saves) / f_s:.2f} F")
 
 
-def _save_s(package: Path, exercise: str, file: Path) -> float:
+def seconds_to_verdict(package: Path, exercise: str, file: Path) -> float:
     """Watch the package, save the file with a new comment, and return the seconds from save to verdict."""
     env = {
         **os.environ,

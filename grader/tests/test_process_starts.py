@@ -38,7 +38,6 @@ OTHERS = {
     ("node_test", "why_not_heard"): "sh, with what _talker_and_listener made",
     ("grade", "_alone"): "our command grader",
     ("grade", "start"): "made by the door in the same function",
-    ("html", "_making"): "made by the door in the same function",
     ("kernel", "_source_and_start_again"): "bash, which sources a ROS 2 and becomes what the door made",
     ("in_cell", "__init__"): "this process again, in its cell",
     ("in_cell", "_next_run"): "this process again, in its cell, as a run of setup.py",
@@ -65,7 +64,7 @@ OTHERS = {
     ("startup", "hand_over"): "the real ros2, for the user",
     ("trial", "_start"): "made by the door in the same function, in bubblewrap",
     ("underlay", "_run"): "cmake and what the door made, in a folder of our own",
-    ("watch", "_save_s"): "our command grader",
+    ("watch", "seconds_to_verdict"): "our command grader",
 }
 """Functions that do not start the `argv` of interpreter(), and what they start."""
 NAMED = {
