@@ -39,11 +39,6 @@ class Brain:
         self._node = node
         self._states: list[_State] = []
 
-    @property
-    def used(self) -> bool:
-        """Whether a node was created."""
-        return bool(self._states)
-
     def create(self) -> dict[str, Any]:
         """Return the description of a new node."""
         if len(self._states) < MOST_NODES:

@@ -1,8 +1,9 @@
 """Run a student's tests in a cell, again and again: pytest and rclpy are imported once, and each run is a fork.
 
 This file runs as a script of its own. It reads one line of JSON and the files of the package (a tar stream) from
-standard input, then one byte per run. After each run it writes to standard output: the exit code of pytest, whether the
-time was over, the seconds, the size of the report, and the report. It does not know which node a run gets.
+standard input, then one byte per run. It writes to standard output: READY as soon as it can run tests, and after each
+run the exit code of pytest, whether the time was over, the seconds, the size of the report, and the report. It does not
+know which node a run gets.
 
 Between two runs, it ends all processes of the cell and empties its disks. So a run finds nothing of an earlier one.
 """
@@ -37,6 +38,8 @@ _TYPES_AHEAD = (
     *(("rosgraph_msgs.msg", "Clock"), ("rcl_interfaces.msg", "ParameterEvent")),
 )
 _HEADER = struct.Struct("<i?dI")
+READY = b"ready\n"
+"""The session writes this before any of the student's code runs, so what fails later is not the machine's fault."""
 _MOST_REPORT = 64 * 1024
 _DUMPABLE, _PARENT_DEATH = 4, 1
 """PR_SET_DUMPABLE and PR_SET_PDEATHSIG of prctl(2). A run cannot look into a session that is not dumpable."""
@@ -89,6 +92,7 @@ def main() -> None:
     disks = [_Disk(Path(folder)) for folder in order["disks"]]
     ctypes.CDLL(None).prctl(_DUMPABLE, 0, 0, 0, 0)
     gc.freeze()
+    os.write(1, READY)
     while orders.read(1):
         _empty_pipe(order["answers"])
         begun = time.monotonic()

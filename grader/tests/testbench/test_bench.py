@@ -157,8 +157,9 @@ os.kill(os.getppid(), signal.SIGKILL)
 """
 
 
-def test_who_kills_the_session_is_rejected(files: dict[str, bytes]) -> None:
-    runs = run(spec("rate"), {**files, TESTS: KILLS.encode()})
+@pytest.mark.parametrize("code", [KILLS, "import os\nos.kill(os.getppid(), 9)\n"], ids=["with a node", "at once"])
+def test_who_kills_the_session_is_rejected(files: dict[str, bytes], code: str) -> None:
+    runs = run(spec("rate"), {**files, TESTS: code.encode()})
     assert not any(each.accepted for each in runs)
 
 
