@@ -100,7 +100,7 @@ def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Findi
     late = any(each.ended == TOO_LATE for each in evidence.run.called or ())
     if not late or called.ended not in (TOO_LATE, ""):
         return None
-    observed = f"{name} was still busy after 5 s."
+    observed = f"{name} did not end in time (5 s of computing)."
     if not called.ended:
         observed = f"{name} was not called with this any more, because an earlier call did not end."
     cause = "A loop may never end, or it waits for something that never comes."

@@ -77,10 +77,14 @@ def test_a_call_that_does_not_end_is_stopped_and_the_others_are_not_made(
     ros: Ros, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     script = tmp_path / "cell_calls.py"
-    script.write_text(calling._SCRIPT.read_text("utf-8").replace("CALL_S = 5.0", "CALL_S = 0.5"), "utf-8")
+    script.write_text(
+        calling._SCRIPT.read_text("utf-8").replace("CPU_S = 5", "CPU_S = 1").replace("CALL_S = 20.0", "CALL_S = 3.0"),
+        "utf-8",
+    )
     monkeypatch.setattr(calling, "_SCRIPT", script)
-    first, second = called(ros, "def f(x, y):\n    while True:\n        pass\n")
-    assert (first.ended, second.ended) == (TOO_LATE, "")
+    for body in ("while True: pass", "import time; time.sleep(1000)"):
+        first, second = called(ros, f"def f(x, y):\n    {body}\n")
+        assert (first.ended, second.ended) == (TOO_LATE, ""), body
 
 
 @pytest.mark.parametrize(
