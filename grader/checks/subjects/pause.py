@@ -71,7 +71,7 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
             "The commands still drive during the pause: while the node is paused, publish a command with all values 0."
         )
         return failed(observed, expected, Cause("pause-ignored", text, where), near_edge=near_edge)
-    observed = f"The turtle stood still only {stop_s:.1f} s after the call."
+    observed = f"The turtle took {stop_s:.1f} s to stop after the call."
     text = "Without a new command, a turtle goes on for a second. While the node is paused, publish zeros."
     return failed(observed, expected, Cause("no-stop-command", text, where), near_edge=near_edge)
 
