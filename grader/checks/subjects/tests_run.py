@@ -45,8 +45,9 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
         if any(run.passed for run in runs):
             return passed(f"All tests pass on the right node ({count(len(runs), 'run')}).")
         where = code.tests[0].where if code.tests else None
-        cause = Cause("all-skipped", "A skipped test tests nothing.", where)
-        return failed("No test ran: every one was skipped.", expected, cause)
+        skipped = any(run.skipped for run in runs)
+        why = "Every test is skipped, and a skipped test tests nothing." if skipped else LEFT_OUT
+        return failed("No test ran to its end.", expected, Cause("all-skipped", why, where))
     if not rejected:
         hung = next((run for run in evidence.bench.runs if run.over), None)
         return _hung(expected, code, hung)
@@ -57,6 +58,7 @@ def pass_(evidence: Evidence, _: NoParams) -> Finding:
     return failed(_observed(rejected[0]), expected, why_rejected(rejected[0], code))
 
 
+LEFT_OUT = "Options in setup.cfg or pytest.ini can leave tests out, and a test can end pytest itself."
 UNSTEADY = (
     "Something in the tests depends on luck: on the time that passes, on chance, or on what an earlier test left."
 )

@@ -28,8 +28,8 @@ READERS = frozenset(
 SOURCE_MODULES = frozenset({"ast", "inspect", "dis", "linecache", "tokenize", "marshal", "py_compile", "pkgutil"})
 """Modules whose purpose is to look at source or compiled code."""
 CODE_ATTRIBUTES = frozenset({"__code__", "co_code", "co_consts", "co_names"})
-STARTERS = frozenset({"Popen", "check_call", "check_output", "system", "generate_test_description"})
-"""Functions that start another process."""
+PROCESS_MODULES = frozenset({"subprocess", "multiprocessing", "launch", "launch_ros", "launch_testing"})
+"""Modules whose purpose is to start other processes."""
 
 
 def code_of(evidence: Evidence) -> TestCode:
@@ -67,7 +67,7 @@ def outside(evidence: Evidence, _: NoParams) -> Finding:
     expected = "The tests create the node and watch what it publishes. They do not read its file."
     for module in code.modules:
         for node in module.nodes:
-            name = _source_module(node) or (getattr(node, "attr", "") if _is_of_code(node) else "")
+            name = _imported(node, SOURCE_MODULES) or (getattr(node, "attr", "") if _is_of_code(node) else "")
             if name:
                 return failed(
                     f"The tests use {shorten(name, 60)}, which looks at the code of the node.",
@@ -78,23 +78,25 @@ def outside(evidence: Evidence, _: NoParams) -> Finding:
     if use is not None:
         observed = f"The tests use {shorten(use.written, 60)}, which reads a file."
         return failed(observed, expected, Cause("looks-at-source", LOOKS, use.where))
-    use = _first_use(code, STARTERS)
-    if use is not None:
-        cause = (
-            "Import the class, create the node in the test, and spin it yourself. Then the test decides about the time."
-        )
-        observed = f"The tests use {shorten(use.written, 60)}, which starts another process."
-        return failed(observed, expected, Cause("starts-a-process", cause, use.where))
+    for module in code.modules:
+        for node in module.nodes:
+            name = _imported(node, PROCESS_MODULES)
+            if name:
+                observed = f"The tests import {shorten(name, 60)}, which starts other processes."
+                where = Where(module.file, getattr(node, "lineno", None))
+                return failed(observed, expected, Cause("starts-a-process", SPIN, where))
     return passed("The tests watch the node from outside.")
 
 
+SPIN = "Import the class, create the node in the test, and spin it. Then the test decides about the time."
 LOOKS = "Somebody may write the same node in another way. A test of its text would fail, although the node is right."
 
 
-def _source_module(node: ast.AST) -> str:
+def _imported(node: ast.AST, modules: frozenset[str]) -> str:
+    """Return the name in an import statement of one of these modules, or an empty string."""
     if isinstance(node, ast.Import):
-        return next((alias.name for alias in node.names if alias.name.partition(".")[0] in SOURCE_MODULES), "")
-    if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] in SOURCE_MODULES and not node.level:
+        return next((alias.name for alias in node.names if alias.name.partition(".")[0] in modules), "")
+    if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] in modules and not node.level:
         return node.module or ""
     return ""
 

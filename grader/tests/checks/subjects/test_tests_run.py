@@ -12,6 +12,7 @@ from grader.checks.judge import judge
 from grader.checks.kind import NoParams
 from grader.checks.outcome import Status
 from grader.checks.subjects.tests_run import CATCHES, PASS
+from grader.checks.subjects.tests_written import ASSERTS, OUTSIDE
 from grader.errors import UsageError
 from grader.evidence.evidence import Evidence, Run
 from grader.evidence.recording_format import load, save
@@ -98,3 +99,44 @@ def test_a_damaged_recording_of_tests_is_refused(tmp_path: Path) -> None:
     file.write_text(file.read_text("utf-8").replace('"message": ""', '"message": 3'), "utf-8")
     with pytest.raises(UsageError, match="cannot be read as a recording"):
         load(tmp_path / "kept", load_exercise)
+
+
+def test_tests_that_end_without_a_passed_test_do_not_pass() -> None:
+    """pytest ends with 0 if every test is skipped, or if a test ends the process."""
+    skipped = dataclasses.replace(GOOD, passed=0, skipped=3)
+    assert "skipped" in passes(*[skipped] * 3).cause
+    ended = dataclasses.replace(GOOD, passed=0, collected=0)
+    assert (passes(*[ended] * 3).diagnosis, "setup.cfg" in passes(*[ended] * 3).cause) == ("all-skipped", True)
+
+
+@pytest.mark.parametrize(
+    ("code", "diagnosis"),
+    [
+        ("import platform\nassert platform.system()\n", None),
+        ("from unittest import mock\n", None),
+        ("import inspect\n", "looks-at-source"),
+        ("import ast as tree\n", "looks-at-source"),
+        ("def test_it(guard):\n    assert guard.send.__code__\n", "looks-at-source"),
+        ("from pathlib import Path\ntext = Path('x').read_text()\n", "looks-at-source"),
+        ("from subprocess import Popen\n", "starts-a-process"),
+        ("import launch_testing.actions\n", "starts-a-process"),
+    ],
+)
+def test_what_looks_at_the_source_is_found_by_what_it_uses(code: str, diagnosis: str | None) -> None:
+    assert OUTSIDE.check(given(source=code), NoParams()).diagnosis == diagnosis
+
+
+@pytest.mark.parametrize(
+    ("body", "diagnosis"),
+    [
+        ("    check(bench)\n\ndef check(bench):\n    assert bench\n", None),
+        ("    with pytest.raises(ValueError):\n        bench()\n", None),
+        ("    bench.guard.publish.assert_called_once()\n", None),
+        ("    return bench.count() == 10\n", "compares-only"),
+        ("    bench.count() == 10\n", "compares-only"),
+        ("    assert (bench.count() == 10, 'ten')\n", "assert-tuple"),
+        ("    print(bench.count())\n", "no-assert"),
+    ],
+)
+def test_a_test_needs_an_assert_that_can_fail(body: str, diagnosis: str | None) -> None:
+    assert ASSERTS.check(given(source=f"def test_it(bench):\n{body}"), NoParams()).diagnosis == diagnosis
