@@ -51,7 +51,7 @@ class Guard:
 
     def __init__(self, pid: int, limits: Limits, over: Callable[[str], None]) -> None:
         self._pid, self._limits, self._over = pid, limits, over
-        self._worked: list[tuple[float, float]] = [(time.monotonic(), 0.0)]
+        self._worked = [(time.monotonic(), self._worked_so_far_s())]
         self._ready: dict[int, float] = {}
         self._closed = Event()
         self._thread = Thread(target=self._run, name="guard", daemon=True)
@@ -64,8 +64,9 @@ class Guard:
 
     def worked_s(self, begin: float, end: float) -> float:
         """Return the CPU time (s) that the cell's processes used, at least, between two times of CLOCK_MONOTONIC."""
-        before = max((cpu for at, cpu in self._worked if at <= begin), default=0.0)
-        return max((cpu for at, cpu in self._worked if at <= end + EVERY_S), default=0.0) - before
+        first = self._worked[0][1]
+        before = max((cpu for at, cpu in self._worked if at <= begin), default=first)
+        return max((cpu for at, cpu in self._worked if at <= end + EVERY_S), default=first) - before
 
     def ready_s(self, *, but: int) -> float:
         """Return how long all processes of the cell except `but` ran or waited for a processor so far (s).
@@ -74,6 +75,9 @@ class Guard:
         idle one. Other threads than the first one of each process are not counted.
         """
         return sum(ready_s for pid, ready_s in self._ready.copy().items() if pid != but)
+
+    def _worked_so_far_s(self) -> float:
+        return sum(map(_cpu_s, _family(self._pid)))
 
     def _run(self) -> None:
         while not self._closed.wait(EVERY_S):

@@ -145,13 +145,14 @@ class NodeProcess:
                 raise LaunchError((received + self._process.stderr.read()).decode("utf-8", "replace").strip())
             received += byte
         self.pid = self._find_pid()
-        self._guard = Guard(self._process.pid, self._limits, self._over)
         for stream in self._streams:
             os.set_blocking(stream.fd, False)
 
     def start(self, order: dict[str, object], tree: bytes) -> None:
         """Send the order and the install tree to the launcher."""
         assert self._process.stdin is not None
+        # Not before: a launcher may wait for minutes, and watching it costs 1 % of a core.
+        self._guard = Guard(self._process.pid, self._limits, self._over)
         try:
             self._process.stdin.write(json.dumps(order).encode() + b"\n" + tree)
             self._process.stdin.close()
