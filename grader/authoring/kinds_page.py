@@ -147,6 +147,8 @@ def _toml(value: Param) -> str:
         return f'{{ own = "{value.name}" }}'
     if isinstance(value, tuple) and value and isinstance(value[0], tuple):
         return f"{{ {', '.join(f'{name} = {_toml(each)}' for name, each in value)} }}"
+    if value == ():
+        return "{}"  # only tables can be empty
     if isinstance(value, tuple):
         return f"[{', '.join(map(_toml, value))}]"
     return str(value)

@@ -144,13 +144,16 @@ def strings(*, about: str) -> Any:
     return _field(Allowed("a list of at least one string", accept, about))
 
 
-def table(*, about: str) -> Any:
-    """Create a field for a table with numbers, strings, true or false. Its value is a tuple of names and values."""
+def table(*, about: str, optional: bool = False) -> Any:
+    """Create a field for a table with numbers, strings, true or false. Its value is a tuple of names and values.
+
+    If it is optional, the default is an empty table.
+    """
 
     def accept(value: object) -> tuple[tuple[str, Any], ...] | None:
         return tuple(value.items()) if isinstance(value, dict) and value else None
 
-    return _field(Allowed("a table with at least one value", accept, about))
+    return _field(Allowed("a table with at least one value", accept, about), () if optional else MISSING)
 
 
 def choice(*options: str, about: str) -> Any:

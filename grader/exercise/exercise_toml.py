@@ -9,7 +9,7 @@ The keys of the format with `schema = 2`:
   each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
 - `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every and pose_from_s. `[[trial.drive]]` has
   from_s, linear_x_m_s and angular_z_rad_s (one number, or two between which a number is drawn). `[[trial.call]]` has
-  at_s, service, type and request (a table with fields), `[[trial.set]]` has at_s, parameter and value.
+  at_s, service, type and request (a table with fields), `[[trial.set]]` has at_s, parameter, value and also.
   `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.
 - A `[[trial]]` without a simulator has id and either function and `[[trial.points]]`, or executable and
   `[[trial.bag]]` (calls_toml.py).

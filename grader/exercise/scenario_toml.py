@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from grader.common.words import shorten
 from grader.exercise.calls_toml import read_calls
@@ -121,11 +121,19 @@ def _call(table: Table) -> CallInput:
 
 
 def _set(table: Table, node: str) -> CallInput:
-    """Return the call that sets a parameter of the node, as `ros2 param set` makes it."""
+    """Return the call that sets a parameter of the node, as `ros2 param set` makes it, or several at once."""
     at_s = table.number("at_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)")
-    name = table.string("parameter")
-    value = table.setting("value")
-    number, field = next(row[1:] for row in PARAMETER_TYPES if type(value) is row[0])
-    request = {"parameters": [{"name": name, "value": {"type": number, field: value}}]}
+    first = _parameter(table.string("parameter"), table.setting("value"))
+    others = [_parameter(name, value) for name, value in table.settings("also").items()]
     table.finish()
-    return CallInput(at_s, f"{node}/set_parameters", "rcl_interfaces/srv/SetParameters", request)
+    if others:
+        service, type_ = f"{node}/set_parameters_atomically", "rcl_interfaces/srv/SetParametersAtomically"
+    else:
+        service, type_ = f"{node}/set_parameters", "rcl_interfaces/srv/SetParameters"
+    return CallInput(at_s, service, type_, {"parameters": [first, *others]})
+
+
+def _parameter(name: str, value: object) -> dict[str, Any]:
+    """Return a parameter as the fields of rcl_interfaces/msg/Parameter."""
+    number, field = next(row[1:] for row in PARAMETER_TYPES if type(value) is row[0])
+    return {"name": name, "value": {"type": number, field: value}}

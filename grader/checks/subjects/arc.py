@@ -9,7 +9,7 @@ from grader.checks.cause import Cause
 from grader.checks.causes.why_unasked import waits_in_callback
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
-from grader.checks.subjects.parameters import set_calls
+from grader.checks.subjects.parameters import set_calls, was_accepted
 from grader.checks.subjects.path import STRAIGHT_RADIUS_M, moved_otherwise
 from grader.checks.tolerance import Band
 from grader.common.lazy import np
@@ -131,9 +131,13 @@ def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -
 
 
 def _not_followed(evidence: Evidence, params: Arc) -> Cause | None:
-    """Return the cause if the trial set a parameter before, and the node accepted it, else None."""
-    made = [call for call in set_calls(evidence) if call.t_s < params.from_s and call.response is not None]
-    if not any(call.response["results"][0]["successful"] for call in made if call.response is not None):
+    """Return the cause if the node accepted a parameter before, and its commands stayed the same. Otherwise None."""
+    accepted = [call.t_s for call in set_calls(evidence) if call.t_s < params.from_s and was_accepted(call)]
+    if not accepted:
+        return None
+    before = [each for each in evidence.commands if each.t_s < accepted[-1] - FRAME_S]
+    after = [each for each in evidence.commands if params.from_s <= each.t_s <= params.until_s]
+    if before and after and (before[-1].linear, before[-1].angular) != (after[0].linear, after[0].angular):
         return None
     text = "The parameter was set, but the commands did not change. Read it with get_parameter before each command."
     return Cause("parameter-not-followed", text, evidence.place("get_parameter"))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from grader.checks.cause import Cause
 from grader.checks.causes.crash import crash_of, end_observed
 from grader.checks.causes.why_crashed import crash_finding
-from grader.checks.kind import Kind, choice, number, string
+from grader.checks.kind import Kind, choice, number, string, table
 from grader.checks.outcome import Finding, failed, passed
 from grader.checks.subjects.services import calls_of
 from grader.common.words import number as shown
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from grader.trial.observed import Call
 
 CLOSE = 1e-6
+SET = ("/set_parameters", "/set_parameters_atomically")
+"""The services of a node that set one parameter, and several at once."""
 DOUBLE = 3
 """The number of a double in rcl_interfaces/msg/ParameterType."""
 
@@ -63,35 +65,41 @@ def declares(evidence: Evidence, params: Declares) -> Finding:
 
 @dataclass(frozen=True, kw_only=True)
 class SetsParameter:
-    """What the node says to a `[[trial.set]]` of this parameter to this value."""
+    """What the node says to a `[[trial.set]]` of this parameter to this value, and of others in the same call."""
 
     parameter: str = string("the name of a parameter", about="The parameter.")
     value: float = number(about="The value that the trial sets.")
+    also: tuple[tuple[str, Any], ...] = table(
+        about="Other parameters that the same `[[trial.set]]` sets, with their values.", optional=True
+    )
     answer: str = choice("accepted", "refused", about="Whether the node must accept the value or refuse it.")
 
 
 def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
     """The node accepted the value, or refused it with a reason."""
-    name, value = params.parameter, shown(params.value)
+    name, value = params.parameter, shown(params.value) + _also(params)
     with_reason = " with a reason" if params.answer == "refused" else ""
     expected = f"Setting {name} to {value} is {params.answer}{with_reason}."
     where = evidence.place("add_on_set_parameters_callback", "declare_parameter")
     call = next((each for each in set_calls(evidence) if _sets(each, params)), None)
-    result = (call.response or {}).get("results", []) if call is not None else []
-    if not result:
+    result = _result(call)
+    if result is None:
         crash = crash_of(evidence)
         if crash is not None:
             return crash_finding(evidence, crash, end_observed(evidence), expected)
         observed = f"The node did not answer when {name} was set."
         text = "A node answers in rclpy.spin. Something blocks its callbacks, or its parameter services are turned off."
         return failed(observed, expected, Cause("no-response", text, where))
-    successful, reason = result[0]["successful"], result[0]["reason"].strip()
+    successful, reason = result["successful"], result["reason"].strip()
     if params.answer == "accepted" and not successful:
         return _refused(
             evidence, f"The node refused {name} = {value}: {shorten(reason or 'no reason')}.", expected, reason
         )
     if params.answer == "refused" and successful:
-        text = "The callback of add_on_set_parameters_callback must return SetParametersResult(successful=False, ...)."
+        text = (
+            "The callback of add_on_set_parameters_callback must return SetParametersResult(successful=False, ...) "
+            "for it, whichever parameter is set."
+        )
         observed = f"The node accepted {name} = {value}."
         return failed(observed, expected, Cause("parameter-accepted", text, where))
     if params.answer == "refused" and not reason:
@@ -103,12 +111,27 @@ def sets_parameter(evidence: Evidence, params: SetsParameter) -> Finding:
 
 def set_calls(evidence: Evidence) -> list[Call]:
     """Return the calls of the trial that set a parameter of the node, in order."""
-    return [call for call in calls_of(evidence) if call.by_trial and call.service.endswith("/set_parameters")]
+    return [call for call in calls_of(evidence) if call.by_trial and call.service.endswith(SET)]
+
+
+def was_accepted(call: Call) -> bool:
+    """Return whether the node accepted what this call sets."""
+    return bool((_result(call) or {}).get("successful"))
 
 
 def _sets(call: Call, params: SetsParameter) -> bool:
-    given = call.request["parameters"][0]
-    return bool(given["name"] == params.parameter and given["value"].get("double_value") == params.value)
+    given = [(each["name"], each["value"].get("double_value")) for each in call.request["parameters"]]
+    return given == [(params.parameter, params.value), *params.also]
+
+
+def _also(params: SetsParameter) -> str:
+    return "".join(f" and {name} = {shown(value)}" for name, value in params.also)
+
+
+def _result(call: Call | None) -> Any | None:  # noqa: ANN401 - a SetParametersResult as plain data
+    """Return what the node said to a call that sets one parameter, or several at once. None if it did not answer."""
+    response = (call.response or {}) if call is not None else {}
+    return next(iter(response.get("results", [])), response.get("result"))
 
 
 def _described(call: Call | None, name: str) -> Any | None:  # noqa: ANN401 - a ParameterDescriptor as plain data

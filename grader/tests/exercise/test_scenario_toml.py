@@ -35,6 +35,13 @@ def test_a_trial_may_call_a_service_and_set_a_parameter() -> None:
     assert radius.request == {"parameters": [value]}
 
 
+def test_a_trial_may_set_several_parameters_at_once() -> None:
+    scenario, problems = read(set=[{"at_s": 2.0, "parameter": "radius", "value": 0.5, "also": {"speed": 2.0}}])
+    assert problems == []
+    assert scenario.calls[0].service == "/draw/set_parameters_atomically"
+    assert [each["name"] for each in scenario.calls[0].request["parameters"]] == ["radius", "speed"]
+
+
 @pytest.mark.parametrize(
     ("value", "number", "field"), [(True, 1, "bool_value"), (2, 2, "integer_value"), ("a", 4, "string_value")]
 )

@@ -59,6 +59,19 @@ def test_a_value_is_accepted_or_refused_with_a_reason(call: Call, answer: str, d
     assert found(SETS, given, parameter="radius", value=1.0, answer=answer).diagnosis == diagnosis
 
 
+def test_several_values_are_accepted_or_refused_at_once() -> None:
+    values = [("radius", 0.55), ("speed", 2.0)]
+    request = {"parameters": [{"name": name, "value": {"type": 3, "double_value": value}} for name, value in values]}
+    response = {"result": {"successful": True, "reason": ""}}
+    call = Call(3.0, f"/{NODE}/set_parameters_atomically", "", request, response, 3.0, by_trial=True)
+    given = evidence(recording(every(0.5, 2.0, 1.0), calls=(call,)))
+    asked: dict[str, Any] = {"parameter": "radius", "value": 0.55, "answer": "refused"}
+    both = found(SETS, given, also=(("speed", 2.0),), **asked)
+    assert both.diagnosis == "parameter-accepted"
+    assert "radius = 0.55 and speed = 2" in both.observed
+    assert found(SETS, given, **asked).diagnosis == "no-response"
+
+
 @pytest.mark.parametrize(("successful", "diagnosis"), [(True, "parameter-not-followed"), (False, "wrong-radius")])
 def test_a_path_that_does_not_follow_a_parameter_is_named(successful: bool, diagnosis: str) -> None:
     given = evidence(recording(every(0.1, 2.0, 1.0), calls=(was_set(1.0, successful=successful, reason="no"),)))
