@@ -251,6 +251,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "rate-off-by-one": "the number of messages is divided by the duration, instead of the number of intervals",
     },
     "Functions and programs": {
+        "function-missing": "the module has no such function, or does not exist",
         "result-form": "a function does not return what it should: None, or too many values",
         "result-order": "a function returns the right values in the wrong order",
         "radius-squared": "the square of the radius is returned",

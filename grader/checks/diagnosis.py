@@ -232,6 +232,7 @@ Diagnosis = Literal[
     "all-messages",
     "rate-off-by-one",
     # Functions and programs
+    "function-missing",
     "result-form",
     "result-order",
     "radius-squared",

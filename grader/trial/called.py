@@ -37,7 +37,11 @@ class Called:
 def called_from_json(data: dict[str, Any]) -> Called:
     """Return the result in this JSON. Raises ValueError, TypeError or KeyError if it is none."""
     values = data["values"]
-    numbers = None if values is None else tuple(float(each) for each in values[:MOST_VALUES])
+    try:
+        numbers = None if values is None else tuple(float(each) for each in values[:MOST_VALUES])
+    except OverflowError as error:
+        message = f"a value of the call is too large: {error}"
+        raise ValueError(message) from error
     names = ("id", "ended", "stdout", "stderr")
     id_, ended, stdout, stderr = (text(data[name])[:MOST_TEXT] for name in names)
     return Called(id_, ended, stdout, stderr, numbers, text(data["kind"])[:100])
@@ -49,7 +53,7 @@ def read_called(output: bytes, ids: Sequence[str]) -> tuple[Called, ...]:
     for line in output.splitlines():
         try:
             called = called_from_json(json.loads(line))
-        except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
+        except (ValueError, TypeError, KeyError, RecursionError):
             continue
         found.setdefault(called.id, called)
     return tuple(found.get(id_, Called(id_)) for id_ in ids)

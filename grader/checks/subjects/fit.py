@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -12,7 +13,9 @@ from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_fit import RADIUS_OF_C, Fit, why_fit
 from grader.checks.kind import Kind, number, string
 from grader.checks.outcome import Finding, failed, passed
-from grader.common.words import a_list, count, shorten
+from grader.common.words import a_list, count, nearest, shorten
+from grader.submission.code import module_file
+from grader.submission.where import Where
 from grader.trial.called import TOO_LATE
 
 if TYPE_CHECKING:
@@ -50,7 +53,7 @@ def fits_circle(evidence: Evidence, params: FitCall) -> Finding:
         f"{name} returns x={arc.x_m:g}, y={arc.y_m:g} and radius={arc.radius_m:g} (m) for {arc.count} points from "
         f"{arc.from_deg:g}° to {arc.to_deg:g}°."
     )
-    broken = stopped(evidence, called, expected, name)
+    broken = _missing(evidence, called, expected, name) or stopped(evidence, called, expected, name)
     if broken is not None:
         return broken
     values = called.values
@@ -95,6 +98,23 @@ def stopped(evidence: Evidence, called: Called, expected: str, name: str) -> Fin
     return failed(f"{name} ended the program ({how}).", expected, Cause("call-ended", "", where))
 
 
+def _missing(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
+    """Return a finding if the module or the function is not there, or None."""
+    module = evidence.trial.calls.function.partition(":")[0]
+    file = module_file(module, evidence.submission.files)
+    if file is None:
+        path = f"{module.replace('.', '/')}.py"
+        return failed(f"There is no file {path}.", expected, Cause("function-missing", "", Where(path)))
+    if not called.stderr.rstrip().endswith(f"AttributeError: module '{module}' has no attribute '{name}'"):
+        return None
+    nodes = (node for each in evidence.code.modules if each.file == file for node in each.nodes)
+    known = {node.name: node.lineno for node in nodes if isinstance(node, ast.FunctionDef)}
+    guess = nearest(name, known)
+    cause = f"It has a function {shorten(guess)}." if guess else ""
+    where = Where(file, known[guess] if guess else None)
+    return failed(f"{file} has no function {name}.", expected, Cause("function-missing", cause, where))
+
+
 def _late(evidence: Evidence, called: Called, expected: str, name: str) -> Finding | None:
     """Return a finding about a call that did not end, or that was not made after such a call, or None."""
     late = any(each.ended == TOO_LATE for each in evidence.run.called or ())
@@ -133,9 +153,9 @@ def refuses(evidence: Evidence, params: OneCall) -> Finding:
     crash = read_traceback(called.stderr, evidence.submission.files)
     if "ValueError" in called.kind.split() and crash is not None:
         return passed(f"{name} raises {crash.observed}.")
-    late = _late(evidence, called, expected, name)
-    if late is not None:
-        return late
+    broken = _missing(evidence, called, expected, name) or _late(evidence, called, expected, name)
+    if broken is not None:
+        return broken
     where = evidence.place("ValueError", "lstsq", "solve")
     if called.ended == "exit 0":
         cause = (

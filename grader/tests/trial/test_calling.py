@@ -13,7 +13,7 @@ import pytest
 from grader.ros.installation import environment, find_ros
 from grader.sandbox import bubblewrap
 from grader.trial import calling
-from grader.trial.called import MOST_TEXT, TOO_LATE, Called, read_called
+from grader.trial.called import MOST_TEXT, TOO_LATE, Called, called_from_json, read_called
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -136,6 +136,11 @@ GOOD = {"id": "one", "ended": "exit 0", "stdout": "", "stderr": "", "values": [1
 )
 def test_a_line_that_is_no_result_is_left_out(line: str) -> None:
     assert read_called(line.encode(), ["one"]) == (Called("one"),)
+
+
+def test_a_number_that_is_too_large_is_told_as_all_other_wrong_values() -> None:
+    with pytest.raises(ValueError, match="too large"):
+        called_from_json({**GOOD, "values": [10**400]})
 
 
 def test_long_results_are_cut() -> None:
