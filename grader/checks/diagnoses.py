@@ -159,6 +159,7 @@ GROUPS: dict[str, dict[Diagnosis, str]] = {
         "response-not-returned": "the callback of a service does not return its response",
         "slow-response": "the node answers a call too late",
         "pause-ignored": "the node goes on driving while it is paused",
+        "pause-toggles": "each call changes the state, whatever it asks for",
         "no-stop-command": "the paused node sends nothing instead of a command to stand still",
         "pause-never-ends": "the turtle does not go on after the pause",
         "parameter-type": "the parameter is not a float",

@@ -145,6 +145,7 @@ Diagnosis = Literal[
     "response-not-returned",
     "slow-response",
     "pause-ignored",
+    "pause-toggles",
     "no-stop-command",
     "pause-never-ends",
     "parameter-type",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
@@ -17,7 +18,10 @@ from grader.evidence.trajectory import RESTS_M
 if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.evidence.trajectory import Trajectory
+    from grader.trial.recording import Command
 
+EARLY_S = 0.1
+"""A call of the trial may be this much before its planned time, by rounding (s)."""
 BEFORE_S = 1.0
 """The turtle must move in this time before the pause (s)."""
 
@@ -64,7 +68,12 @@ def pause(evidence: Evidence, params: Pause) -> Finding:
 def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *, near_edge: bool) -> Finding:
     where = evidence.place("create_service")
     inside = [command for command in evidence.commands if params.from_s + 0.1 < command.t_s < params.until_s]
-    driving = any(command.linear[0] or command.angular[2] for command in inside)
+    driving = any(map(_drives, inside))
+    again_s = _drives_again_s(evidence, params)
+    if again_s is not None:
+        observed = f"The same call came again at {again_s:.1f} s, while the node was paused, and the turtle drove on."
+        text = "Each call changes the state. The state must not depend on the old one, but only on request.data."
+        return failed(observed, expected, Cause("pause-toggles", text, where), near_edge=near_edge)
     if driving:
         observed = f"The turtle still moved {stop_s:.1f} s after the call."
         text = (
@@ -74,6 +83,21 @@ def _goes_on(evidence: Evidence, params: Pause, stop_s: float, expected: str, *,
     observed = f"The turtle took {stop_s:.1f} s to stop after the call."
     text = "Without a new command, a turtle goes on for a second. While the node is paused, publish zeros."
     return failed(observed, expected, Cause("no-stop-command", text, where), near_edge=near_edge)
+
+
+def _drives_again_s(evidence: Evidence, params: Pause) -> float | None:
+    """Return when a second call with the same request made the paused node drive again (s), or None."""
+    calls = [call for call in evidence.recording.calls if call.by_trial and call.t_s >= params.from_s - EARLY_S]
+    for first, second in pairwise(calls):
+        if (first.service, first.request) == (second.service, second.request):
+            before = [_drives(each) for each in evidence.commands if first.t_s < each.t_s < second.t_s]
+            after = [_drives(each) for each in evidence.commands if second.t_s + EARLY_S < each.t_s < params.until_s]
+            return second.t_s if before and not before[-1] and any(after) else None
+    return None
+
+
+def _drives(command: Command) -> bool:
+    return bool(command.linear[0] or command.angular[2])
 
 
 def _moved(trajectory: Trajectory, from_s: float, until_s: float) -> tuple[float, float] | None:
