@@ -38,7 +38,9 @@ def readable(evidence: Evidence, params: InBag) -> Finding:
     expected = f"The folder {params.bag} beside package.xml holds a bag with at least one message."
     if bag.problem == "missing":
         return failed(
-            f"There is no folder {params.bag}.", expected, Cause("no-bag", "The lesson shows how to record it.")
+            f"There is no folder {params.bag}.",
+            expected,
+            Cause("no-bag", "The recorder makes it in the folder in which you type its command."),
         )
     if bag.problem == "elsewhere":
         observed = f"There is no bag in {params.bag}, but {shorten(bag.detail)} belongs to one."
