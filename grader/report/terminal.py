@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 RESULTS = {"passes": "then it passes", "further": "the node gets further", "refuted": "it still fails"}
+HIDDEN = "A hidden check tells no details. What it checks is in the lesson."
 NARROW = 50
 """A width in columns. On a narrower terminal, text is not indented under its label."""
 
@@ -100,7 +101,10 @@ def _check(outcome: Outcome, console: Console, shown: str) -> None:
         points = f"{_points(outcome.points)}/{_points(outcome.max)}" + (" so far" if look == "error" else "")
         head.append(f"  {points}", style="dim" if look == "passed" else STYLES[look])
     _line(console, head)
-    if look == "passed" or outcome.hidden or outcome.finding.observed == shown:
+    if look != "passed" and outcome.hidden:
+        _details(console, [("", HIDDEN)])
+        return
+    if look == "passed" or outcome.finding.observed == shown:
         return
     finding = outcome.finding
     if look == "skipped":

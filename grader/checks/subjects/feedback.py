@@ -107,10 +107,13 @@ def _near(evidence: Evidence, params: LogFeedback, line: Line, matches: Callable
     return any(matches(t_s, theta) for t_s, theta in pairs)
 
 
-def _holds(evidence: Evidence, params: LogFeedback, line: Line, goal: Goal, *, factor: float = 1.0) -> bool:
+def _holds(
+    evidence: Evidence, params: LogFeedback, line: Line, goal: Goal, *, factor: float = 1.0, signed: bool = True
+) -> bool:
     def matches(_: float, theta: float) -> bool:
         remaining = normalize(normalize(goal.request["theta"]) - theta)
-        return abs(line.numbers["remaining"] / factor - remaining) <= params.tolerance_rad
+        logged = line.numbers["remaining"] / factor
+        return abs(logged - (remaining if signed else abs(remaining))) <= params.tolerance_rad
 
     return _near(evidence, params, line, matches)
 
@@ -133,6 +136,9 @@ def _wrong(
     where = evidence.place("info")
     if all(_holds(evidence, params, *pair, factor=-1.0) for pair in told):
         return failed(observed, expected, Cause("wrong-sign", "Log the number as it is in the feedback.", where))
+    if all(_holds(evidence, params, *pair, signed=False) for pair in told):
+        text = "The number keeps its sign: it is negative while the turtle turns to the right. Do not use abs."
+        return failed(observed, expected, Cause("wrong-sign", text, where))
     if all(_holds(evidence, params, *pair, factor=math.degrees(1.0)) for pair in told):
         return failed(observed, expected, Cause("degrees", "The feedback is in radians, and so is the line.", where))
     if len({line.numbers["remaining"] for line, _ in told}) == 1:
