@@ -24,7 +24,7 @@ FOLDER = "assets"
 
 
 def write_book(out: Path, repository: str = "") -> int:
-    """Write all pages to the folder `out`; return the number of lessons. Files that are there are replaced.
+    """Write all pages to the folder `out`; return the number of lessons. Existing files are replaced.
 
     Raises:
         UsageError: `out` is not a folder, or cannot be written.

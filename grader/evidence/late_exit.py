@@ -1,7 +1,7 @@
 """A node that crashed, but whose process took so long to exit that Ctrl-C came first.
 
 On a busy machine, a process may need longer to exit after an uncaught exception than a trial in simulated time lasts.
-The same submission must get the same outcomes each time, so the exception decides, and not who was faster.
+The same submission must always get the same outcomes. So the outcome depends on the exception, not on what came first.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ TOP = re.compile(r'\s*File ".*", line \d+, in <module>')
 
 
 def with_crash_first(recording: Recording) -> Recording:
-    """Return the recording; if an uncaught exception came before Ctrl-C, the node has ended by itself."""
+    """Return the recording. If the node raised an uncaught exception before Ctrl-C, it has ended by itself."""
     end, stderr = recording.end, recording.stderr
     if end.by == "itself" or end.out_of is not None:
         return recording

@@ -95,7 +95,7 @@ def _scenario(table: Table, node: str) -> Scenario:
     )
     for rule in scenario.rename:
         if not REMAP.fullmatch(rule):
-            table.problem(f'"rename" holds "{shorten(rule)}"; a rule reads "/old/name:=/new/name".')
+            table.problem(f'"rename" holds "{shorten(rule)}"; a rule has the form "/old/name:=/new/name".')
     return scenario
 
 

@@ -95,8 +95,8 @@ def _made() -> Path:
 def open_class(folder: Path | None) -> ClassFolders:
     """Open the class whose nbgrader_config.py is in `folder` or its course/. None means the current folder.
 
-    nbgrader_config.py is a program, and this function runs it. The current folder may be a student's, so it is used
-    only if it is a class that this user created.
+    nbgrader_config.py is a program, and this function runs it. The current folder may belong to a student, so it
+    is used only if it is the folder of a class that this user created.
 
     Raises:
         UsageError: there is no nbgrader_config.py, or this user did not make the class.

@@ -1,4 +1,4 @@
-"""Stopwatch: the wall time of each stage of a grading."""
+"""Stopwatch: measures the wall time of each stage of grading."""
 
 from __future__ import annotations
 

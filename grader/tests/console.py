@@ -1,7 +1,7 @@
 """The command blocks of a Markdown text, so that what README and lessons promise can be run.
 
-A block opens with ```console and holds lines `$ command`, each followed by what it prints; a line `...` stands for any
-lines, and so does the end. Numbers may differ.
+A block begins with ```console. It has lines of the form `$ command`, and after each one what the command prints. A line
+`...` stands for any lines. More lines may follow the last one. Numbers may differ.
 """
 
 from __future__ import annotations

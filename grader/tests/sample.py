@@ -1,6 +1,6 @@
 """The mistakes that `make test` grades: few cases that together show everything that `make test` must show.
 
-They show each group of diagnoses in each exercise, and of each group a few diagnoses that no test of the checks
+For each exercise, they show every group of diagnoses, and a few diagnoses of each group that no test of the checks
 expects. A test of the checks judges an invented recording, which takes milliseconds. A case takes one to three seconds,
 and at least ten if wall time judges it.
 """

@@ -59,7 +59,7 @@ def why_rejected(run: NodeRun, code: TestCode) -> Cause:
     false = always_false(code)
     if false is not None:
         return false
-    text = "Compare the test with the promise in wall_guard.py. Does the test leave the node the time that it needs?"
+    text = "Compare the test with the promise in wall_guard.py. Does the test give the node enough time?"
     return Cause("rejects-right", text, where)
 
 

@@ -132,7 +132,7 @@ def _why_raised(evidence: Evidence, crash: Crash, id_: str) -> Cause | None:
     if any(each.id == id_ and each.lists for each in evidence.trial.calls.points):
         others = [each for each in evidence.run.called or () if each.id != id_ and each.values is not None]
         if others:
-            cause = "It works with arrays of numpy, but not with lists. `np.asarray` makes an array out of either."
+            cause = "It works with numpy arrays, but not with lists. `np.asarray` makes an array out of either."
             return Cause("lists-refused", cause)
     if evidence.code.calls("lstsq") and (crash.error == "LinAlgError" or "to unpack" in crash.message):
         cause = (

@@ -85,7 +85,7 @@ GOAL = Kind(
     "The turtle drives to its goal",
     Goal,
     goal,
-    about="The turtle drives to the goal by commands and stands still there at the end.",
+    about="Velocity commands drive the turtle to the goal, and it stands still there at the end.",
     drives=True,
     requested=requested_goal,
 )

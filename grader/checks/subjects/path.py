@@ -39,7 +39,7 @@ AT_ONCE_S = 0.05
 LATE_S = 3.0
 """If the first command comes later than this (s), a circle that is too short is explained by that."""
 POLYGON_SHARE = 0.6
-"""If a larger share of the trajectory than this is straight, the message describes sides and corners."""
+"""If more than this fraction of the trajectory is straight, the message describes sides and corners."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -28,7 +28,7 @@ ORDINALS = ("first", "second", "third", "fourth")
 STRAIGHT_RAD_M = 0.2
 """A part that bends by at most this many radians per metre (a radius of 5 m) counts as straight, not as a curve."""
 CURVED_SHARE = 0.1
-"""If a larger share of the trajectory than this is curved, it is not a square."""
+"""If more than this fraction of the trajectory is curved, it is not a square."""
 SHORT_M = 0.05
 """A shorter straight part than this is not a side."""
 

@@ -50,7 +50,7 @@ def name() -> str:
 
 
 def folder() -> Path | None:
-    """Return the folder of the socket, and create it if necessary. Return None if no private folder is possible."""
+    """Return the folder of the socket, and create it if necessary. Return None if no private folder can be created."""
     runtime = os.environ.get("XDG_RUNTIME_DIR", "")
     for place in ([Path(runtime, "grader")] if runtime.startswith("/") else []) + [xdg.cache() / "daemon"]:
         try:

@@ -42,7 +42,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def built(source: Path) -> Path:
-    """The folder of the site, without errors and warnings."""
+    """The folder of the built site. The build gives no errors or warnings."""
     to = source.parent / "built"
     done = build(source, to)
     assert (done.returncode, done.stderr) == (0, "")

@@ -1,4 +1,4 @@
-"""rqt_graph beside turtlesim and draw_circle, on the real ROS 2, started as a user does."""
+"""A user starts rqt_graph, turtlesim and draw_circle with a real ROS 2."""
 
 from __future__ import annotations
 
