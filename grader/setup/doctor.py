@@ -206,7 +206,10 @@ def look_at_ros(ros: Ros, env: Mapping[str, str]) -> Line:
 
 
 def look_at_sandbox() -> Line:
-    """Create a cell like the one in which a student's process runs. Cells are optional for people who only check their own code."""
+    """Create a cell like the one in which a student's process runs.
+
+    Cells are optional for people who only check their own code.
+    """
     why = bubblewrap.why_unavailable()
     if why is None:
         return Line("sandbox", "bubblewrap makes cells")

@@ -93,7 +93,10 @@ class Ahead:
         trial.await_ready()
 
     def run(self, name: str, package: str, executable: str, tree: bytes) -> None:
-        """Start the node in a trial that is waiting for it. `trial` returns the trial, whose `run` returns the recording."""
+        """Start the node in a trial that is waiting for it. `trial` returns the trial.
+
+        The trial's `run` returns the recording.
+        """
         self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)
 
     def trial(self, name: str) -> Runs | None:
