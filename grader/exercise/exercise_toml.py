@@ -7,7 +7,8 @@ The keys of the format with `schema = 2`:
   that exercises/ must fail).
 - `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one of
   each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
-- `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every and pose_from_s. `[[trial.drive]]` has
+- `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every, pose_from_s and
+  answers_after_s. `[[trial.drive]]` has
   from_s, linear_x_m_s and angular_z_rad_s (one number, or two between which a number is drawn). `[[trial.call]]` has
   at_s, service, type and request (a table with fields), `[[trial.set]]` has at_s, parameter, value and also.
   `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.

@@ -68,8 +68,9 @@ class Scenario:
 
     If `anywhere` is set, the start pose is random even without a seed. `rename` holds remapping rules for the
     simulator, such as "/turtle1/pose:=/where". `pose_every` is the number of frames between two poses; the
-    first one is published at `pose_from_s` (s), as if the simulator were late. The node starts
-    with `parameters` on its command line, and with those of `params_file` in a file.
+    first one is published at `pose_from_s` (s), as if the simulator were late. Its services answer
+    `answers_after_s` (s) after a call. The node starts with `parameters` on its command line, and with those of
+    `params_file` in a file.
     """
 
     duration_s: float
@@ -78,6 +79,7 @@ class Scenario:
     rename: tuple[str, ...] = ()
     pose_every: int = 1
     pose_from_s: float = 0.0
+    answers_after_s: float = 0.0
     calls: tuple[CallInput, ...] = ()
     parameters: Mapping[str, Setting] = field(default_factory=dict)
     params_file: Mapping[str, Setting] = field(default_factory=dict)

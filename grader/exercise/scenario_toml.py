@@ -88,6 +88,7 @@ def _scenario(table: Table, node: str) -> Scenario:
         rename=table.strings("rename"),
         pose_every=int(table.number("pose_every", 1, 1000, "a number of frames from 1 to 1000", default=1)),
         pose_from_s=table.number("pose_from_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)", default=0.0),
+        answers_after_s=table.number("answers_after_s", 0.0, 10.0, "from 0 to 10 (s)", default=0.0),
         calls=tuple(_call(each) for each in table.tables("call"))
         + tuple(_set(each, node) for each in table.tables("set")),
         parameters=table.settings("parameters"),

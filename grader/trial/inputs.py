@@ -43,6 +43,7 @@ class Inputs:
     rename: tuple[str, ...] = ()
     pose_every: int = 1
     pose_from_s: float = 0.0
+    answers_after_s: float = 0.0
     calls: tuple[PlannedCall, ...] = ()
     arguments: tuple[str, ...] = ()
     params_file: str = ""
@@ -68,6 +69,7 @@ def draw_inputs(scenario: Scenario, start: Pose, seed: int) -> Inputs:
         rename=scenario.rename,
         pose_every=scenario.pose_every,
         pose_from_s=scenario.pose_from_s,
+        answers_after_s=scenario.answers_after_s,
         calls=tuple(PlannedCall(call.at_s, call.service, call.type, dict(call.request)) for call in scenario.calls),
         arguments=tuple(part for each in _settings(scenario.parameters) for part in ("-p", each)),
         params_file=_params_file(scenario.params_file),

@@ -69,6 +69,7 @@ class Simulation:
             start=Start(start.x, start.y, start.theta),
             pose_every=inputs.pose_every,
             pose_from_s=inputs.pose_from_s,
+            answers_after_s=inputs.answers_after_s,
             cli_args=["--ros-args", *(part for rule in inputs.rename for part in ("-r", rule))],
             on_command=self.recorder.keep_command,
             on_publish=self.recorder.keep,
@@ -201,10 +202,10 @@ class Simulation:
         made = self.caller.calls if self.caller is not None else ()
         return tuple(sorted((*self._calls, *made), key=lambda call: call.t_s))
 
-    def _called(self, service: str, type_name: str, request: Any, response: Any) -> None:  # noqa: ANN401
+    def _called(self, service: str, type_name: str, request: Any, response: Any, waited_s: float) -> None:  # noqa: ANN401
         if len(self._calls) < _MOST_INTERVENTIONS:
             now_s = self.now()
-            self._calls.append(Call(now_s, service, type_name, plain(request), plain(response), now_s))
+            self._calls.append(Call(now_s - waited_s, service, type_name, plain(request), plain(response), now_s))
 
     def _intervened(self, name: str) -> None:
         # A thousand calls to a harmless service must not hide the next teleport.

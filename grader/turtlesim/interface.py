@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from rclpy.service import Service
 
     from grader.turtlesim.goal_event import GoalEvent
+    from grader.turtlesim.late_answers import LateAnswers
     from grader.turtlesim.turtle import Rgb, State, Turtle
     from grader.turtlesim.world import World
 
@@ -39,26 +40,30 @@ class Hooks:
     `on_command(topic, data, twist)` is called when a command has arrived, before it moves the turtle.
     `on_publish(topic, type, data)` is called when a pose or a colour is published. `on_intervention(name)` is called
     when somebody calls a service or an action ("spawn", "rotate_absolute") or sets a parameter ("set_background" if
-    only colours are set, or else "set_parameters"). `on_call(service, type, request, response)` is called when a
-    service has been called, and `on_goal(event)` when something happens to the goal of an action.
+    only colours are set, or else "set_parameters"). `on_call(service, type, request, response, waited_s)` is called
+    when a call is answered, `waited_s` (s) after it arrived, and `on_goal(event)` when something happens to the goal of
+    an action. `late` delays the answers, if it is not None.
     """
 
     on_command: Callable[[str, bytes, Any], object]
     on_publish: Callable[[str, str, bytes], object]
     on_intervention: Callable[[str], object]
-    on_call: Callable[[str, str, Any, Any], object]
+    on_call: Callable[[str, str, Any, Any, float], object]
     on_goal: Callable[[GoalEvent], object]
+    late: LateAnswers | None = None
 
     def serve(self, node: Node, service_type: Any, name: str, handle: Callable[[Any, Any], Any]) -> Service:  # noqa: ANN401
         """Create a service of the node. `on_call` hears of each call."""
 
-        def handle_and_tell(request: Any, response: Any) -> Any:  # noqa: ANN401
+        def handle_and_tell(request: Any, response: Any, waited_s: float = 0.0) -> Any:  # noqa: ANN401
             response = handle(request, response)
-            self.on_call(service.service_name, type_name, request, response)
+            self.on_call(service.service_name, type_name, request, response, waited_s)
             return response
 
         type_name = f"{service_type.__module__.partition('.')[0]}/srv/{service_type.__name__}"
         service = node.create_service(service_type, name, handle_and_tell)
+        if self.late is not None:
+            self.late.delay(service, handle_and_tell)
         return service
 
 

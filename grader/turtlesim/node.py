@@ -17,6 +17,7 @@ from turtlesim.srv import Kill, Spawn
 
 from grader.turtlesim import parameters
 from grader.turtlesim.interface import Hooks, TurtleInterface
+from grader.turtlesim.late_answers import LateAnswers
 from grader.turtlesim.turtle import Start
 from grader.turtlesim.world import World
 
@@ -51,20 +52,23 @@ class TurtlesimNode(Node):
         on_command: Callable[[str, bytes, Any], object] = _nobody,
         on_publish: Callable[[str, str, bytes], object] = _nobody,
         on_intervention: Callable[[str], object] = _nobody,
-        on_call: Callable[[str, str, Any, Any], object] = _nobody,
+        on_call: Callable[[str, str, Any, Any, float], object] = _nobody,
         on_goal: Callable[[GoalEvent], object] = _nobody,
         pose_every: int = 1,
         pose_from_s: float = 0.0,
+        answers_after_s: float = 0.0,
         canvas: Canvas | None = None,
         **node: Any,  # noqa: ANN401 - handed on to rclpy
     ) -> None:
         """Create the node. turtle1 begins at `start` (m, m, rad), also after a reset.
 
         `Hooks` describes the callbacks. A pose is published every `pose_every` frames from `pose_from_s` (s) on. The
-        real turtlesim publishes one in each frame. `canvas` is what the turtles draw on.
+        real turtlesim publishes one in each frame. Services are answered `answers_after_s` (s) late. `canvas`
+        is what the turtles draw on.
         """
         self._pose_every, self._pose_from_s = pose_every, pose_from_s
-        self._hooks = Hooks(on_command, on_publish, on_intervention, on_call, on_goal)
+        self._late = LateAnswers(answers_after_s) if answers_after_s else None
+        self._hooks = Hooks(on_command, on_publish, on_intervention, on_call, on_goal, self._late)
         super().__init__("turtlesim", **node)
         parameters.declare(self)
         self.world = World(start or Start(), canvas)
@@ -90,6 +94,8 @@ class TurtlesimNode(Node):
     def frame(self, now_s: float) -> None:
         """Compute one frame (16 ms) at `now_s` on the caller's clock (s), and publish it."""
         self._frames += 1
+        if self._late is not None:
+            self._late.tick(now_s)
         while self._leaving and self._leaving[0][0] <= self._frames and self._leaving[0][1].idle:
             self._leaving.popleft()[1].destroy()
         interfaces = [*self._interfaces.values(), *(interface for _, interface in self._leaving)]

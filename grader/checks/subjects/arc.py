@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from grader.checks.cause import Cause
+from grader.checks.causes.crash import crash_of, end_observed
+from grader.checks.causes.why_crashed import crash_finding
 from grader.checks.causes.why_unasked import waits_in_callback
 from grader.checks.kind import Kind, choice, number
 from grader.checks.outcome import Finding, failed, passed
@@ -180,6 +182,9 @@ def _goes_on(evidence: Evidence, chosen: Steps) -> bool:
 
 def _nothing(evidence: Evidence, params: Arc, expected: str) -> Finding:
     where = evidence.place("publish")
+    crash = crash_of(evidence)
+    if crash is not None:
+        return crash_finding(evidence, crash, end_observed(evidence), expected)
     if params.color is not None and evidence.trajectory.length_m > SHORT_M:
         text = "The pen must have this colour before the turtle moves: drive when the response has arrived."
         color = ", ".join(map(str, params.color))

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from grader.evidence.evidence import Evidence
     from grader.trial.observed import Call
 
+AT_ONCE_S = 0.05
+"""A call that comes at most this much before an answer may come at the same time, in wall time (s)."""
 CLOSE = 1e-3
 """How far a number in a request may be off. Many fields are float32."""
 
@@ -52,10 +54,14 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
     if right:
         # Two calls may arrive at the same time, so their order counts.
         first = next((index for index, call in enumerate(made) if call.service == after), None) if after else -1
-        if first is not None and right[-1] >= first:
+        in_order = first is not None and right[-1] >= first
+        too_early = bool(first is not None and after) and _before_the_answer(made[right[-1]], made[first or 0])
+        if in_order and not too_early:
             return passed(f"The node called {params.service} with {request}.")
         text = f"Send this request in the callback that receives the response of {after}."
         observed = f"The node called {params.service} with {request}, but not after {after}."
+        if in_order:
+            observed = f"The node called {params.service} with {request} before {after} had answered."
         return failed(observed, expected, Cause("service-order", text, evidence.place("call_async")))
     crash = crash_of(evidence)
     if crash is not None:
@@ -69,6 +75,11 @@ def calls_service(evidence: Evidence, params: CallsService) -> Finding:
         cause = Cause("service-name", "Each turtle has its own services.", evidence.place("create_client"))
         return failed(observed, expected, cause)
     return failed(observed, expected, why_unasked(evidence, params.service))
+
+
+def _before_the_answer(call: Call, asked: Call) -> bool:
+    """Return whether the call came before the answer to what was asked. Without a delay, both have the same time."""
+    return asked.answered_s is not None and call.t_s < asked.answered_s - AT_ONCE_S
 
 
 def _other_request(evidence: Evidence, params: CallsService, calls: list[Call], expected: str) -> Finding:
