@@ -36,6 +36,8 @@ MOST_SAMPLE = 90
 MOST_WORDS = 60
 MOST_CASES = 12
 """The maximum number of cases about one diagnosis. There are more ways to break a rule than to lose a file."""
+SAID_BY_RCLPY = "rclpy.init() has not been called"
+"""A message of rclpy, which a report repeats."""
 LONG = 12
 """Characters. A shorter line of a solution, such as `pass`, gives nothing away."""
 NOWHERE = frozenset({"node-name", "no-answers", "no-bag", "no-numbers", "rejected-file"})
@@ -70,7 +72,7 @@ def test_what_is_said_gives_nothing_away(case: Case, graded: Grade, tmp_path: Pa
     given = make_submission(case, tmp_path / "given")
     own = "\n".join(path.read_text("utf-8", "replace") for path in given.rglob("*") if path.is_file())
     for outcome in failures(graded(case, "auto")):
-        text = text_of(outcome)
+        text = text_of(outcome).replace(SAID_BY_RCLPY, "")
         assert [line for line in solution_lines() if line in text and line not in own] == []
 
 

@@ -29,6 +29,8 @@ ELSEWHERE = {
     # Options of the real `ros2 bag`: docs/ros2-differences.md says that ours does not have them.
     *(f"--{name.replace('_', '-')}" for name in NOT_HERE),
     *("--clock-topics", "--publish-service-requests"),
+    # Options of our `ros2 bag`.
+    *("--max-bag-duration", "--max-bag-size", "--storage-preset-profile"),
 }
 """Options of other programs than `grader`."""
 
