@@ -71,7 +71,7 @@ class Tests:
             self.start([evidence])
         spec = evidence.trial.tests
         assert spec is not None
-        self._tell(f"Running your tests on {count(spec.right_runs + len(spec.broken), 'node')}")
+        self._tell(f"Running your tests {count(spec.right_runs + len(spec.broken), 'time')}")
         begun = time.monotonic()
         with self._stopwatch.stage("trial"):
             ended = self._started[evidence.trial.id].result()

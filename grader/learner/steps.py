@@ -212,4 +212,4 @@ def _open_steps(known: progress.Progress) -> str:
     if not missing:
         return f"{known.current} was the last step. You have finished the course. `grader status` shows all steps."
     names = a_list([name[:2] for name in missing])
-    return f"This was the last step. Not passed yet: {names}. Go on with `grader start {missing[0][:2]}`."
+    return f"Not passed yet: {names}. Go on with `grader start {missing[0][:2]}`."
