@@ -12,6 +12,7 @@ import os
 import statistics
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -107,18 +108,29 @@ def _loaded(page: Page) -> tuple[int, float]:
 
 def _idle(seconds: float) -> float:
     """Return the share of one core that the processes below this one use, without the browser."""
-    own = [pid for pid in _descendants(os.getpid()) if "chrom" not in _name(pid) and "node" not in _name(pid)]
     time.sleep(_REST_S)
-    before = sum(map(cpu_s, own))
+    before = _used_s()
     time.sleep(seconds)
-    return (sum(map(cpu_s, own)) - before) / seconds
+    after = _used_s()
+    return sum(after[pid] - before[pid] for pid in after.keys() & before.keys()) / seconds
+
+
+def _used_s() -> dict[int, float]:
+    """Return the CPU time (s) of the processes below this one, without the browser."""
+    used = {}
+    for pid in _descendants(os.getpid()):
+        with suppress(OSError):  # the process has exited
+            if "chrom" not in _name(pid) and "node" not in _name(pid):
+                used[pid] = cpu_s(pid)
+    return used
 
 
 def _descendants(pid: int) -> list[int]:
-    found = []
-    for task in Path(f"/proc/{pid}/task").iterdir():
-        for child in map(int, (task / "children").read_text().split()):
-            found += [child, *_descendants(child)]
+    found: list[int] = []
+    with suppress(OSError):
+        for task in Path(f"/proc/{pid}/task").iterdir():
+            for child in map(int, (task / "children").read_text().split()):
+                found += [child, *_descendants(child)]
     return found
 
 
