@@ -74,6 +74,12 @@ def grade(
     return explained(graded, options, tell, build=rebuild, trial=trial) if options.explain else graded
 
 
+def can_be_explained(graded: Graded) -> bool:
+    """Return whether a failed check has a cause that can be tried: one with a fix, in simulated time."""
+    report = graded.report
+    return report.clock != "wall" and any(outcome.finding.fix for outcome in report.with_status(Status.FAILED))
+
+
 def explained(
     graded: Graded,
     options: Options,
@@ -83,12 +89,12 @@ def explained(
     trial: Callable[..., Trial] = Trial,
     give_up: Callable[[], bool] = lambda: False,
 ) -> Graded:
-    """Return the grading, with its causes proved by trying to fix them if the first trial ran in simulated time.
+    """Return the grading, with its causes proved by trying to fix them if that is possible.
 
     Before each try, `give_up` may say that the result is no longer wanted. `build` has the last build.
     """
     report, evidence = graded.report, graded.evidence
-    if report.clock == "wall" or not any(outcome.finding.fix for outcome in report.with_status(Status.FAILED)):
+    if not can_be_explained(graded):
         return graded
     again = dataclasses.replace(options, clock="simulated", explain=False)
 

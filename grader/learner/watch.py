@@ -15,7 +15,7 @@ from watchfiles import DefaultFilter, watch
 
 from grader.colcon.rebuild import Rebuild
 from grader.errors import UsageError
-from grader.grading.grade import Graded, explained, grade
+from grader.grading.grade import Graded, can_be_explained, explained, grade
 from grader.submission.package import open_answers, open_submission
 from grader.trial.trial import Plan, Trial
 
@@ -175,7 +175,7 @@ class Watched:
         self._judged = submission.digest
         self._wanted = self._unproved = None
         try:
-            graded = self._unproved = grade(
+            graded = grade(
                 self.exercise,
                 submission,
                 self._options,
@@ -186,7 +186,13 @@ class Watched:
             )
         finally:
             self._warm_up()
+        self._unproved = graded
         return graded
+
+    @property
+    def unproved(self) -> bool:
+        """Whether the last verdict has causes that `prove` has not tried yet."""
+        return self._unproved is not None and can_be_explained(self._unproved)
 
     def prove(self, tell: Callable[[str], None], give_up: Callable[[], bool]) -> Graded | None:
         """Prove the causes of the last verdict by trying to fix them in a copy (see `grader.grading.explain`).

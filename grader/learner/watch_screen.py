@@ -63,6 +63,8 @@ class _Screen:
         self._shown: Report | None = None
         self._below: list[str] = []
         """What was printed below the report."""
+        self._asked = False
+        """Whether a key has printed something since the verdict, which must stay on the screen."""
 
     def show(self, events: Events, notice: str) -> steps.Begun | None:
         """Show verdicts until the learner quits or starts another step. Return this step, or None to quit.
@@ -80,7 +82,7 @@ class _Screen:
             elif happened.key == "h":
                 self._hint()
             elif happened.key == "l":
-                steps.print_status(self._workspace, self._console)
+                self._list()
             elif happened.key == "n":
                 begun = self._next()
                 if begun is not None:
@@ -91,7 +93,7 @@ class _Screen:
         return None
 
     def _grade(self, notice: str = "") -> None:
-        self._shown, self._below = None, []
+        self._shown, self._below, self._asked = None, [], False
         if self._console.is_terminal:
             self._console.clear()
         try:
@@ -111,11 +113,13 @@ class _Screen:
 
     def _prove(self, events: Events) -> None:
         """Try the causes of the verdict while nothing else happens, and show what the tries have shown."""
+        if not self.watched.unproved:
+            return
         with self._working() as tell:
             proved = self.watched.prove(tell, events.waiting)
         if proved is None or self._shown is None:
             return
-        if self._console.is_terminal:
+        if self._console.is_terminal and not self._asked:
             self._console.clear()
             self._render(proved.report, sum(text.count("\n") + 1 for text in self._below) - BELOW)
             below, self._below = self._below, []
@@ -132,13 +136,17 @@ class _Screen:
         fits = whole.get().count("\n") + more + BELOW <= self._console.height
         terminal.render(report, self._console, brief=self._console.is_terminal and not fits)
 
+    def _list(self) -> None:
+        self._asked = True
+        steps.print_status(self._workspace, self._console)
+
     def _hint(self) -> None:
         # If the progress cannot be written, watching continues.
         try:
             notice = hints.hint(self._exercise.id, self._workspace)
         except GraderError as error:
             notice = str(error)
-        self._below.append(notice)
+        self._asked = True
         self._console.print(notice, markup=False, soft_wrap=not self._console.is_terminal)
 
     def _next(self) -> steps.Begun | None:

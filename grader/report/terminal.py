@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 RESULTS = {"passes": "then it passes", "further": "the node gets further", "refuted": "it still fails"}
-HIDDEN = "A hidden check tells no details. What it checks is in the lesson."
+HIDDEN = "A hidden check tells no details."
 NARROW = 50
 """A width in columns. On a narrower terminal, text is not indented under its label."""
 

@@ -123,7 +123,8 @@ def dependencies(evidence: Evidence, params: Dependencies) -> Finding:
 def _imported(evidence: Evidence) -> dict[str, Where]:
     """Return the ROS 2 packages that the nodes of the exercise import, with the line of the first import."""
     found: dict[str, Where] = {}
-    for view in evidence.views():
+    for trial in evidence.exercise.trials:
+        view = evidence.from_trial(trial.id)
         for package, where in imported_packages(view.code, evidence.submission.files).items():
             if PACKAGE.fullmatch(package):
                 found.setdefault(package, where)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import shutil
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -103,19 +104,28 @@ def test_causes_are_proved_after_the_verdict_unless_something_else_waits(package
     assert watched.rebuild.runs == 1
 
 
-def test_the_screen_shows_a_proof_when_it_is_there(package: Path) -> None:
+@pytest.mark.parametrize("asked", [False, True], ids=["nothing else", "a list"])
+@pytest.mark.parametrize("terminal", [False, True], ids=["pipe", "terminal"])
+def test_the_screen_shows_a_proof_when_it_is_there(package: Path, terminal: bool, asked: bool) -> None:
     change(node_of(package), "create_timer(0.5", "create_timer(0.05")
-    console = Console(file=io.StringIO(), width=200)
+    console = Console(file=io.StringIO(), width=200, height=60, force_terminal=terminal, color_system=None)
     screen = _Screen(find_exercise(STEP), package, None, Options(in_cell=bubblewrap.usable()), console)
-    with closing(screen.watched):
+    events = Events(None)
+    with closing(screen.watched), closing(events):
         screen._grade()
-        screen._prove(Events(None))
-    assert isinstance(console.file, io.StringIO)
-    verdict, _, proof = console.file.getvalue().partition("Watching ")
-    assert "    likely: The first argument of create_timer" in verdict
-    assert "    why: The first argument of create_timer" in proof
-    assert f"    tried: {PASSES}" in proof
-    assert "✓" not in proof
+        assert isinstance(console.file, io.StringIO)
+        before = len(console.file.getvalue())
+        if asked:
+            screen._list()
+        screen._prove(events)
+    verdict, proof = console.file.getvalue()[:before], console.file.getvalue()[before:]
+    assert re.search(r"likely:? +The first argument of create_timer", verdict)
+    assert re.search(r"why:? +The first argument of create_timer", proof)
+    assert re.search(rf"tried:? +{re.escape(PASSES)}", proof)
+    # A terminal shows the whole report again, but not over a list that the learner has asked for.
+    assert ("\x1b[2J" in proof) == ("✓ The node starts" in proof) == (terminal and not asked)
+    assert ("Watching " in proof) == (terminal and not asked)
+    assert ("steps passed" in proof) == asked
 
 
 def test_changes_that_symlink_install_would_miss_start_a_new_build(package: Path) -> None:

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from grader.checks.cause import Cause
 from grader.checks.outcome import Status, failed, passed
-from grader.report.terminal import render
+from grader.report.terminal import HIDDEN, render
 from grader.report.verdict import UNCONFINED
 from grader.submission.where import Where
 from grader.tests.report.reports import report
@@ -201,3 +201,13 @@ def test_every_status_has_its_own_sign() -> None:
     signs = {line[0] for line in reported(made).splitlines()[1:18] if not line.startswith(" ")}
     assert signs == {"✓", "✗", "-"}
     assert made.with_status(Status.SKIPPED)
+
+
+def test_a_failed_hidden_check_says_that_it_tells_nothing() -> None:
+    made = report("failed")
+    hidden = replace(
+        made, outcomes=tuple(replace(each, hidden=True) if each.id == "circle" else each for each in made.outcomes)
+    )
+    text = reported(hidden)
+    assert f"✗ The turtle drives a circle  0/25\n    {HIDDEN}\n" in text
+    assert "radius of the circle" not in text

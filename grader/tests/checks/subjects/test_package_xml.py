@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
+from grader.checks.exercises import find_exercise
+from grader.checks.kinds import KINDS
 from grader.checks.outcome import Status
+from grader.evidence.evidence import Evidence
+from grader.submission.tree import read_folder
+from grader.tests.case import ROOT
 from grader.tests.checks.changed import INIT, LINKED, of, setup_py, xml
 from grader.tests.checks.made import BUILD, NODE_FILE, PACKAGE_XML, evidence, finding, submission
 
@@ -89,6 +95,18 @@ def test_what_the_node_imports_must_be_declared(line: str, missing: str | None) 
     assert (found.status, found.diagnosis) == (Status.FAILED, "missing-depend")
     assert found.observed == f"package.xml does not declare {missing}."
     assert found.cause.startswith(f"{NODE_FILE}:{at + line.count(chr(10)) - 1} imports it.")
+
+
+def test_the_imports_of_each_node_of_an_exercise_must_be_declared() -> None:
+    step = find_exercise("07-challenges")
+    files = read_folder(ROOT / "solutions/07-challenges/my_robot_controller").files
+    last = f"my_robot_controller/{step.trials[-1].executable}.py"
+    files = {**files, last: b"from std_msgs.msg import String\n" + files[last]}
+    given = Evidence(step, replace(submission(), files=files))
+    spec = next(each for each in step.checks if each.id == "dependencies")
+    found = KINDS["dependencies"].judge(given, spec.params)
+    assert found.observed == "package.xml does not declare std_msgs."
+    assert found.cause.startswith(f"{last}:1 imports it.")
 
 
 def test_another_node_of_the_package_may_import_what_it_likes() -> None:
