@@ -11,7 +11,7 @@ from grader.exercise.completion import steps as known_steps
 from grader.exercise.completion import steps_or_next
 
 PANEL = "Learn"
-"""The heading in --help."""
+"""The heading of these commands in --help."""
 
 if TYPE_CHECKING:
     from grader.exercise.model import Exercise
@@ -22,7 +22,7 @@ Workspace = Annotated[
 ]
 Step = Annotated[
     Optional[str],  # noqa: UP045
-    typer.Argument(help="A step such as 03-circle-publisher or 03.", metavar="STEP", autocompletion=known_steps),
+    typer.Argument(help="A step, such as 03-circle-publisher or 03.", metavar="STEP", autocompletion=known_steps),
 ]
 
 
@@ -40,13 +40,18 @@ def start(
     step: Annotated[
         str,
         typer.Argument(
-            help="A step such as 03-circle-publisher or 03, or next.", metavar="STEP|next", autocompletion=steps_or_next
+            help="A step, such as 03-circle-publisher or 03, or next.",
+            metavar="STEP|next",
+            autocompletion=steps_or_next,
         ),
     ],
     workspace: Workspace = None,
-    student: Annotated[Optional[str], typer.Option(help="Your student id. Your own numbers depend on it.")] = None,  # noqa: UP045
+    student: Annotated[Optional[str], typer.Option(help="Your student id. Your numbers depend on it.")] = None,  # noqa: UP045
     fresh: Annotated[
-        bool, typer.Option("--fresh", help="Begin again from the step's starting point. Your work is moved aside.")
+        bool,
+        typer.Option(
+            "--fresh", help="Start the step again from its starting point. Your work is moved to another folder."
+        ),
     ] = False,
 ) -> None:
     """Add the files of a step to your workspace. Your own files are not overwritten."""
@@ -79,7 +84,7 @@ def hint(
     ] = None,
     workspace: Workspace = None,
 ) -> None:
-    """Show the next hint for a step. The first hints are small, and the last ones are nearly the answer."""
+    """Show the next hint for a step. The first hints are short, and the last ones almost give the answer."""
     from grader.learner import hints
 
     _print(hints.hint(step, workspace, part))
@@ -100,7 +105,7 @@ def solution(
     ],
     workspace: Workspace = None,
 ) -> None:
-    """Show the solution of a step next to yours, after yours has passed."""
+    """Show the solution of a step beside yours, after yours has passed."""
     from rich.console import Console
 
     from grader.learner.compare import print_solution
@@ -123,7 +128,7 @@ def watch(
 
 
 def _print(text: str) -> None:
-    """Print text. On a terminal, lines are wrapped between words. In a pipe, they are not wrapped."""
+    """Print text. Lines are wrapped between words on a terminal, but not in a pipe."""
     from rich.console import Console
 
     console = Console(highlight=False)
@@ -131,7 +136,7 @@ def _print(text: str) -> None:
 
 
 def place(path: Path | None, exercise: str | None, workspace: Path | None = None) -> tuple[Exercise, Path]:
-    """Return the exercise and the folder with the work on it.
+    """Return the exercise and the folder of the learner's work on it.
 
     Raises:
         UsageError: neither the path nor the learner's progress determines the exercise.

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 WIDE = 120
-"""The columns that a terminal needs to show both files side by side. A narrower terminal shows a unified diff."""
+"""The number of columns that a terminal needs to show both files side by side. Below it, a unified diff is shown."""
 
 
 def print_solution(step: str, folder: Path | None, console: Console) -> None:
-    """Print where the solution of a step differs from the learner's files, and the answers to "To think about".
+    """Print where the learner's files differ from the solution, and the answers to "To think about".
 
     Raises:
         UsageError: the step has not passed yet.
@@ -38,7 +38,7 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
         )
         raise UsageError(message)
     ideal = workspace.solution(exercise)
-    # The rest of the package grows with later steps, so only files that the learner had to write are compared.
+    # Later steps change the rest of the package, so compare only files that the learner had to write.
     ours = _texts(ideal / exercise.package if exercise.package else ideal, marked=True)
     theirs = _texts(workspace.work_folder(exercise, root))
     same = [path for path in ours if theirs.get(path) == ours[path]]
@@ -46,11 +46,11 @@ def print_solution(step: str, folder: Path | None, console: Console) -> None:
         if path not in same:
             _print_file(path, theirs.get(path, ""), ours[path], console)
     if same:
-        console.print(f"The same in both: {', '.join(same)}", soft_wrap=True, markup=False)
+        console.print(f"Equal files: {', '.join(same)}", soft_wrap=True, markup=False)
     thoughts = exercise.folder / "afterwards.md"
     if thoughts.is_file():
         text = thoughts.read_text(encoding="utf-8").removeprefix("# ").rstrip()
-        console.print("\n" + text.replace("\n   ", " "), markup=False)  # the console wraps the lines itself
+        console.print("\n" + text.replace("\n   ", " "), markup=False)  # the console wraps lines
 
 
 def _texts(folder: Path, *, marked: bool = False) -> dict[str, str]:

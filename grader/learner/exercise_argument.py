@@ -1,4 +1,4 @@
-"""Determine which exercise and which folder a learner means by the arguments of `grader check` and `grader watch`."""
+"""Determine the exercise and the folder from the arguments of `grader check` and `grader watch`."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise, Path]:
-    """Return the exercise and the folder with the work on it. See `guessed` for the arguments.
+    """Return the exercise and the folder of the work on it. See `guessed` for the arguments.
 
     Raises:
-        UsageError: nothing determines the exercise, or the step was never started.
+        UsageError: the arguments do not determine the exercise, or the step was never started.
     """
     known, place = guessed(path, exercise, folder)
     if known is None:
@@ -31,15 +31,15 @@ def meant(path: Path | None, exercise: str | None, folder: Path | None = None) -
 
 
 def guessed(path: Path | None, exercise: str | None, folder: Path | None = None) -> tuple[Exercise | None, Path]:
-    """Return the exercise, or None if nothing determines it, and the folder with the work on it.
+    """Return the exercise, or None if the arguments do not determine it, and the folder of the work on it.
 
-    `path` is what was typed: a package, a step ("03", "3"), the workspace (this means the current step), or None.
+    `path` is the path that was typed: a package, a step ("03", "3"), the workspace (for its current step), or None.
     `exercise` is the value of --exercise. `folder` is the workspace; None means the learner's default workspace.
 
         guessed(Path("03"), None)  # step 03 and the package in the workspace
 
     Raises:
-        UsageError: there is no exercise with that name, or the step was never started.
+        UsageError: no exercise has that name, or the step was never started.
     """
     root = progress.workspace_of(folder)
     if path is not None and not path.exists() and _is_step(str(path)):
@@ -56,7 +56,7 @@ def guessed(path: Path | None, exercise: str | None, folder: Path | None = None)
 
 
 def _is_step(name: str) -> bool:
-    """Return whether this is the id or the number of a step, and not a path."""
+    """Return whether the name is the id or the number of a step, and not a path."""
     return name.isdigit() or name in catalogue()
 
 
@@ -64,6 +64,6 @@ def _step(name: str, root: Path) -> tuple[Exercise, Path]:
     exercise = find_exercise(name)
     place = workspace.work_folder(exercise, root)
     if not place.is_dir():
-        message = f"{exercise.id} was not started in {root} yet: `grader start {exercise.id[:2]}`."
+        message = f"{exercise.id} has not been started in {root}. Start it with `grader start {exercise.id[:2]}`."
         raise UsageError(message)
     return exercise, place

@@ -1,4 +1,4 @@
-"""Give hints, one at a time. Hints for failed checks come first, and hints for passed checks are left out."""
+"""Give hints one by one. Hints for failed checks come first, and hints for passed checks are omitted."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
-    """Return the next hint of a step (the current one by default), or of a part of it.
+    """Return the next hint of a step (by default, the current one) or of a part of it.
 
-    After the last hint, it is returned again. If `step` is a single letter, it means that part of the current step.
+    After the last hint, the last one is repeated. If `step` is a single letter, it names a part of the current step.
 
     Raises:
         UsageError: no step was started, or the step has no such part.
@@ -36,7 +36,7 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
     known = progress.load(root).step(exercise.id)
     index = _next(exercise, wanted, known)
     if index is None:
-        return f"{_whole(exercise, part)} has passed. You need no more hints."
+        return f"{_whole(exercise, part)} has passed, so you do not need more hints."
     read = (*(each for each in known.read if each != index), index)
     progress.update(root, lambda before: before.with_step(exercise.id, replace(before.step(exercise.id), read=read)))
     place = f"{sum(each in read for each in wanted)} of {len(wanted)}"
@@ -44,18 +44,18 @@ def hint(step: str | None, folder: Path | None, part: str | None = None) -> str:
 
 
 def read_hints(exercise: Exercise, known: StepProgress) -> list[str]:
-    """Return the texts of the hints that were read, in the order in which they were read."""
+    """Return the texts of the hints that the learner has read, in the order of reading."""
     return [flowing(exercise.hints[index].text) for index in known.read if index < len(exercise.hints)]
 
 
 def has_next(exercise: Exercise, known: StepProgress) -> bool:
-    """Return whether there is a hint that was not read and that is about something that is not done."""
+    """Return whether any unread hint is about work that is not done."""
     index = _next(exercise, list(range(len(exercise.hints))), known)
     return index is not None and index not in known.read
 
 
 def flowing(text: str) -> str:
-    """Return the text without the line breaks of its file, because the width of the terminal may differ."""
+    """Return the text without the line breaks of its file, so that the terminal can wrap it."""
     return "\n\n".join(" ".join(paragraph.split()) for paragraph in text.split("\n\n"))
 
 
@@ -64,26 +64,27 @@ def _exercise(step: str | None, folder: Path | None) -> Exercise:
         return find_exercise(step)
     at = steps.current(folder)
     if at is None:
-        message = "Hints for which step? Name one, as in `grader hint 03`, or start one: `grader start 01`."
+        message = "No step was started. Name one, as in `grader hint 03`, or start one: `grader start 01`."
         raise UsageError(message)
     return at[0]
 
 
 def _part(exercise: Exercise, part: str) -> str:
-    """Return the letter of a part, whether it was typed as d, D or d)."""
+    """Return the letter of a part that was typed as d, D or d)."""
     letter = part.lower().rstrip(")")
     parts = sorted({each.part for each in exercise.hints if each.part})
     if letter not in parts:
         has = f"has the parts {a_list(parts)}" if parts else "has no parts"
         message = (
-            f"{exercise.id} {has}: {part!r} is not one of them. `grader hint {exercise.id[:2]}` gives the next hint."
+            f"{part!r} is not a part of {exercise.id}, which {has}. "
+            f"`grader hint {exercise.id[:2]}` gives the next hint."
         )
         raise UsageError(message)
     return letter
 
 
 def _next(exercise: Exercise, wanted: list[int], known: StepProgress) -> int | None:
-    """Return the index of the next hint, or None if everything that the hints help with is done."""
+    """Return the index of the next hint, or None if the work that the hints help with is done."""
     open_ = [index for index in wanted if not _is_done(exercise.hints[index], known)]
     if known.passed and not known.failed:
         open_ = []
@@ -101,7 +102,7 @@ def _is_done(hint: Hint, known: StepProgress) -> bool:
 
 
 def _about(exercise: Exercise, index: int, known: StepProgress) -> str:
-    """Return a phrase that names the failed check that the hint is for, or an empty string."""
+    """Return a phrase with the name of the failed check that the hint is for, or an empty string."""
     titles = {check.id: check.title for check in exercise.checks if not check.hidden}
     about = [titles[check] for check in known.failed if check in exercise.hints[index].checks and check in titles]
     return f', for "{about[0]}"' if about else ""

@@ -1,4 +1,4 @@
-"""How the learner's file differs from the solution, in one sentence."""
+"""Describe in one sentence how the learner's file differs from the solution."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from grader.common.words import a_list, count
 
 
 def difference(theirs: str, ours: str, path: str) -> str:
-    """Return a sentence about where the learner's text differs from ours."""
+    """Return a sentence about the differences between the learner's text and ours."""
     if not theirs:
-        return "You have no such file."
+        return "You do not have this file."
     mine, solution = (_parts(text) if path.endswith(".py") else None for text in (theirs, ours))
     if mine is None or solution is None:
         lines = set(theirs.splitlines()) ^ set(ours.splitlines())
@@ -33,7 +33,7 @@ def _sentence(begin: str, names: list[str]) -> str:
 
 
 def _parts(text: str) -> dict[str, str] | None:
-    """Return the functions and methods of a Python file, without comments and docstrings; None if it has an error."""
+    """Return the functions and methods of a Python file without comments and docstrings, or None if it has an error."""
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError):

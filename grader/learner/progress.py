@@ -1,6 +1,6 @@
-"""Progress: what a learner has done so far.
+"""The progress of a learner in the steps of the course.
 
-It is stored outside of the package, so that nothing there can delete it.
+It is stored outside the package, so that deleting the package does not delete it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ DEFAULT_WORKSPACE = Path("~/ros2_ws")
 
 @dataclass(frozen=True)
 class StepProgress:
-    """The progress in one step: the best points so far, the maximum in that report, and whether the step has passed."""
+    """The progress in one step: the best points so far, the maximum of that report, and whether the step has passed."""
 
     points: float = 0.0
     max: float = 0.0
@@ -38,9 +38,9 @@ class StepProgress:
     read: tuple[int, ...] = ()
     """The indices (in exercise.toml) of the hints that were read, in the order in which they were read."""
     failed: tuple[str, ...] = ()
-    """The ids of the checks that failed in the last verdict, in the same order."""
+    """The ids of the checks that failed in the last report, in the order of the report."""
     done: tuple[str, ...] = ()
-    """The ids of the checks that passed in the last verdict."""
+    """The ids of the checks that passed in the last report."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Progress:
     steps: dict[str, StepProgress] = field(default_factory=dict)
 
     def step(self, name: str) -> StepProgress:
-        """Return the progress in a step. For a step that was not started, it is empty."""
+        """Return the progress in a step. It is empty for a step that was not started."""
         return self.steps.get(name, StepProgress())
 
     def with_step(self, name: str, step: StepProgress) -> Progress:
@@ -64,7 +64,7 @@ class Progress:
         return replace(self, current=name, steps={**self.steps, name: self.step(name)})
 
     def graded(self, name: str, report: Report) -> Progress:
-        """Return a copy that includes a new verdict. Points never go down, and a step that has passed stays passed."""
+        """Return a copy that includes a new report. Points never decrease, and a passed step stays passed."""
         before = self.step(name)
         better = report.points >= before.points
         after = replace(
@@ -79,7 +79,7 @@ class Progress:
 
 
 def workspace_of(folder: Path | None) -> Path:
-    """Return the absolute path of the workspace: the named folder, ROS2_WORKSPACE, or ~/ros2_ws."""
+    """Return the absolute path of the workspace: `folder`, ROS2_WORKSPACE, or ~/ros2_ws."""
     named = folder or Path(os.environ.get("ROS2_WORKSPACE") or DEFAULT_WORKSPACE)
     return named.expanduser().resolve()
 
@@ -90,7 +90,7 @@ def state_file() -> Path:
 
 
 def load(workspace: Path) -> Progress:
-    """Return the progress in a workspace. At first, it is empty.
+    """Return the progress in a workspace. It is empty at first.
 
     Raises:
         MachineError: the file is damaged or cannot be read.
@@ -103,7 +103,7 @@ def load(workspace: Path) -> Progress:
 
 
 def _step(data: dict[str, Any]) -> StepProgress:
-    # Older versions stored only the number of hints that were read, because hints were always given in order.
+    # Older versions stored only the number of hints that were read, and hints were given in order.
     read = data.get("read", range(data.get("hints", 0)))
     lists = {"read": tuple(read), "failed": tuple(data.get("failed", ())), "done": tuple(data.get("done", ()))}
     return StepProgress(data["points"], data["max"], data["passed"], **lists)

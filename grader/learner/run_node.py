@@ -1,4 +1,4 @@
-"""Run the node of a step beside a turtlesim with its view: build, start both, and end both with Ctrl-C."""
+"""Run the node of a step beside a turtlesim with its view. Ctrl-C ends both."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise
 
 READY_S = 30.0
-"""How long turtlesim may take until it is there (s)."""
+"""The maximum time for starting turtlesim (s)."""
 ENDS_S = 5.0
-"""How long a program may take to end after Ctrl-C (s). Then it is killed."""
+"""The time that a program has to end after Ctrl-C (s) before it is killed."""
 
 
 @dataclass(frozen=True)
 class Program:
-    """What is run: the folder of the package, its name, and the executable."""
+    """The program to run: the folder and name of the package, and the executable."""
 
     folder: Path
     package: str
@@ -39,7 +39,7 @@ class Program:
 
 
 def program_of(step: str | None, executable: str | None, workspace: Path | None) -> Program:
-    """Return the program that is meant: by default, the one that the current step is about.
+    """Return the program to run. By default, this is the program of the current step.
 
     Raises:
         UsageError: the step has no node, was not started, or does not run this executable.
@@ -53,7 +53,7 @@ def program_of(step: str | None, executable: str | None, workspace: Path | None)
     if name not in names:
         guess = nearest(name, names)
         hint = f" Did you mean {guess}?" if guess else ""
-        message = f"{exercise.id} has no program {name}.{hint} It has: {', '.join(names)}."
+        message = f"{exercise.id} has no program {name}.{hint} Its programs are: {', '.join(names)}."
         raise UsageError(message)
     folder = place if (place / "package.xml").is_file() else place / exercise.package
     return Program(folder.resolve(), exercise.package, name)
@@ -67,8 +67,8 @@ def executables(exercise: Exercise) -> list[str]:
 def run(program: Program, *, view: bool) -> int:
     """Build the package, and run the program beside a turtlesim until Ctrl-C. Return the exit code for the user.
 
-    `view` shows the turtle on a page. If a turtlesim runs already, the program drives that one. The exit code is 0
-    after Ctrl-C, and 1 if the build failed or the node ended with an error; what they printed is on the terminal.
+    `view` shows the turtle on a page. If a turtlesim is running already, the program drives its turtle. The exit code
+    is 0 after Ctrl-C, and 1 if the build failed or the node ended with an error; what they printed is on the terminal.
     """
     from grader.ros import shell
 
@@ -81,18 +81,22 @@ def run(program: Program, *, view: bool) -> int:
         script = overlay / "lib" / program.package / program.executable
         if not script.is_file():
             print(
-                f"\nThe package has no executable {program.executable}. Look at the list console_scripts in "
+                f"\nThe package has no executable {program.executable}. See the list console_scripts in "
                 f"{program.folder / 'setup.py'}.",
                 file=sys.stderr,
             )
             return 1
         with nullcontext() if _turtle_is_there(env) else _turtlesim(env, view=view):
-            print(f"{program.executable} runs. Ctrl-C ends it, and the turtle, too.\n", file=sys.stderr, flush=True)
+            print(
+                f"{program.executable} is running. Press Ctrl-C to stop it and turtlesim.\n",
+                file=sys.stderr,
+                flush=True,
+            )
             return _until_it_ends(program, script, _with_overlay(env, overlay, program.folder))
 
 
 def _built(program: Program, place: Path, env: Mapping[str, str]) -> Path | None:
-    """Build with colcon outside of the workspace. Return install/<package>, or None if colcon failed and said why."""
+    """Build with colcon outside the workspace. Return install/<package>, or None if colcon printed an error."""
     bases = ["--build-base", str(place / "build"), "--install-base", str(place / "install")]
     colcon = interpreter(
         *("-c", "import sys; from colcon_core.command import main; sys.exit(main())"),
@@ -114,7 +118,7 @@ def _built(program: Program, place: Path, env: Mapping[str, str]) -> Path | None
     if done.returncode == 0 and overlay.is_dir():
         return overlay
     print(done.stdout.rstrip(), file=sys.stderr)
-    print("\nThe package could not be built: colcon says why, above.", file=sys.stderr)
+    print("\nThe package could not be built. See the messages of colcon above.", file=sys.stderr)
     return None
 
 
@@ -137,12 +141,12 @@ def _with_overlay(env: Mapping[str, str], overlay: Path, folder: Path) -> dict[s
 
 
 def _turtle_is_there(env: Mapping[str, str]) -> bool:
-    """Return whether a turtlesim runs already, for example `grader sim --view` in another terminal."""
+    """Return whether a turtlesim is running already, for example `grader sim --view` in another terminal."""
     start = interpreter("-m", "grader.ros2.main", "node", "list", env=env, searches=True)
     listed = subprocess.run(start.argv, env=start.env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
     there = b"/turtlesim" in listed.stdout.split()
     if there:
-        print("A turtlesim runs already, and the node uses it.", file=sys.stderr)
+        print("A turtlesim is running already, and the node uses it.", file=sys.stderr)
     return there
 
 
@@ -151,7 +155,7 @@ def _turtlesim(env: Mapping[str, str], *, view: bool) -> Iterator[None]:
     """Run turtlesim, and end it at the end of the block.
 
     Raises:
-        MachineError: it did not start; it has said why.
+        MachineError: it did not start; it has printed the reason.
     """
     options = ["--view"] if view else []
     with tempfile.TemporaryDirectory(prefix="grader-run-") as place:
@@ -185,16 +189,16 @@ def _until_it_ends(program: Program, script: Path, env: Mapping[str, str]) -> in
             code = node.wait(ENDS_S if interrupted else None)
             break
         except KeyboardInterrupt:
-            if not sys.stdin.isatty():  # a terminal has sent Ctrl-C to the node, too
+            if not sys.stdin.isatty():  # a terminal has also sent Ctrl-C to the node
                 node.send_signal(signal.SIGINT)
             interrupted = True
         except subprocess.TimeoutExpired:
-            print(f"\n{program.executable} did not end on Ctrl-C, so it was stopped by force.", file=sys.stderr)
+            print(f"\n{program.executable} did not end after Ctrl-C, so it was killed.", file=sys.stderr)
             node.kill()
     if interrupted:
         return 0
-    how = "without an error." if code == 0 else f"with exit code {code}. The lines above say where, and why."
-    print(f"\n{program.executable} has ended by itself, {how}", file=sys.stderr)
+    how = "without an error." if code == 0 else f"with exit code {code}. The lines above show where and why."
+    print(f"\n{program.executable} has ended {how}", file=sys.stderr)
     return 0 if code == 0 else 1
 
 

@@ -1,4 +1,4 @@
-"""The steps of the course: start a step, store a verdict, and show the progress."""
+"""The steps of the course: start a step, store a report, and show the progress."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ FIRST_OF_PART_TWO = "08"
 
 @dataclass(frozen=True)
 class Begun:
-    """A step that was started: the changes in the workspace, and the folder."""
+    """A step that was started, with the changes in the workspace and the folder of the work."""
 
     exercise: Exercise
     started: Started
@@ -41,7 +41,7 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
     """Start a step, or the next one ("next"), in the workspace.
 
     Raises:
-        UsageError: there is no such step, or (for "next") the current one has not passed yet.
+        UsageError: the step does not exist, or `step` is "next" and the current step has not passed yet.
     """
     root = progress.workspace_of(folder)
     exercise = _next(progress.load(root)) if step == "next" else find_exercise(step)
@@ -49,7 +49,7 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
         message = "--student needs a name or a number."
         raise UsageError(message)
 
-    # The student id is stored before any file is added. The step is stored once all its files are in place.
+    # Store the student id before adding files, and the current step after adding all its files.
     known = progress.update(
         root, lambda before: replace(before, student=student.strip() if student else before.student)
     )
@@ -59,17 +59,20 @@ def start(step: str, folder: Path | None, *, student: str | None = None, fresh: 
 
 
 def begin_message(begun: Begun) -> str:
-    """Return the text that `start` prints: what was added, what was left unchanged, and what to type next."""
+    """Return the text that `start` prints: the added and unchanged files, and the next commands."""
     started = begun.started
     lines = [f"{begun.exercise.id}: {begun.exercise.title}, in {started.folder}"]
     if started.kept:
-        lines.append(f"Your work so far is in {started.kept}.")
+        lines.append(f"Your earlier work was moved to {started.kept}.")
     if started.added:
         lines.append(f"Added {', '.join(started.added)}.")
     if started.present:
-        lines.append(f"Left as {'it is' if len(started.present) == 1 else 'they are'}: {', '.join(started.present)}.")
+        lines.append(f"Not changed: {', '.join(started.present)}.")
     for path, lacking in started.lacking.items():
-        lines += [f"This step needs more lines in {path}. Add to yours:", *(f"    {line}" for line in lacking)]
+        lines += [
+            f"This step needs more lines in {path}. Add these to your file:",
+            *(f"    {line}" for line in lacking),
+        ]
     lines += [f"To do in {path}: {task}" for path, tasks in started.tasks.items() for task in tasks]
     lesson = begun.exercise.folder / "lesson.md"
     lines += [
@@ -83,13 +86,13 @@ def begin_message(begun: Begun) -> str:
 
 
 def _setup_file() -> Path:
-    """Return the file that sets up ROS 2 and `grader` in a new terminal of the user's shell."""
+    """Return the file that adds ROS 2 and `grader` to a new terminal of the user's shell."""
     shell = "zsh" if Path(os.environ.get("SHELL", "")).name == "zsh" else "bash"
     return Path(sys.prefix, f"setup.{shell}")
 
 
 def current(folder: Path | None) -> tuple[Exercise, Path] | None:
-    """Return the current step and the folder with the work on it, or None before the first `start`."""
+    """Return the current step and the folder of the work on it, or None before the first `start`."""
     root = progress.workspace_of(folder)
     name = progress.load(root).current
     if name is None or name not in catalogue():
@@ -99,7 +102,7 @@ def current(folder: Path | None) -> tuple[Exercise, Path] | None:
 
 
 def note(exercise: Exercise, submission: Path, report: Report, folder: Path | None = None) -> str:
-    """Store a verdict on the work in the learner's workspace. Return what to do next, or an empty string."""
+    """Store a report in the learner's progress. Return a message about the next command, or an empty string."""
     root = progress.workspace_of(folder)
     begun = progress.load(root)
     if begun.current is None:
@@ -120,15 +123,15 @@ def note(exercise: Exercise, submission: Path, report: Report, folder: Path | No
         [
             *lines,
             "The next step: grader start next" if waiting else _open_steps(known),
-            f'Our solution, beside yours, and answers to "To think about": grader solution {exercise.id[:2]}',
+            f'Our solution beside yours, and the answers to "To think about": grader solution {exercise.id[:2]}',
         ]
     )
 
 
 def keep_picture(evidence: Evidence, report: Report, folder: Path | None = None) -> str:
-    """Draw the turtle's path in the workspace if the step is about driving and has passed. Return what to tell.
+    """Save an image of the turtle's path in the workspace if a step about driving has passed. Return a message.
 
-    The picture is a present. If it cannot be written, nothing is told.
+    The message is empty if no image was saved. An image that cannot be written is not an error.
     """
     exercise = evidence.exercise
     if report.exit_code != 0 or not any(KINDS[check.kind].drives for check in exercise.checks):
@@ -141,11 +144,11 @@ def keep_picture(evidence: Evidence, report: Report, folder: Path | None = None)
         save_picture(evidence, report, file)
     except (OSError, GraderError):
         return ""
-    return f"The picture of your turtle's path: {file}"
+    return f"Image of your turtle's path: {file}"
 
 
 def parts() -> dict[str, list[str]]:
-    """Return the steps of each part of the course, by the title of the part. A part without steps is left out."""
+    """Return the steps of each part of the course by the part's title. Parts without steps are omitted."""
     names = list(catalogue())
     found = {
         PART_ONE: [name for name in names if name < FIRST_OF_PART_TWO],
@@ -190,7 +193,7 @@ def _next(known: progress.Progress) -> Exercise:
         message = (
             f"{known.current} has not passed yet: `grader check` shows what is missing, and `grader hint` helps. To "
             "skip "
-            "it for now, name another step, as in `grader start 04`."
+            "this step for now, name another one, as in `grader start 04`."
         )
         raise UsageError(message)
     waiting = _waiting(known)
@@ -200,14 +203,14 @@ def _next(known: progress.Progress) -> Exercise:
 
 
 def _waiting(known: progress.Progress) -> list[str]:
-    """Return the steps after the current one that have not passed yet; all of them if they have all passed."""
+    """Return the steps after the current one that have not passed yet, or all of them if they have all passed."""
     names = list(catalogue())
     later = names[names.index(known.current or names[0]) + 1 :]
     return [name for name in later if not known.step(name).passed] or later
 
 
 def _open_steps(known: progress.Progress) -> str:
-    """Say after the last step which ones have not passed yet."""
+    """Return a sentence that lists the steps that have not passed yet, for the end of the course."""
     missing = [name for name in catalogue() if not known.step(name).passed]
     if not missing:
         return f"{known.current} was the last step. You have finished the course. `grader status` shows all steps."

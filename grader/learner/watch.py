@@ -1,6 +1,6 @@
 """Watch a folder and grade it after every save.
 
-While the learner works, the simulator and the launcher for the next trial are already waiting, and the last build is
+While the learner edits, the simulator and the launcher of the next trial are already waiting, and the last build is
 kept. Therefore, the verdict after a save takes little longer than the trial itself.
 """
 
@@ -30,17 +30,17 @@ if TYPE_CHECKING:
     from grader.submission.package import Submission
 
 DEBOUNCE_MS = 50
-"""Events within this time count as one, because an editor that saves by renaming causes several events (ms)."""
+"""The time within which events count as one (ms), because an editor that saves by renaming causes several events."""
 
 _STEP_MS = 25
-"""The interval for looking at new events (ms). At 10 ms, an idle watch uses 0.7 % of a core."""
+"""The interval of polling for new events (ms). At 10 ms, an idle watch uses 0.7 % of a core."""
 _LOOK_MS = 500
-"""The interval for checking whether the path still leads to the watched folder (ms)."""
+"""The interval of checking whether the path still leads to the watched folder (ms)."""
 
 
 @dataclass(frozen=True)
 class Happened:
-    """An event for the main loop: a save (which may have changed nothing), a key, or the end of the input."""
+    """An event for the main loop: a save (even without changes), a key press, or the end of the input."""
 
     kind: Literal["saved", "key", "end"]
     key: str = ""
@@ -68,12 +68,12 @@ class Events:
         self._queue: SimpleQueue[Happened] = SimpleQueue()
         self._stop = Event()
         self._saved = Event()
-        # There is one reader for all folders, because a second one would take keys from the first.
+        # All folders share one reader, because a second one would take keys from the first.
         if read_key is not None:
             Thread(target=self._keys, args=(read_key,), daemon=True).start()
 
     def watch(self, folder: Path) -> None:
-        """Watch only this folder from now on. Its first event is a save, sent once no later save can be missed."""
+        """Watch only this folder from now on. The first event is a save, sent as soon as later saves are noticed."""
         self._stop.set()
         self._stop = Event()
         Thread(target=self._watch, args=(folder, self._stop), daemon=True).start()
@@ -86,7 +86,7 @@ class Events:
             yield happened
 
     def waiting(self) -> bool:
-        """Return whether an event has happened that was not yielded yet."""
+        """Return whether an event has not been yielded yet."""
         return not self._queue.empty()
 
     def press(self, key: str) -> None:
@@ -148,7 +148,7 @@ class Watched:
         self._wanted: tuple[Plan, Ros] | None = None
         self._unproved: Graded | None = None
         self._judged = ""
-        """The digest of the last submission, or the reason why there was none."""
+        """The digest of the last submission, or the reason why none could be read."""
 
     def changed(self) -> bool:
         """Return whether the folder has changed since the last verdict."""
@@ -191,14 +191,14 @@ class Watched:
 
     @property
     def unproved(self) -> bool:
-        """Whether the last verdict has causes that `prove` has not tried yet."""
+        """Whether the last report has causes that `prove` has not tried yet."""
         return self._unproved is not None and can_be_explained(self._unproved)
 
     def prove(self, tell: Callable[[str], None], give_up: Callable[[], bool]) -> Graded | None:
-        """Prove the causes of the last verdict by trying to fix them in a copy (see `grader.grading.explain`).
+        """Prove the causes of the last report by trying to fix them in a copy (see `grader.grading.explain`).
 
-        Before each try, `give_up` may say that something else must be done first. Then the next call begins again.
-        Returns the verdict with what the tries have shown, or None if they have shown nothing new.
+        Before each try, `give_up` returns whether other work must be done first. If so, the next call starts again.
+        Return the report with the results of the tries, or None if they have changed nothing.
         """
         if self._unproved is None or give_up():
             return None

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from grader.report.report import Report
 
 BELOW = 5
-"""The number of lines below a report, for the watched folder, the keys and the response to a key."""
+"""The number of lines below a report, for the watched folder, the keys and the output of a key."""
 KEYS = "h hint · l list · n next · r rerun · q quit"
 
 
@@ -31,10 +31,12 @@ def run(exercise: Exercise, folder: Path, workspace: Path | None) -> None:
     """Grade now and after every save, until the user presses q or Ctrl-C, or the terminal is closed.
 
     Raises:
-        UsageError: there is no such folder.
+        UsageError: the folder does not exist.
     """
     if not folder.is_dir():
-        message = f"There is no folder {folder}. Start a step with `grader start`, or name the folder of your package."
+        message = (
+            f"The folder {folder} does not exist. Start a step with `grader start`, or name the folder of your package."
+        )
         raise UsageError(message)
     console = Console(highlight=False)
     options = Options(in_cell=bubblewrap.usable())
@@ -62,14 +64,14 @@ class _Screen:
         self._console = console
         self._shown: Report | None = None
         self._below: list[str] = []
-        """What was printed below the report."""
+        """The text that was printed below the report."""
         self._asked = False
-        """Whether a key has printed something since the verdict, which must stay on the screen."""
+        """Whether a key has printed text since the last report, which must stay on the screen."""
 
     def show(self, events: Events, notice: str) -> steps.Begun | None:
-        """Show verdicts until the learner quits or starts another step. Return this step, or None to quit.
+        """Show reports until the learner quits or starts another step. Return this step, or None to quit.
 
-        The first verdict clears the screen. `notice` is printed below it.
+        The first report clears the screen. `notice` is printed below it.
         """
         self._grade(notice)
         self._prove(events)
@@ -112,7 +114,7 @@ class _Screen:
         self._say(f"\nWatching {self.watched.folder}   {KEYS if self._console.is_terminal else ''}".rstrip())
 
     def _prove(self, events: Events) -> None:
-        """Try the causes of the verdict while nothing else happens, and show what the tries have shown."""
+        """Try the causes of the last report while no event waits, and show the results."""
         if not self.watched.unproved:
             return
         with self._working() as tell:
@@ -130,7 +132,7 @@ class _Screen:
         self._shown = proved.report
 
     def _render(self, report: Report, more: int) -> None:
-        """Print the full report if it and the lines below fit into the window. Otherwise, print only what failed."""
+        """Print the full report if it and the lines below it fit into the window. Otherwise, print only what failed."""
         with self._console.capture() as whole:
             terminal.render(report, self._console)
         fits = whole.get().count("\n") + more + BELOW <= self._console.height
@@ -141,7 +143,7 @@ class _Screen:
         steps.print_status(self._workspace, self._console)
 
     def _hint(self) -> None:
-        # If the progress cannot be written, watching continues.
+        # Continue watching even if the progress cannot be written.
         try:
             notice = hints.hint(self._exercise.id, self._workspace)
         except GraderError as error:

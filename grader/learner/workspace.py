@@ -1,4 +1,4 @@
-"""The learner's workspace: `start` adds the starting point of a step, and never overwrites a file of the learner."""
+"""The learner's workspace. `start` adds the starting point of a step, but never overwrites the learner's files."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 
 
 APART = "apart"
-"""The folder in a workspace that holds other workspaces, which colcon must not build with it."""
+"""The folder in a workspace for other workspaces, which colcon must not build together with it."""
 _PACKAGE_FILES = ("package.xml", "setup.py", "setup.cfg")
-"""Package files that need new lines from step to step, although the steps are about something else."""
+"""Package files to which later steps add lines."""
 _TASK = re.compile(r"(?:#|<!--)\s*(TODO \d+: .+?)\s*(?:-->)?$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class Started:
-    """What `start` did; the paths of files are relative to `folder`.
+    """The result of `start`. The paths of files are relative to `folder`.
 
-    `kept` is the folder to which older work was moved (with --fresh). `lacking` maps each package file that was left
-    unchanged to the lines of the step's version that it does not have, and `tasks` to its tasks (TODO 1: ...),
+    `kept` is the folder to which older work was moved (with --fresh). `lacking` maps each package file that was not
+    changed to the missing lines of the step's version, and `tasks` to the tasks in that version (TODO 1: ...),
     if the step is new to the folder.
     """
 
@@ -52,7 +52,7 @@ def starting_point(exercise: Exercise) -> Path:
     """
     folder = course_folder().parent / "exercises" / exercise.id
     if not folder.is_dir():
-        message = f"The starting point of {exercise.id} is missing ({folder}): install the course again."
+        message = f"The starting point of {exercise.id} is missing ({folder}). Install the course again."
         raise MachineError(message)
     return folder
 
@@ -73,7 +73,7 @@ def solution(exercise: Exercise) -> Path:
 def work_folder(exercise: Exercise, workspace: Path) -> Path:
     """Return the folder with the learner's work on a step: the package in src/, or a folder for answers.
 
-    A package that is not the learner's own has a workspace of its own: apart/ID/src/PACKAGE.
+    A package that the learner did not write is in a separate workspace: apart/ID/src/PACKAGE.
     """
     if not exercise.package:
         return workspace / "answers" / exercise.id
@@ -81,9 +81,9 @@ def work_folder(exercise: Exercise, workspace: Path) -> Path:
 
 
 def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = False) -> Started:
-    """Add the files of the step that the workspace does not have. With `fresh`, older work is moved aside first.
+    """Add the files of the step that are missing in the workspace. With `fresh`, older work is moved away first.
 
-    If the step uses the student's own numbers, they are drawn for `student`.
+    If the numbers of the step differ for each student, those of `student` are written.
 
     Raises:
         UsageError: the workspace is not a folder.
@@ -104,7 +104,7 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
         lacking = {path: lines for path in changed if (lines := _lacking(source / path, folder / path))}
         tasks = {path: lines for path in changed if added and (lines := _tasks(source / path, folder / path))}
     except (FileExistsError, NotADirectoryError) as error:
-        message = f"{error.filename} is a file, but a folder is needed. Name another workspace with --workspace."
+        message = f"{error.filename} is a file, but it must be a folder. Choose another workspace with --workspace."
         raise UsageError(message) from error
     except OSError as error:
         message = f"{error.filename or folder} could not be written: {error.strerror}."
@@ -113,10 +113,10 @@ def start(exercise: Exercise, workspace: Path, student: str, *, fresh: bool = Fa
 
 
 def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Copy the files of `source` that `folder` does not have, except for notebooks.
+    """Copy the files of `source` that are missing in `folder`, except for notebooks.
 
-    `instead` gives some of these files a different content. Returns the paths that were added, and those that were left
-    unchanged. Raises OSError.
+    `instead` replaces the content of some files. Return the paths that were added, and those that were not changed.
+    Raises OSError.
     """
     found = tree.read_folder(source)
     added, present = [], []
@@ -139,7 +139,7 @@ def add_missing(source: Path, folder: Path, instead: Mapping[str, bytes]) -> tup
 
 
 def _lacking(theirs: Path, mine: Path) -> tuple[str, ...]:
-    """Return the lines of the step's file that the learner's file does not have.
+    """Return the lines of the step's file that are missing in the learner's file.
 
     Comments, spaces, commas at the end of a line and the kind of quotes are ignored.
     """
@@ -153,14 +153,14 @@ def _lacking(theirs: Path, mine: Path) -> tuple[str, ...]:
 
 
 def _tasks(theirs: Path, mine: Path) -> tuple[str, ...]:
-    """Return the tasks in the comments of the step's file, unless the learner's file has the same one."""
+    """Return the tasks in the comments of the step's file that are missing in the learner's file."""
     known = mine.read_text(encoding="utf-8", errors="replace")
     tasks = (task.strip() for task in _TASK.findall(theirs.read_text(encoding="utf-8")))
     return tuple(task for task in tasks if task not in known)
 
 
 def _ignored(folder: Path) -> Path:
-    """Create a folder in the workspace whose packages colcon must not build next to the learner's own."""
+    """Create a folder in the workspace that colcon ignores, for packages that it must not build with the learner's."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / IGNORE_MARKER).touch()
     return folder

@@ -1,4 +1,4 @@
-"""How a verb of `ros2` fails: with a sentence on standard error and exit code 1, like the real verb."""
+"""The error of a `ros2` verb: a message on standard error and exit code 1, as in the real command."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ if TYPE_CHECKING:
 
 
 class Ros2Error(GraderError):
-    """The verb cannot do what the user asked for. Only the message is printed, or nothing if it is empty."""
+    """A verb failed. Only the message is printed, or nothing if it is empty."""
 
     exit_code = 1
 
 
 def did_you_mean(name: str, candidates: Iterable[str], text: str = "") -> str:
-    """Return `text`, followed by a line that suggests the candidate most similar to `name`, if there is one."""
+    """Return `text`, followed by a line that suggests the most similar candidate if one is similar enough."""
     others = [candidate for candidate in candidates if candidate != name]
     found = others[0] if len(others) == 1 and others[0].endswith(f"/{name}") else nearest(name, others)
     if not found and len(name) > 2:

@@ -24,7 +24,7 @@ def prefixes() -> list[Path]:
 
 
 def _resources(kind: str) -> dict[str, Path]:
-    """Return the packages that have a resource of this kind, sorted by name, each with its first prefix."""
+    """Return the packages that have a resource of this kind, with the first prefix of each, sorted by name."""
     found: dict[str, Path] = {}
     for prefix in prefixes():
         for file in _entries(prefix / _INDEX / kind):
@@ -38,7 +38,7 @@ def packages() -> dict[str, Path]:
 
 
 def contents(kind: str) -> dict[str, list[str]]:
-    """Return the lines of all entries in a part of the index, such as "rclcpp_components", sorted by package."""
+    """Return the lines of each package's resource of this kind, such as "rclcpp_components", sorted by package."""
     return {
         name: (prefix / _INDEX / kind / name).read_text("utf-8", "replace").splitlines()
         for name, prefix in _resources(kind).items()
@@ -46,11 +46,11 @@ def contents(kind: str) -> dict[str, list[str]]:
 
 
 def prefix_of(package: str, unknown: str, likely: Iterable[str] = ()) -> Path:
-    """Return the prefix of a package.
+    """Return the first prefix on AMENT_PREFIX_PATH that contains the package.
 
     Raises:
-        Ros2Error: there is no such package. The message is `unknown` and the most similar name from `likely`, or from
-            all packages if `likely` is empty.
+        Ros2Error: the package is not installed. The message is `unknown` and the most similar name from `likely`, or
+            from all packages if `likely` is empty.
     """
     found = packages()
     if package not in found:
@@ -62,7 +62,7 @@ def executables(package: str, unknown: str) -> list[Path]:
     """Return the executables in a package that `ros2 run` can start, sorted by path.
 
     Raises:
-        Ros2Error: there is no such package. The message is `unknown`.
+        Ros2Error: the package is not installed. The message is `unknown`.
     """
     folder = prefix_of(package, unknown) / "lib" / package
     return sorted(path for path in _walk(folder) if path.is_file() and os.access(path, os.X_OK))
@@ -77,7 +77,7 @@ def interfaces(package: str) -> list[str]:
     """Return the sorted interfaces of a package, for example "geometry_msgs/msg/Twist". The list may be empty.
 
     Raises:
-        Ros2Error: there is no such package.
+        Ros2Error: the package is not installed.
     """
     found = interface_packages()
     if package not in found:
@@ -98,7 +98,7 @@ def interface_file(name: str) -> Path:
     """Return the file that defines an interface: "geometry_msgs/msg/Twist" -> .../geometry_msgs/msg/Twist.msg.
 
     Raises:
-        Ros2Error: there is no interface with this name.
+        Ros2Error: no installed interface has this name.
     """
     parts = name.split("/")
     if not all(parts):

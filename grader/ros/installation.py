@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 DISTRO = "jazzy"
 SEARCHED = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH")
-"""The variables with search paths for ROS 2 and overlays."""
+"""The environment variables that hold the search paths of ROS 2 and its overlays."""
 FASTDDS_PROFILE = Path(__file__).with_name("fastdds.xml")
 _UNWATCHED = (
     "ROS_LOG_DIR",
@@ -33,14 +33,14 @@ _UNWATCHED = (
     "PYTHONUNBUFFERED",
     "OPENBLAS_NUM_THREADS",
 )
-"""Variables that are set only in a trial. Nodes that users start themselves use the users' own settings."""
+"""Variables that are set only in a trial. Nodes that users start themselves use the users' settings."""
 _THEIRS = frozenset(
     {
         *("HOME", "LANG", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "RMW_IMPLEMENTATION"),
         *("FASTDDS_BUILTIN_TRANSPORTS", "FASTRTPS_DEFAULT_PROFILES_FILE"),
     }
 )
-"""Variables that keep the values that the user has set."""
+"""Variables whose values are kept if the user has set them."""
 _PYTHON_LIB = Path(f"lib/python{sys.version_info.major}.{sys.version_info.minor}/site-packages")
 
 
@@ -58,24 +58,24 @@ class Ros:
     python_path: tuple[Path, ...]
     library_path: tuple[Path, ...]
     underlay: Path | None = None
-    """The prefix of the turtlesim interfaces that grader.ros.underlay built; None if the installation has its own."""
+    """The prefix of the turtlesim interfaces that grader.ros.underlay built, or None if ROS 2 includes turtlesim."""
 
     @property
     def name(self) -> str:
-        """The name in a report. It contains no paths of this machine."""
+        """The name in a report. It contains no paths, so reports of different machines are equal."""
         return f"Jazzy (rclpy {self.version}, {'sourced' if self.kind == 'sourced' else 'wheels'})"
 
     @property
     def all_prefixes(self) -> tuple[Path, ...]:
-        """The ament prefixes, and the underlay if there is one."""
+        """The ament prefixes, including the underlay if there is one."""
         return (*self.prefixes, *([self.underlay] if self.underlay else []))
 
 
 def find_ros(env: Mapping[str, str] = os.environ) -> Ros:
-    """Return the ROS 2 Jazzy to use: the sourced installation, or else the wheels in this Python's environment.
+    """Return the ROS 2 Jazzy to use: the sourced installation, or else the wheels in this Python environment.
 
     Raises:
-        MachineError: there is neither.
+        MachineError: neither exists.
     """
     ros = _sourced(env) or _wheels(Path(sys.prefix))
     if ros is None:
@@ -84,7 +84,7 @@ def find_ros(env: Mapping[str, str] = os.environ) -> Ros:
 
 
 def _why_none(env: Mapping[str, str]) -> str:
-    """Return a message that explains why no ROS 2 Jazzy was found and what to type."""
+    """Return a message that explains why no ROS 2 Jazzy was found and which command to type."""
     made = made_for(Path(sys.prefix))
     if made is not None:
         return (
@@ -100,7 +100,7 @@ def _why_none(env: Mapping[str, str]) -> str:
 
 
 def made_for(prefix: Path) -> str | None:
-    """Return the sourced ROS 2 that this environment was set up for (grader.setup.bootstrap); None for the wheels."""
+    """Return the prefix of the sourced ROS 2 that this environment was set up for, or None if it uses the wheels."""
     try:
         ros = json.loads((prefix / "course-setup.json").read_text(encoding="utf-8"))["ros"]
     except (OSError, ValueError, KeyError, TypeError):
@@ -109,10 +109,10 @@ def made_for(prefix: Path) -> str | None:
 
 
 def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: int | None = 0) -> dict[str, str]:
-    """Return the whole environment of a child process. It contains nothing from the caller's environment.
+    """Return the complete environment of a child process. Nothing is inherited from the caller's environment.
 
-    `overlays` are install folders of packages (install/<package>), which are searched first. `home` must be writable,
-    since HOME and ROS_LOG_DIR are in it. `domain` is None in a room (grader.sandbox), which has its own network.
+    `overlays` are install folders of packages (install/<package>), and are searched first. `home` must be writable,
+    since HOME and ROS_LOG_DIR are inside it. `domain` is None in a room (grader.sandbox), which has its own network.
     """
     local = [*overlays, *([ros.underlay] if ros.underlay else [])]
     env = {
@@ -120,7 +120,7 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
         "HOME": str(home),
         "LANG": "C.UTF-8",
         "PYTHONNOUSERSITE": "1",
-        # Sets and dictionaries have the same order in every run, so that equal submissions get equal reports.
+        # Sets have the same order in every run, so that equal submissions get equal reports.
         "PYTHONHASHSEED": "0",
         # Every printed line arrives immediately, as on a terminal.
         "PYTHONUNBUFFERED": "1",
@@ -138,7 +138,7 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
         "CMAKE_PREFIX_PATH": os.pathsep.join(map(str, [*local, *ros.prefixes])),
         "LD_LIBRARY_PATH": os.pathsep.join(map(str, [*(p / "lib" for p in local), *ros.library_path])),
         "PYTHONPATH": os.pathsep.join(map(str, [*(p / _PYTHON_LIB for p in local), *ros.python_path])),
-        # Otherwise, the .pth file of the wheels would start every interpreter a second time, and mix their libraries
+        # Without this, the .pth file of the wheels would start every interpreter a second time and mix their libraries
         # with those of a sourced ROS.
         "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1",
         # `msg.linear.x = 2` raises a clear error instead of sending garbage.
@@ -152,20 +152,20 @@ def environment(ros: Ros, *, home: Path, overlays: Sequence[Path] = (), domain: 
 
 
 def domain_of(uid: int) -> int:
-    """Return a user's ROS domain id, from 1 to 101. Users whose user ids are close together never share a domain.
+    """Return the default ROS domain id of a user, from 1 to 101. Users with adjacent user ids get different domains.
 
-    Domain 101 is the highest domain with ports below Linux's range of ephemeral ports. The default in ROS 2 is 0.
+    The ports of domain 101 are the highest ones below Linux's range of ephemeral ports. The default in ROS 2 is 0.
     """
     return 1 + uid % 101
 
 
 def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int | None = None) -> dict[str, str]:
-    """Return the environment of a node that a user starts: the user's own environment and what ROS 2 needs.
+    """Return the environment of a node that a user starts: the user's environment with the variables of ROS 2 added.
 
-    The user's own settings are kept, and workspaces that the user sourced are searched first. The domain is `domain`
-    if it is not None, or else the domain that the user has set. If neither is given, each user gets a separate domain,
-    since classmates on one machine must not drive each other's turtles. With a sourced ROS 2, the domain is then 0, its
-    own default. Otherwise, nodes in this environment could not reach nodes in terminals that only source that ROS 2.
+    The user's settings are kept, and workspaces that the user sourced are searched first. The domain is `domain`
+    if it is not None, or else the domain that the user has set. If neither is set, each user gets a separate domain,
+    so that classmates on one machine do not drive each other's turtles. With a sourced ROS 2, the domain is 0 instead,
+    the default of ROS 2, so that nodes in this environment reach nodes in terminals that only source that ROS 2.
     """
     home = Path(env.get("HOME", "/"))
     own = 0 if ros.kind == "sourced" else domain_of(os.getuid())
@@ -188,7 +188,7 @@ def users_environment(ros: Ros, env: Mapping[str, str] = os.environ, domain: int
 
 
 def who_hears(env: Mapping[str, str]) -> str:
-    """Return a message for the user that says which domain an environment's nodes use and who can reach them."""
+    """Return a message for the user that states the domain of the nodes in an environment and who can reach them."""
     domain = env.get("ROS_DOMAIN_ID") or "0"
     reach = env.get("ROS_AUTOMATIC_DISCOVERY_RANGE") or "SUBNET"
     if reach == "LOCALHOST" or env.get("ROS_LOCALHOST_ONLY") == "1":
@@ -199,7 +199,7 @@ def who_hears(env: Mapping[str, str]) -> str:
 
 
 def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str:
-    """Return a search path with the user's own entries first. Omit those of another ROS 2 or an older underlay."""
+    """Return a search path that starts with the user's entries, without those of another ROS 2 or an older underlay."""
     ours = [entry for entry in needed.get(name, "").split(os.pathsep) if entry]
     prefixes = [Path(entry) for entry in env.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if entry]
     current = needed["AMENT_PREFIX_PATH"].split(os.pathsep)
@@ -210,7 +210,7 @@ def _joined(name: str, needed: Mapping[str, str], env: Mapping[str, str]) -> str
 
 
 def _users_path(ros: Ros, env: Mapping[str, str]) -> str:
-    """Return PATH with our commands added: last with a sourced ROS 2, or else first, so that `python3` has rclpy."""
+    """Return PATH with our commands: last with a sourced ROS 2, or else first, so that `python3` has rclpy."""
     path = env.get("PATH", "/usr/local/bin:/usr/bin:/bin")
     ours = str(Path(sys.prefix, "bin"))
     if ours in path.split(os.pathsep):
@@ -226,7 +226,7 @@ def _sourced(env: Mapping[str, str]) -> Ros | None:
     if prefix is None:
         return None
 
-    # Use only the installation's own entries, since a workspace that a student sourced must not hide anything.
+    # Use only the entries of the installation. A workspace that a student sourced must not hide any of its packages.
     def own(variable: str) -> tuple[Path, ...]:
         entries = [Path(p) for p in env.get(variable, "").split(os.pathsep) if p]
         return tuple(p for p in entries if p.is_relative_to(prefix))
@@ -261,7 +261,7 @@ def _has(prefix: Path, package: str) -> bool:
 
 
 def has_turtlesim(ros: Ros) -> bool:
-    """Return whether this ROS 2 has its own turtlesim. If so, ours does not have to be built."""
+    """Return whether this ROS 2 includes turtlesim. If it does, the interfaces do not have to be built."""
     return any(_has(prefix, "turtlesim") for prefix in ros.prefixes)
 
 

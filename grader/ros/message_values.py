@@ -1,4 +1,4 @@
-"""Values of messages: fill a message with values that a user typed as YAML, and get parts of a message by name."""
+"""Values of messages: set fields from values that a user typed as YAML, and get fields by name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from grader.ros.failure import Ros2Error, did_you_mean
 from grader.ros.rendering import ARRAY
 
 Stamper = Callable[[Any], None]
-"""Sets a field to a time stamp (builtin_interfaces/msg/Time)."""
+"""A function that sets a field to a time stamp (builtin_interfaces/msg/Time)."""
 
 
 def load_type(name: str, kind: str, what: str = "message type", text: str = "") -> Any:  # noqa: ANN401
@@ -40,7 +40,7 @@ def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
     """Return the values that a user typed, such as "{linear: {x: 2.0}}". An empty string means an empty dictionary.
 
     Raises:
-        Ros2Error: the string is not valid YAML, or it is not a dictionary but `dictionary` is true.
+        Ros2Error: the string is not valid YAML, or `dictionary` is true and the value is not a dictionary.
     """
     try:
         values = yaml.safe_load(text)
@@ -64,7 +64,7 @@ def parse(text: str, *, dictionary: bool = True) -> Any:  # noqa: ANN401
 
 
 class MisfitError(Ros2Error):
-    """The values do not fit the message. `cause` is the error that Python would raise, and `help` is a hint."""
+    """The values do not match the message. `cause` is the error that Python would raise, and `hint` helps the user."""
 
     def __init__(self, cause: Exception, hint: str = "") -> None:
         self.cause = cause
@@ -75,11 +75,12 @@ class MisfitError(Ros2Error):
 def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:  # noqa: ANN401
     """Set the fields of a message that are in `values`, and return the message. Other fields keep their values.
 
-    With `stamps`, a header may be "auto" and a time may be "now". The functions that set these fields are added to the
+    If `stamps` is given, a header may be "auto" and a time may be "now". The functions that set these fields are
+    appended to the
     list.
 
     Raises:
-        MisfitError: there is no such field, or the value does not fit the field.
+        MisfitError: the message has no such field, or the value does not match the type of the field.
     """
     types = message.get_fields_and_field_types()
     if not isinstance(values, dict):
@@ -101,11 +102,11 @@ def fill(message: Any, values: Any, stamps: list[Stamper] | None = None) -> Any:
 
 
 MOST_TEXT = 1000
-"""The maximum length of a string, and of an array, in the result of `plain`."""
+"""The maximum length of a string and of an array in the result of `plain`."""
 
 
 def plain(message: Any) -> Any:  # noqa: ANN401
-    """Return a message, or a value of a field, as plain data. Long strings and arrays are cut."""
+    """Return a message, or the value of a field, as plain data. Long strings and arrays are truncated."""
     if hasattr(message, "get_fields_and_field_types"):
         return {name: plain(getattr(message, name)) for name in message.get_fields_and_field_types()}
     if isinstance(message, str):
@@ -159,10 +160,10 @@ def _scalar(value: Any, declared: str) -> Any:  # noqa: ANN401
 def field(value: Any, path: str, *, complete: bool = True) -> Any:  # noqa: ANN401
     """Return a part of a message, such as "linear.x" or "poses[0].position".
 
-    If the message is not `complete`, elements of arrays may be missing. In this case, the result is None.
+    The result is None if the message is not `complete` and the element of an array is missing.
 
     Raises:
-        Ros2Error: there is no such field.
+        Ros2Error: the message has no such field.
     """
     for part in re.findall(r"[^.\[\]]+|\[\d+\]", path):
         if part.startswith("["):

@@ -9,23 +9,23 @@ from typing import Any
 import yaml
 
 TRUNCATED_AT = 128
-"""How many elements of an array, or characters of a string, are printed by default."""
+"""The default maximum number of elements of an array, or characters of a string, that are printed."""
 ARRAY = re.compile(r"sequence<(?P<sequence>.+?)(?:, (?P<most>\d+))?>|(?P<array>.+)\[(?P<size>\d+)\]")
-"""The types of fields that hold several values: "sequence<double>", "sequence<double, 5>", "double[36]"."""
+"""Matches the types of fields that hold several values: "sequence<double>", "sequence<double, 5>", "double[36]"."""
 
 
 @dataclass(frozen=True)
 class Form:
-    """How much of a message is shown: up to `limit` elements or characters, with or without arrays and strings.
+    """How much of a message is printed: at most `limit` elements or characters, with or without arrays and strings.
 
-    If `limit` is None, everything is shown.
+    If `limit` is None, everything is printed.
     """
 
     limit: int | None = TRUNCATED_AT
     arrays: bool = True
     strings: bool = True
     flow: bool = False
-    """Whether an array is on one line, as in "[1, 2]"."""
+    """Whether an array is printed on one line, as in "[1, 2]"."""
 
 
 class _Dumper(yaml.SafeDumper):  # type: ignore[misc]
@@ -67,13 +67,13 @@ def plain(value: Any, form: Form | None = None, declared: str = "") -> Any:  # n
 
 
 def to_yaml(value: Any, form: Form | None = None) -> str:  # noqa: ANN401
-    """Return a message as YAML, with a line break at the end."""
+    """Return a message as YAML that ends with a newline."""
     form = form or Form()
     return dumped(plain(value, form), form)
 
 
 def dumped(values: Any, form: Form) -> str:  # noqa: ANN401
-    """Return plain dictionaries, lists, numbers and strings as YAML, with a line break at the end."""
+    """Return plain dictionaries, lists, numbers and strings as YAML that ends with a newline."""
     text: str = yaml.dump(
         values, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=form.flow
     )
@@ -81,7 +81,7 @@ def dumped(values: Any, form: Form) -> str:  # noqa: ANN401
 
 
 def on_one_line(value: Any) -> str:  # noqa: ANN401
-    """Return a message in the form that is typed after `ros2 topic pub`, as in "{linear: {x: 0.0}}"."""
+    """Return a message on one line, in the format that `ros2 topic pub` accepts, as in "{linear: {x: 0.0}}"."""
     text: str = yaml.safe_dump(
         plain(value), sort_keys=False, allow_unicode=True, width=float("inf"), default_flow_style=True
     )

@@ -1,4 +1,4 @@
-# Puts ROS 2, its commands and `grader` into this terminal. Type this in each new terminal, with the real path:
+# Adds ROS 2, its commands and `grader` to this terminal. Type this in each new terminal, with your path:
 #     source ~/ros2-course/.venv/setup.bash
-# It is in the root of the environment, like that of /opt/ros/jazzy. If a ROS 2 Jazzy is sourced, that one is used.
+# The file is in the root of the environment, as in /opt/ros/jazzy. If a ROS 2 Jazzy is sourced, that one is used.
 eval "$("$(CDPATH= cd -- "$(dirname -- "${BASH_SOURCE[0]}")" > /dev/null && pwd)/bin/grader" env)"

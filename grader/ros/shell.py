@@ -1,4 +1,4 @@
-"""A shell with ROS 2: what `grader env` prints, and the shell that `grader shell` opens."""
+"""A shell with ROS 2: the code that `grader env` prints, and the shell that `grader shell` opens."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 HIGHEST_DOMAIN = 101
 COMMANDS = ("ros2", "rqt", "rqt_console", "rqt_graph", "rqt_plot")
-"""The commands that have completion in the shell."""
+"""The commands that the shell can complete."""
 
 
 def users_environment(
@@ -26,11 +26,11 @@ def users_environment(
     """Return the user's environment with ROS 2 added. Build the turtlesim interfaces first if necessary.
 
     Raises:
-        UsageError: there is no such domain.
-        MachineError: there is no ROS 2, or turtlesim could not be built.
+        UsageError: the domain does not exist.
+        MachineError: ROS 2 was not found, or turtlesim could not be built.
     """
     if domain is not None and not 0 <= domain <= HIGHEST_DOMAIN:
-        message = f"A domain id is a whole number from 0 to {HIGHEST_DOMAIN}, and {domain} is not."
+        message = f"A domain id is a whole number from 0 to {HIGHEST_DOMAIN}, but this one is {domain}."
         raise UsageError(message)
     ros = underlay.with_turtlesim(installation.find_ros(env), tell)
     return installation.users_environment(ros, env, domain)
@@ -39,7 +39,7 @@ def users_environment(
 def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sourced: bool = False) -> str:
     """Return code for bash, zsh and sh that turns `env` into `wanted` and sets up completion for our commands.
 
-    `sourced` means that the ROS 2 installation is not ours and may have its own rqt_graph.
+    `sourced` is whether the ROS 2 installation is a sourced one, which may have its own rqt_graph.
     """
     lines = [f"# For `source <(grader env)`: ROS 2 Jazzy, in domain {wanted['ROS_DOMAIN_ID']}."]
     lines += [f"export {name}={shlex.quote(value)}" for name, value in wanted.items() if env.get(name) != value]
@@ -62,7 +62,7 @@ def code(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ, *, sour
 
 
 def open_shell(wanted: Mapping[str, str], env: Mapping[str, str] = os.environ) -> None:
-    """Replace this process with the user's shell, which sets up ROS 2 as in `wanted` after its start-up files."""
+    """Replace this process with the user's shell. After its start-up files, the shell adds the ROS 2 of `wanted`."""
     shell = env.get("SHELL") or "/bin/bash"
     argv, variables = [shell, "-i"], {}
     # Run our code after the start-up files, because they may set PATH or source a ROS 2.

@@ -1,4 +1,4 @@
-"""How our commands start: the real commands take precedence, and ROS 2 is added to the environment."""
+"""The start of our commands: replace them with the real ones where possible, and add ROS 2 to the environment."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _STARTED_AGAIN = "_GRADER_ROS2_STARTED_AGAIN"
 
 
 def hand_over(command: str, package: str) -> None:
-    """Replace this process with the real command if a sourced ROS 2 has this package, regardless of PATH."""
+    """Replace this process with the real command if a sourced ROS 2 has the package, whatever the order in PATH."""
     ours = Path(sys.argv[0])
     for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
         theirs = Path(prefix, "bin", command)
@@ -27,10 +27,10 @@ def hand_over(command: str, package: str) -> None:
 
 
 def see_to_environment(needed: Collection[str]) -> None:
-    """Start this command again with ROS 2 in the environment, unless the needed packages can be found already.
+    """Restart this command with ROS 2 in the environment, unless all needed packages are found already.
 
     Raises:
-        MachineError: there is no ROS 2.
+        MachineError: ROS 2 was not found.
     """
     if set(needed) <= index.packages().keys() or _STARTED_AGAIN in os.environ:
         os.environ.pop(_STARTED_AGAIN, None)

@@ -1,4 +1,4 @@
-"""The message types for rosbags: those of ROS 2 Jazzy, and others from installed .msg files."""
+"""The message types for rosbags: those of ROS 2 Jazzy, and those of installed .msg files."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 
 def jazzy_types() -> Typestore:
-    """Return the types that ROS 2 Jazzy includes. The types of turtlesim are not among them."""
+    """Return the types that rosbags includes for ROS 2 Jazzy. turtlesim is not among them."""
     return get_typestore(Stores.ROS2_JAZZY)
 
 
 def register(store: Typestore, name: str, prefixes: Sequence[Path]) -> None:
     """Add a type and the types of its fields to the store, as defined by the .msg files under the prefixes.
 
-    The store does not change if there is no such file.
+    If the file of the type does not exist, the store does not change.
     """
     if name in store.types:
         return

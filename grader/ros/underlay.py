@@ -31,7 +31,7 @@ _LOG_LINES = 15
 
 
 def _report_nothing(_: str) -> None:
-    """Discard the message, because nobody reads it."""
+    """Discard a progress message."""
 
 
 def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing) -> installation.Ros:
@@ -46,7 +46,7 @@ def with_turtlesim(ros: installation.Ros, tell: Callable[[str], None] = _report_
 def ensure(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing) -> Path | None:
     """Return the prefix of our turtlesim, or None if this ROS 2 has its own. Build our turtlesim first if necessary.
 
-    A build takes about ten seconds and passes its progress to `tell` line by line. If there is a build already, this
+    A build takes about ten seconds and passes each line of its progress to `tell`. If a build exists already, this
     function takes about a millisecond.
 
     Raises:
@@ -76,7 +76,7 @@ def ensure(ros: installation.Ros, tell: Callable[[str], None] = _report_nothing)
 
 
 def _name(ros: installation.Ros, compiler: Path | None) -> str:
-    """Return a name for the build that depends on all its inputs. This does not start a process."""
+    """Return a name for the build that depends on all its inputs. No process is started for it."""
     return f"turtlesim-{_key_of_sources(ros)}-{_key_of_compiler(compiler)}"
 
 
@@ -107,7 +107,7 @@ def _compiler(search: str) -> Path | None:
 
 
 def _built_by_another_compiler(ros: installation.Ros) -> Path | None:
-    """Return a finished build whose compiler has since been removed. The build still works."""
+    """Return a finished build whose compiler has since been removed. The build can still be used."""
     builds = xdg.cache().glob(f"turtlesim-{_key_of_sources(ros)}-*")
     return max(builds, key=lambda build: build.stat().st_mtime, default=None)
 
@@ -129,7 +129,7 @@ def _require_tools(search: str) -> None:
     if missing:
         manager = package_managers.find_manager(search)
         message = (
-            f"The turtlesim interfaces must be built once, and this machine lacks {_listed(missing)} for that. "
+            f"The turtlesim interfaces must be built once, but this machine lacks {_listed(missing)}. "
             f"Install it: {package_managers.command(manager, missing, root=os.geteuid() == 0)}"
         )
         raise MachineError(message)
@@ -142,7 +142,7 @@ def _listed(needs: list[package_managers.Need]) -> str:
 
 @contextmanager
 def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
-    """Wait until no other process is building. The system releases the lock when the process that holds it exits."""
+    """Wait until no other process is building. The kernel releases the lock when the process that holds it exits."""
     xdg.cache().mkdir(parents=True, exist_ok=True)
     with (xdg.cache() / "turtlesim.lock").open("w") as lock:
         try:
@@ -154,7 +154,7 @@ def _one_at_a_time(tell: Callable[[str], None]) -> Iterator[None]:
 
 
 def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> None:
-    # Any such folder is left over from a build that was killed, since only the process that holds the lock builds.
+    # These folders are left over from builds that were killed, since only the process with the lock builds.
     for leftover in prefix.parent.glob(f"{_TEMPORARY}*"):
         shutil.rmtree(leftover, ignore_errors=True)
     tell("Building the turtlesim interfaces, once; this takes about ten seconds.")
@@ -170,7 +170,7 @@ def _build(ros: installation.Ros, prefix: Path, tell: Callable[[str], None]) -> 
             *("-DCMAKE_BUILD_TYPE=None", "-DBUILD_TESTING=OFF"),
             f"-DPython3_EXECUTABLE={ros.python}",
             f"-DCMAKE_INSTALL_PREFIX={prefix}",
-            # Keep the path of the temporary folder out of the result. A shell reads the flags, and the path may have
+            # Keep the path of the temporary folder out of the build. A shell parses the flags, and the path may contain
             # spaces. CMake would strip quotes around the whole value.
             *(f"-DCMAKE_{language}_FLAGS=-ffile-prefix-map={no_trace}" for language in ("C", "CXX")),
         ]
@@ -228,7 +228,7 @@ def _percent(line: str) -> int | None:
 
 
 def _make_readable(folder: Path) -> None:
-    """Let every user read the files (a+rX) regardless of the umask, because a trial may run as another user."""
+    """Let every user read the files (a+rX) whatever the umask is, because a trial may run as another user."""
     for path in [folder, *folder.rglob("*")]:
         if not path.is_symlink():
             mode = path.stat().st_mode

@@ -1,1 +1,1 @@
-"""The sandbox: the cells in which student code runs, and their limits."""
+"""The sandbox: cells for student code, and their limits."""

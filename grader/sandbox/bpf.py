@@ -1,4 +1,4 @@
-"""The instructions of a seccomp filter, a program for the kernel's BPF machine, for x86-64."""
+"""The instructions of a seccomp filter for x86-64. A filter is a program for the kernel's BPF virtual machine."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 Line = tuple[int, int, int, int]
-"""A struct sock_filter: the operation, how many lines to skip if it is true and if it is false, and a value."""
+"""A struct sock_filter: the operation, the number of lines to skip if it is true and if it is false, and a value."""
 
 LOAD, EQUAL, AT_LEAST, ANY_BIT, RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
 ALLOW, ERRNO = 0x7FFF0000, 0x00050000
@@ -19,22 +19,22 @@ _X86_64, _X32 = 0xC000003E, 0x40000000
 
 
 def argument(index: int, *, high: bool = False) -> int:
-    """Return where the low or the high 32 bits of an argument are in the data of a call."""
+    """Return the offset of the low or the high 32 bits of an argument in struct seccomp_data."""
     return _ARGUMENTS + 8 * index + 4 * high
 
 
 def begin() -> list[Line]:
-    """Return the beginning of a filter: refuse calls of other architectures, and load the number of the call."""
+    """Return the first lines of a filter: refuse calls of other architectures, and load the system call number."""
     absent = ERRNO | errno.ENOSYS
     lines = [(LOAD, 0, 0, _ARCHITECTURE), (EQUAL, 1, 0, _X86_64), (RETURN, 0, 0, absent)]
     return [*lines, (LOAD, 0, 0, _NUMBER), (AT_LEAST, 0, 1, _X32), (RETURN, 0, 0, absent)]
 
 
 def refusing(numbers: Iterable[int], error: int) -> list[Line]:
-    """Return the lines that let these calls fail with this error."""
+    """Return the lines that make these calls fail with this error number."""
     return [line for number in numbers for line in ((EQUAL, 0, 1, number), (RETURN, 0, 0, ERRNO | error))]
 
 
 def packed(lines: Iterable[Line]) -> bytes:
-    """Return the filter as the kernel reads it."""
+    """Return the filter in the binary format of the kernel."""
     return b"".join(struct.pack("HBBI", *line) for line in lines)

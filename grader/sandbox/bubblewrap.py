@@ -1,15 +1,15 @@
-"""Run a command that is not trusted. All student code is started here.
+"""Run untrusted commands. All student code is started here.
 
-There are two walls, both made by bubblewrap:
+bubblewrap creates two kinds of containers:
 
-- a **room** contains processes of ours that belong together (the simulator of one trial). They run as an ordinary user,
-  with their own processes and a network of their own that has only loopback. They read what a student's node sends,
+- a **room** contains our processes of one trial (the simulator). They run as an ordinary user,
+  with separate pid and network namespaces, and only the loopback interface. They receive what a student's node sends,
   with libraries that may have security holes;
 - a **cell** contains a student's process. It has its own user, pid, ipc, uts, cgroup and mount namespaces, no network
-  but that of the room, nothing of the disk except what `View` names, a filter of system calls (system_calls.py), and
-  limits on memory, processes, files, CPU and disk. usage.py watches totals for which there is no limit.
+  but the room's, no files of the disk except those in `View`, a filter of system calls (system_calls.py), and
+  limits on memory, processes, files, CPU and disk. usage.py watches totals that the kernel does not limit.
 
-These functions only make command lines. The caller starts the process and owns it. Input and output use pipes.
+These functions only return command lines. The caller starts and ends the process. Input and output use pipes.
 """
 
 from __future__ import annotations
@@ -34,23 +34,23 @@ if TYPE_CHECKING:
     from grader.ros.installation import Ros
 
 WORKSPACE = Path("/ws")
-"""The workspace inside a cell, on a tmpfs of its own."""
+"""The workspace inside a cell, on a separate tmpfs."""
 HOME = Path("/tmp/home")
-"""HOME inside room and cell. It is empty at first and is deleted with the cell."""
+"""HOME inside a room or cell. It is empty at first and is deleted with the cell."""
 
 ROOM_DISK = 256 * MIB
 
 
 @dataclass(frozen=True)
 class View:
-    """What a room or cell sees of the disk, each path at its own place. `hidden` folders are empty there."""
+    """The paths of the disk that are visible in a room or cell, unchanged. `hidden` folders are empty there."""
 
     read_only: tuple[Path, ...]
     hidden: tuple[Path, ...] = ()
 
 
 def ros_view(ros: Ros, *more: Path) -> View:
-    """Return the view of the interpreter, ROS 2 and the folders or files `more`, without the grader itself.
+    """Return the view with the interpreter, ROS 2 and the folders or files `more`, without the grader.
 
     The grader is hidden even if it is installed in the same folder.
     """
@@ -68,15 +68,15 @@ def program() -> str | None:
 def room(
     argv: Sequence[str], view: View, *, env: Mapping[str, str], user: int | None, cwd: Path | None = None
 ) -> list[str]:
-    """Return the command that runs `argv` as an ordinary user in a network of its own; for our own processes.
+    """Return the command that runs `argv` as an ordinary user in a separate network; for our own processes.
 
-    `user` comes from user.cell_user(): the user that a root caller becomes, or None for other callers.
+    `user` comes from user.cell_user(): the user id to switch to if the caller is root, or None.
     """
     command = [_bwrap(), "--unshare-net", "--unshare-pid", "--unshare-ipc", "--unshare-uts", "--hostname", "grader"]
     command += ["--die-with-parent", "--size", str(ROOM_DISK), "--tmpfs", "/tmp", "--perms", "0777", "--dir", str(HOME)]
     command += [*_disk(view), *(["--proc", "/proc"] if user is None else ["--dir", "/proc"])]
-    # LTTng, which rclpy loads, keeps a file here. If it cannot, its threads wait for any child of the process, and may
-    # take the exit code of a node that ends at this moment.
+    # rclpy loads LTTng, which keeps a file here. If it cannot, its threads wait for any child of the process and may
+    # collect the exit code of a node that ends at this moment.
     command += ["--size", str(ROOM_DISK), "--perms", "1777", "--tmpfs", "/dev/shm"]
     command = [*_ordinary(command, user), *_environment(env), "--chdir", str(cwd or HOME), "--"]
     return [*command, *_stay_ordinary(user), *argv]
@@ -93,23 +93,23 @@ def cell(
     info_fd: int | None = None,
     filter_fd: int | None = None,
 ) -> list[str]:
-    """Return the command that runs `argv` in a cell. With `network`, the cell uses the network of the caller (a room).
+    """Return the command that runs `argv` in a cell. With `network`, the cell uses the caller's network (a room's).
 
     `filter_fd` is the filter of system calls from system_calls.call_filter(). The process must inherit it. A root
-    caller must put the cell into a room, where it is not root any more, because the limit on processes does not apply
+    caller must put the cell into a room, in which it is an ordinary user, because the limit on processes does not apply
     to root. bubblewrap writes JSON with the pid of the cell's first process to `info_fd`.
     """
     command = [_bwrap(), "--unshare-user", "--disable-userns", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
     command += ["--unshare-cgroup-try", "--uid", "1000", "--gid", "1000", "--hostname", "robot"]
     command += ["--die-with-parent", "--new-session", *([] if network else ["--unshare-net"])]
-    # /tmp comes first, because folders of the view may be inside of it.
+    # /tmp comes first, because folders of the view may be inside it.
     command += ["--size", str(limits.disk), "--tmpfs", "/tmp", "--dir", str(HOME)]
     command += ["--size", str(limits.disk), "--tmpfs", str(WORKSPACE), *_disk(view), "--proc", "/proc"]
     # --dev makes /dev and /dev/shm writable and large.
     command += ["--size", str(limits.disk), "--tmpfs", "/dev/shm", "--remount-ro", "/dev", "--remount-ro", "/"]
     command += [] if info_fd is None else ["--info-fd", str(info_fd)]
     command += [] if filter_fd is None else ["--seccomp", str(filter_fd)]
-    # Set inside of the cell, so that the limit counts only processes of this cell.
+    # Set inside the cell, so that the limit counts only processes of this cell.
     return [*command, *_environment(env), "--chdir", str(cwd), "--", *limited(argv, limits, in_cell=True)]
 
 
@@ -122,7 +122,7 @@ def lone_cell(
     user: int | None,
     filter_fd: int | None = None,
 ) -> list[str]:
-    """Return the command that runs `argv` in a cell with a network of its own. `user` is as for a room.
+    """Return the command that runs `argv` in a cell with a separate network. `user` is as for a room.
 
     with call_filter() as filter_fd, cell_user() as user:
         command = lone_cell(["colcon", "build"], view, env=env, limits=Limits(), user=user, filter_fd=filter_fd)
@@ -138,25 +138,25 @@ def usable() -> bool:
 
 
 def require(*, trusted: bool = False) -> bool:
-    """Return whether student code will run in a sandbox; for grading strangers for marks.
+    """Return whether student code will run in a sandbox. Call this before running code of untrusted students.
 
-    With `trusted`, code also runs without a sandbox if there is none.
+    With `trusted`, a missing sandbox is not an error.
 
     Raises:
-        MachineError: there is no sandbox, and the code is not trusted.
+        MachineError: no sandbox is available, and the code is not trusted.
     """
     why = why_unavailable()
     if why is None or trusted:
         return why is None
     message = (
-        f"There is no sandbox, so code of others does not run: {why}. On "
+        f"No sandbox is available, so the grader does not run code of other people: {why}. On "
         "a machine without important data, --trust-submissions runs it with limits on time, memory and output only."
     )
     raise MachineError(message)
 
 
 def why_unavailable() -> str | None:
-    """Try a cell. Return None if it works, otherwise what is wrong and what to do."""
+    """Try a cell. Return None if it works, or else the reason and what to do."""
     if program() is None:
         return _not_installed()
     view = View(read_only=())
@@ -201,9 +201,9 @@ def _ordinary(command: list[str], user: int | None) -> list[str]:
 def _stay_ordinary(user: int | None) -> list[str]:
     if user is None:
         return []
-    # A mount by bubblewrap would cover parts of /proc. Then a cell inside could not have its own /proc.
+    # bubblewrap's --proc would cover parts of /proc, and then a cell inside could not mount its own /proc.
     proc = ["sh", "-c", 'mount -t proc -o nosuid,nodev,noexec proc /proc && exec "$@"', "sh"]
-    # Changing the user clears the signal of --die-with-parent, so it is requested again.
+    # Changing the user clears the signal of --die-with-parent, so request it again.
     become = [f"--reuid={user}", f"--regid={user}", "--clear-groups", "--inh-caps=-all", "--bounding-set=-all"]
     return [*proc, "setpriv", *become, "--no-new-privs", "--pdeathsig=KILL", "--"]
 
@@ -219,7 +219,7 @@ def _disk(view: View) -> list[str]:
     etc = [Path("/etc") / name for name in ("alternatives", "ld.so.cache", "ld.so.conf", "ld.so.conf.d", "localtime")]
     shown = [Path("/usr"), *(path for path in etc if path.exists())]
     shown += [path for path in view.read_only if not path.is_relative_to("/usr")]
-    # Parent folders that bwrap creates itself are readable only by their owner, and named ones are not.
+    # bwrap creates missing parent folders readable only by their owner, so name them here.
     parents = dict.fromkeys(parent for path in shown for parent in reversed(path.parents[:-1]))
     command += [word for parent in parents for word in ("--dir", str(parent))]
     # Visible parts of a hidden folder are added after the folder was emptied.

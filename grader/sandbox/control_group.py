@@ -1,10 +1,10 @@
-"""Control groups: the kernel counts what many processes use together, if we are allowed to make groups.
+"""Control groups: the kernel limits what the processes of a cell use together, if the grader may create groups.
 
-Root is allowed to nearly everywhere. An ordinary user is allowed to if systemd has delegated a part of the tree and the
-grader runs in it. The limit of the group is `ABOVE` higher than that of usage.py, so that usage.py ends a cell first
-and knows the reason. The group stops processes that grow too fast for usage.py, and memory for sockets and pipes.
+Root may create them nearly everywhere. An ordinary user may if systemd has delegated a part of the tree and the
+grader runs in it. The limit of the group is `ABOVE` higher than that of usage.py, so that usage.py stops a cell first
+and records the reason. The group stops processes that grow too fast for usage.py, and limits socket and pipe memory.
 
-Both versions are supported. In version 2 a group is a folder in one tree, in version 1 one folder in each controller's
+Both versions are supported. In version 2, a group is a folder in one tree; in version 1, a folder in each controller's
 tree (https://docs.kernel.org/admin-guide/cgroup-v2.html and cgroup-v1/).
 """
 
@@ -27,9 +27,9 @@ TREE = Path("/sys/fs/cgroup")
 OWN = Path("/proc/self/cgroup")
 CONTROLLERS = ("memory", "pids")
 ABOVE = 512 * 1024 * 1024
-"""Memory of a group in addition to the cell's total (bytes), for the conductor of a trial."""
+"""The memory (bytes) that a group has in addition to the cell's total, for the conductor of a trial."""
 PROCESSES_ABOVE = 200
-"""Processes and threads of a group in addition to the cell's, for bubblewrap and the conductor."""
+"""The processes and threads that a group has in addition to the cell's, for bubblewrap and the conductor."""
 GONE_S = 2.0
 _PREFIX = "grader-"
 _JOIN = 'until [ "$1" = -- ]; do echo $$ 2>/dev/null >"$1/cgroup.procs"; shift; done; shift; exec "$@"'
@@ -43,7 +43,7 @@ class ControlGroup:
     folders: tuple[Path, ...] = ()
 
     def __bool__(self) -> bool:
-        """Whether the kernel counts."""
+        """Whether groups are possible."""
         return bool(self.folders)
 
     def joined(self, argv: Sequence[str]) -> list[str]:
@@ -103,10 +103,10 @@ def _make(limits: Limits) -> ControlGroup:
 
 
 def _parents() -> list[Path]:
-    """Return where a group can be made: one folder for both controllers, or one each. Empty if that is not possible."""
+    """Return the folders in which a group can be created: one for both controllers, one for each, or none."""
     own = dict(_own())
     if all(name in own for name in CONTROLLERS):
-        # In a container the path may be that of the host. Then the group is the top of the container's tree.
+        # In a container, the path may be that of the host. In this case, the group is the root of the container's tree.
         places = [(TREE / name / own[name].lstrip("/"), TREE / name) for name in CONTROLLERS]
         return [next((place for place in both if os.access(place, os.W_OK)), both[0]) for both in places]
     own_group = TREE / own.get("", "/").lstrip("/")
@@ -115,14 +115,14 @@ def _parents() -> list[Path]:
             break
         with suppress(OSError):
             passed_on = (place / "cgroup.subtree_control").read_text("ascii").split()
-            # To move a process, we must own its new group and the common parent of both groups.
+            # Moving a process requires write access to its new group and to the common parent of both groups.
             if set(CONTROLLERS) <= set(passed_on) and os.access(place / "cgroup.procs", os.W_OK):
                 return [place]
     return []
 
 
 def _own() -> Iterator[tuple[str, str]]:
-    """Return controller -> the group of this process; "" is the key for version 2."""
+    """Yield each controller with the group of this process; "" is the key for version 2."""
     with suppress(OSError):
         for line in OWN.read_text("utf-8").splitlines():
             _, controllers, path = line.split(":", 2)
@@ -131,7 +131,7 @@ def _own() -> Iterator[tuple[str, str]]:
 
 
 def _remove(folder: Path) -> None:
-    """Remove a group. The kernel refuses while a process of the group is ending."""
+    """Remove a group. The kernel refuses this until all processes of the group have ended."""
     until = time.monotonic() + GONE_S
     while folder.is_dir() and time.monotonic() < until:
         with suppress(OSError):

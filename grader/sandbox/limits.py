@@ -1,6 +1,6 @@
-"""What a cell may use: memory, processes, files, processor time and disk.
+"""The resource limits of a cell: memory, processes, files, processor time and disk.
 
-The kernel enforces the limits of a process, by prlimit. usage.py and control_group.py watch the totals of a cell.
+prlimit sets the limits of each process. usage.py and control_group.py limit the totals of a cell.
 """
 
 from __future__ import annotations
@@ -14,37 +14,37 @@ if TYPE_CHECKING:
 
 MIB = 1024 * 1024
 MOST_SIGNALS = 1000
-"""How many signals and POSIX timers of a cell may be pending. The kernel also counts them for the user."""
+"""The number of signals and POSIX timers of a cell that may be pending. The kernel also counts them per user."""
 NO_CORE_DUMP = 1
-"""The limit on core dumps (bytes). Only with 1, the kernel passes none to a program of the machine either: core(5)."""
+"""The limit on core dumps (bytes). With 0, the kernel would still pass them to another program: core(5)."""
 MOST_OTHERS = 4096
-"""How many processes and threads a user may have in addition to a grading without a cell."""
+"""The number of processes and threads that a user may have in addition to a grading without a cell."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a cell may use. `memory` limits the address space of each process, `disk` each writable tmpfs (bytes)."""
+    """The limits of a cell. `memory` limits the address space of each process, `disk` each writable tmpfs (bytes)."""
 
     memory: int = 4096 * MIB
     total_memory: int = 2048 * MIB
-    """The memory of all processes and disks of a cell together (usage.py)."""
+    """The maximum memory of all processes and disks of a cell together (bytes), which usage.py watches."""
     processes: int = 600
-    """Processes and threads together. A node with 400 timers needs no thread for them."""
+    """The maximum number of processes and threads together. A node with 400 timers needs no thread for them."""
     open_files: int = 1024
     file_size: int = 256 * MIB
     disk: int = 256 * MIB
     files: int = 50_000
-    """Files on the writable disks together (usage.py)."""
+    """The maximum number of files on all writable disks together, which usage.py watches."""
     cpu_s: int = 120
 
 
 NODE_LIMITS = Limits()
-"""What the node of a trial may use."""
+"""The limits of a node in a trial."""
 
 
 def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> list[str]:
-    """Return the command that runs `argv` under resource limits: all that is possible without bubblewrap."""
-    # Outside of a cell the kernel counts all processes of the user, and usage.py counts those of `argv`.
+    """Return the command that runs `argv` under resource limits, the only limits that work without bubblewrap."""
+    # Outside a cell, the kernel counts all processes of the user, and usage.py counts those of `argv`.
     processes = limits.processes if in_cell else limits.processes + MOST_OTHERS
     return [
         "prlimit",
@@ -56,13 +56,13 @@ def limited(argv: Sequence[str], limits: Limits, *, in_cell: bool = False) -> li
         f"--core={_allowed(resource.RLIMIT_CORE, NO_CORE_DUMP)}",
         *([f"--sigpending={_allowed(resource.RLIMIT_SIGPENDING, MOST_SIGNALS)}"] if in_cell else []),
         "--",
-        # If the machine runs out of memory, the kernel should kill this first.
+        # If the machine runs out of memory, the kernel kills this process first.
         *("choom", "-n", "1000", "--"),
         *argv,
     ]
 
 
 def _allowed(which: int, wanted: int) -> int:
-    """Return the limit, or the user's own if that is lower. Only root can raise it."""
+    """Return the wanted limit, or the user's hard limit if it is lower. Only root can raise a hard limit."""
     hard = resource.getrlimit(which)[1]
     return wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)

@@ -1,4 +1,4 @@
-"""Run a child process to its end, with input, limited output and a deadline."""
+"""Run a child process until it ends, with input, limited output and a deadline."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _CHUNK = 1024 * 1024
 
 @dataclass(frozen=True)
 class Finished:
-    """How a child ended.
+    """The result of a child process.
 
-    `too_much`: it was stopped because of its standard output. `out_of`: the limit of `watch` because of which it was
-    stopped.
+    `too_much` is whether it was stopped because it wrote too much standard output. `out_of` is the limit of `watch`
+    that it exceeded.
     """
 
     exit_code: int
@@ -39,7 +39,7 @@ class Finished:
 
 
 class _Tail:
-    """The first and the last half of an output. The beginning and the end of a log are the most useful parts."""
+    """The first and the last half of an output, since the beginning and the end of a log are the most useful parts."""
 
     def __init__(self, most: int) -> None:
         self._half = most // 2
@@ -67,7 +67,7 @@ class _Tail:
 
 
 class _Pump:
-    """The three pipes of a child, served at the same time, so that none blocks another."""
+    """The three pipes of a child process, served together so that a full pipe does not block the others."""
 
     def __init__(self, child: subprocess.Popen[bytes], stdin: bytes, most_stdout: int, most_stderr: int) -> None:
         assert child.stdin is not None
@@ -90,7 +90,7 @@ class _Pump:
     def serve(self, deadline: float, stopped: Callable[[], bool]) -> bool:
         """Serve until the child has closed its pipes or written too much. Return False at the deadline (monotonic, s).
 
-        `stopped` is called several times per second. If it returns True, serving ends too.
+        `stopped` is called several times per second. Serving also ends if it returns True.
         """
         with self._selector:
             while self._selector.get_map() and not self.too_much:
@@ -131,9 +131,9 @@ def run(
     pass_fds: Sequence[int] = (),
     watch: Limits | None = None,
 ) -> Finished:
-    """Run `argv` in a session of its own. The beginning and the end of standard error are kept (bytes).
+    """Run `argv` in a new session, until it ends. The beginning and the end of standard error are kept.
 
-    With `watch`, the child is ended when it uses more in total than these limits.
+    With `watch`, the child is killed when its processes exceed these limits together.
 
         done = run(["cat"], stdin=b"text", timeout_s=60.0, most_stdout=1000, most_stderr=1000)
     """

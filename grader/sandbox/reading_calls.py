@@ -1,7 +1,7 @@
-"""The system calls that the process may make that reads what students wrote (submission/reader.py).
+"""The seccomp filter of submission/reader.py, the process that reads students' files.
 
-It reads, computes, and writes its answer to a pipe that is open already. So it may not start a program or a process,
-open a connection, change a file or a limit, or send a signal, not even if there is a hole in a parser.
+The process reads, computes, and writes its answer to an open pipe. It may not start a program or a process,
+open a connection, change a file or a limit, or send a signal, even if a parser has a security hole.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import platform
 from grader.sandbox import bpf
 from grader.sandbox.system_calls import DENIED
 
-# Numbers for x86-64, as in system_calls.py.
+# System call numbers for x86-64, as in system_calls.py.
 FORBIDDEN = {
     "programs and processes": {
         "execve": 59, "execveat": 322, "fork": 57, "vfork": 58, "setsid": 112, "setpgid": 109, "setrlimit": 160,
@@ -44,7 +44,7 @@ class _Program(ctypes.Structure):
 
 
 def forbid_all_but_reading() -> bool:
-    """Forbid these calls to this process for the rest of its life. Return False where the kernel cannot do it."""
+    """Install the filter in this process permanently. Return False if the kernel does not support it."""
     if platform.machine() != "x86_64":
         return False
     filter_ = program()
@@ -60,14 +60,14 @@ def program() -> bytes:
     refuse, denied = bpf.ERRNO | errno.EPERM, bpf.ERRNO | errno.EACCES
     numbers = sorted(number for group in (*DENIED.values(), *FORBIDDEN.values()) for number in group.values())
     lines = [*bpf.begin(), *bpf.refusing(numbers, errno.EPERM)]
-    # The arguments of these two are in memory, where a filter cannot look. The C library then uses the older calls.
+    # The arguments of these two calls are in memory, which a filter cannot read. The C library then uses older calls.
     lines += bpf.refusing((_CLONE3, _OPENAT2), errno.ENOSYS)
     for number, flags in ((_OPEN, 1), (_OPENAT, 2)):
         lines += _only_without(number, flags, _WRITING, denied)
-    # A thread is part of this process and has its limits.
+    # Threads are allowed, since they belong to this process and share its limits.
     lines += [(bpf.EQUAL, 0, 4, _CLONE), (bpf.LOAD, 0, 0, bpf.argument(0))]
     lines += [(bpf.ANY_BIT, 1, 0, _CLONE_THREAD), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
-    # With a new limit, prlimit sets it. Without one, it only tells the old limit.
+    # prlimit is allowed only without a new limit, to read the current one.
     lines += [(bpf.EQUAL, 0, 6, _PRLIMIT), (bpf.LOAD, 0, 0, bpf.argument(2)), (bpf.EQUAL, 0, 3, 0)]
     lines += [(bpf.LOAD, 0, 0, bpf.argument(2, high=True)), (bpf.EQUAL, 0, 1, 0), (bpf.RETURN, 0, 0, bpf.ALLOW)]
     lines += [(bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
@@ -75,7 +75,7 @@ def program() -> bytes:
 
 
 def _only_without(number: int, index: int, bits: int, error: int) -> list[bpf.Line]:
-    """Return the lines that refuse the call if its argument has any of the bits."""
+    """Return the lines that refuse the call if its argument has any of these bits set."""
     return [
         (bpf.EQUAL, 0, 4, number),
         (bpf.LOAD, 0, 0, bpf.argument(index)),

@@ -1,9 +1,9 @@
-"""The system calls that a cell may make: a seccomp filter for bubblewrap.
+"""The seccomp filter for bubblewrap: the system calls that a cell may not make.
 
-The filter lists forbidden calls: those that no node needs and that have opened sandboxes before. A list of allowed
-calls would break with a new Python or Fast DDS. Namespaces, limits and mounts are the first wall, and this is the
-second. It also forbids memory that neither a tmpfs nor the size of a process shows (memfd, System V shared memory), and
-calls that use up what the kernel counts for a user or for the machine, because other cells may have the same user.
+The filter forbids calls that no node needs and that attackers have used to escape from sandboxes. A list of allowed
+calls would break with a new Python or Fast DDS. Namespaces, limits and mounts are the first defence; this is the
+second. It also forbids memory that counts neither for a tmpfs nor for a process (memfd, System V shared memory), and
+calls that use up resources of a user or of the machine, because other cells may have the same user.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from grader.sandbox import bpf
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-# Numbers for x86-64 (linux/arch/x86/entry/syscalls/syscall_64.tbl), grouped by purpose.
+# System call numbers for x86-64 (linux/arch/x86/entry/syscalls/syscall_64.tbl), grouped by purpose.
 DENIED = {
     "other processes": {
         "ptrace": 101, "process_vm_readv": 310, "process_vm_writev": 311, "kcmp": 312, "pidfd_getfd": 438,
@@ -55,10 +55,10 @@ DENIED = {
 }  # fmt: skip
 _SOCKET, _CLONE, _CLONE3, _FCNTL = 41, 56, 435, 72
 _SET_PIPE_SIZE = 1031
-"""F_SETPIPE_SZ of fcntl(2). A user may have only 64 pipes of a megabyte. All others are then small."""
-# AF_UNIX, AF_INET, AF_INET6, and AF_NETLINK for listing interfaces. AF_VSOCK would lead out of a virtual machine.
+"""F_SETPIPE_SZ of fcntl(2). It is forbidden, since a user may have only 64 pipes of 1 MiB; further pipes are small."""
+# AF_UNIX, AF_INET, AF_INET6, and AF_NETLINK for listing interfaces. AF_VSOCK would reach the host of a virtual machine.
 _FAMILIES = (1, 2, 10, 16)
-# The family's own protocol, TCP and UDP. For others, such as SCTP, the kernel loads modules that few people test.
+# The family's default protocol, TCP and UDP. For others, such as SCTP, the kernel loads modules that are little tested.
 _PROTOCOLS = (0, 6, 17)
 # CLONE_NEWNS, NEWCGROUP, NEWUTS, NEWIPC, NEWUSER, NEWPID and NEWNET.
 _NEW_NAMESPACE = 0x7E020000
@@ -66,13 +66,13 @@ _NEW_NAMESPACE = 0x7E020000
 
 @contextmanager
 def call_filter() -> Iterator[int | None]:
-    """Yield a descriptor from which the filter can be read once; None on machines with unknown call numbers."""
+    """Yield a file descriptor from which the filter can be read once, or None on other architectures."""
     if platform.machine() != "x86_64":
         yield None
         return
     reads, writes = os.pipe()
     try:
-        # A pipe can hold much more than this.
+        # The capacity of a pipe is much larger than the filter.
         os.write(writes, program())
         os.close(writes)
         yield reads
@@ -86,7 +86,7 @@ def program() -> bytes:
     absent = bpf.ERRNO | errno.ENOSYS
     lines = bpf.begin()
     lines += bpf.refusing(sorted(number for group in DENIED.values() for number in group.values()), errno.EPERM)
-    # Its flags are in memory, where a filter cannot look. The C library then uses clone.
+    # The flags of clone3 are in memory, which a filter cannot read. The C library falls back to clone.
     lines += [(bpf.EQUAL, 0, 1, _CLONE3), (bpf.RETURN, 0, 0, absent)]
     lines += [(bpf.EQUAL, 0, 4, _CLONE), (bpf.LOAD, 0, 0, bpf.argument(0))]
     lines += [(bpf.ANY_BIT, 0, 1, _NEW_NAMESPACE), (bpf.RETURN, 0, 0, refuse), (bpf.RETURN, 0, 0, bpf.ALLOW)]
@@ -99,6 +99,6 @@ def program() -> bytes:
 
 
 def _one_of(index: int, values: Sequence[int], error: int) -> list[bpf.Line]:
-    """Return the lines that let a call fail unless this argument has one of the values."""
+    """Return the lines that make a call fail unless this argument has one of the values."""
     lines = [(bpf.EQUAL, len(values) - number, 0, value) for number, value in enumerate(values)]
     return [(bpf.LOAD, 0, 0, bpf.argument(index)), *lines, (bpf.RETURN, 0, 0, bpf.ERRNO | error)]

@@ -1,8 +1,8 @@
 """Read a tar stream that an untrusted process may have written.
 
-Python's tarfile is made for harmless archives. Some versions followed nested headers until the stack overflowed, looped
-over negative sizes, or spent hours in a regular expression. Here every step moves forward by at least one block, and
-reading ends at the first block that is not understood. It understands the output of GNU tar with --format=gnu only.
+Python's tarfile is not safe for hostile archives. Some versions followed nested headers until the stack overflowed,
+looped over negative sizes, or spent hours in a regular expression. This reader advances by at least one block per step
+and stops at the first block that it cannot parse. It supports only the output of GNU tar with --format=gnu.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import PurePosixPath
 
 BLOCK = 512
 _FILES = (b"0", b"\0", b"2")
-"""Type flags of files in new and old archives, and of symbolic links."""
+"""The type flags of regular files in new and old archives, and of symbolic links."""
 _LONG_NAME, _LONG_LINK = b"L", b"K"
 _MOST_NAME = 4096
 
@@ -26,9 +26,9 @@ class Member:
 
 
 def read_tar(stream: bytes, most: int) -> dict[PurePosixPath, Member]:
-    """Return the files and links of the stream, at most `most`.
+    """Return at most `most` files and links of the stream.
 
-    In a damaged stream, these are the ones before the damage.
+    If the stream is damaged, only files before the damage are returned.
     """
     found: dict[PurePosixPath, Member] = {}
     at, long_name = 0, None
@@ -53,7 +53,7 @@ def read_tar(stream: bytes, most: int) -> dict[PurePosixPath, Member]:
 
 
 def _number(field: bytes) -> int | None:
-    """Return an octal number, or None for anything else, such as the binary form of large or negative numbers."""
+    """Return the value of an octal field, or None for anything else, such as the binary form of large numbers."""
     digits = field.strip(b" \0")
     return int(digits, 8) if digits and not digits.strip(b"01234567") else None
 

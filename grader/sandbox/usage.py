@@ -1,7 +1,7 @@
-"""Watch how much a cell uses in total: the memory and number of its processes, its disks, and the files on them.
+"""Watch the total use of a cell: the memory and number of its processes, its disks, and the files on them.
 
-Resource limits apply to each process alone, and a tmpfs of bubblewrap limits bytes but not files. Control groups count
-totals, but only if we are allowed to make them. Checking ten times per second works everywhere.
+Resource limits apply to each process separately, and bubblewrap limits the bytes of a tmpfs but not its files. Control
+groups limit totals, but the grader may not be allowed to create them. Checking ten times per second works everywhere.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 EVERY_S = 0.1
 LAUNCHERS = 16
-"""Processes in addition to the limit that are not the student's: those of bubblewrap and others that start a cell.
+"""The processes beyond the limit that are not the student's: bubblewrap and other processes that start a cell.
 
-In a cell the kernel counts too, and refuses new processes before this number is reached.
+In a cell, the kernel counts processes too and refuses new ones before this number is reached.
 """
 _DISKS = ("ws", "tmp", "dev/shm")
 _PAGE = os.sysconf("SC_PAGE_SIZE")
@@ -29,7 +29,7 @@ _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
 def exceeded(pid: int, limits: Limits) -> str | None:
-    """Return which limit the cell at or below process `pid` exceeds ("memory", "processes", "files"), or None."""
+    """Return the limit that the cell at or below process `pid` exceeds ("memory", "processes", "files"), or None."""
     memory = 0
     processes = 0
     disks: dict[int, tuple[int, int]] = {}
@@ -63,7 +63,7 @@ class Guard:
         self._thread.join()
 
     def worked_s(self, begin: float, end: float) -> float:
-        """Return the CPU time (s) that the cell's processes used, at least, between two times of CLOCK_MONOTONIC."""
+        """Return the least CPU time (s) that the cell's processes used between two times of CLOCK_MONOTONIC."""
         first = self._worked[0][1]
         before = max((cpu for at, cpu in self._worked if at <= begin), default=first)
         return max((cpu for at, cpu in self._worked if at <= end + EVERY_S), default=first) - before
@@ -72,7 +72,7 @@ class Guard:
         """Return how long all processes of the cell except `but` ran or waited for a processor so far (s).
 
         A process that is ready to run uses less CPU time on a crowded machine, but it is ready for as long as on an
-        idle one. Other threads than the first one of each process are not counted.
+        idle one. Only the first thread of each process is counted.
         """
         return sum(ready_s for pid, ready_s in self._ready.copy().items() if pid != but)
 
@@ -104,7 +104,7 @@ def _family(pid: int) -> Iterator[int]:
 
 
 def _own_bytes(pid: int) -> int:
-    """Return the memory of the process without mapped files."""
+    """Return the memory of the process (bytes) without mapped files."""
     try:
         _, resident, shared, *_ = _read(f"/proc/{pid}/statm").split()
     except (OSError, ValueError):
@@ -121,12 +121,12 @@ def _threads(pid: int) -> int:
 
 
 def _cpu_s(pid: int) -> float:
-    """Return the CPU time of the process and of its children that have ended (s)."""
+    """Return the CPU time of the process and of its ended children (s)."""
     try:
         fields = _read(f"/proc/{pid}/stat").rpartition(")")[2].split()
     except OSError:
         return 0.0
-    # utime, stime, cutime and cstime of proc(5), counted from the state (field 3).
+    # utime, stime, cutime and cstime of proc(5). The first value of this list is the state (field 3).
     return sum(map(int, fields[11:15])) * _TICK_S
 
 
@@ -140,7 +140,7 @@ def _ready_s(pid: int) -> float:
 
 
 def _disks(pid: int) -> dict[int, tuple[int, int]]:
-    """Return bytes and files on each writable disk of the cell, by device; nothing for a process outside of it."""
+    """Return the bytes and files on each writable disk of the cell, by device. Empty for a process outside the cell."""
     root = Path(f"/proc/{pid}/root")
     found = {}
     try:

@@ -1,11 +1,9 @@
 """Choose a different user for each room or cell when root grades.
 
-The kernel counts some things per user: pages of pipes, instances of inotify, pending signals and timers, and sockets in
-transit. If two cells had the same user, one could use them all up. So each room or cell gets its own user id from a
-range
-that nothing else uses, and keeps it until it ends. To reserve an id, the grader locks the byte of this number in a
-file.
-The lock is valid for all graders of a machine and ends with the grader.
+The kernel limits some resources per user: pages of pipes, instances of inotify, pending signals and timers, and sockets
+in transit. A cell could use them up for other cells of its user. So each room or cell gets a user id from a range
+that nothing else uses, and keeps it until it ends. To reserve an id, the grader locks the byte with this number in a
+file. All graders of a machine respect the lock, which ends with the grader.
 """
 
 from __future__ import annotations
@@ -29,16 +27,16 @@ FIRST_USER = 2_000_000_000
 """A range that is not assigned to users or services: https://systemd.io/UIDS-GIDS and Debian's policy."""
 USERS = 65_536
 FEW_USERS = range(65_520, 65_534)
-"""For containers without the other range. systemd and Debian's policy do not assign these ids either."""
+"""A range for containers without the other range. systemd and Debian's policy do not assign these ids either."""
 MAP = Path("/proc/self/uid_map")
 PLACES = ("/run", "/var/run")
-"""The folder for the file is the first of these that exists, otherwise the one for temporary files."""
+"""The possible folders of the lock file. The first one that exists is used, or else the one for temporary files."""
 TRIES = 10_000
 
 
 @contextmanager
 def cell_user() -> Iterator[int | None]:
-    """Yield a user id that no other room or cell of this machine has now; None if the caller is not root.
+    """Yield a user id that no other room or cell of this machine uses, or None if the caller is not root.
 
     Leave the context after the last process of the room or cell has ended.
 
@@ -52,16 +50,16 @@ def cell_user() -> Iterator[int | None]:
     try:
         file = os.open(_folder() / "users.lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
     except OSError as error:
-        message = f"The list of the users of cells could not be opened: {error}."
+        message = f"The lock file of the cells' user ids could not be opened: {error}."
         raise MachineError(message) from error
     try:
-        # A random id, so that a new cell does not get the id of a cell whose grader was just killed.
+        # Start at a random id, so that a new cell rarely gets the id of a cell whose grader was just killed.
         for user in random.choices(users, k=TRIES):
             if _lock(file, user):
                 break
         else:
             message = (
-                "There is no free user id for a cell, because too many cells run on this machine. Wait until others "
+                "All user ids for cells are in use, because too many cells run on this machine. Wait until other cells "
                 "have ended."
             )
             raise MachineError(message)
@@ -71,7 +69,7 @@ def cell_user() -> Iterator[int | None]:
 
 
 def _users(uid_map: str) -> range:
-    """Return the ids to choose from, according to the uid_map of this namespace (user_namespaces(7))."""
+    """Return the user ids that this namespace can use, according to its uid_map (user_namespaces(7))."""
     for line in uid_map.splitlines():
         first, _, count = map(int, line.split())
         if first <= FIRST_USER and first + count >= FIRST_USER + USERS:
@@ -80,21 +78,21 @@ def _users(uid_map: str) -> range:
 
 
 def _folder() -> Path:
-    """Return a folder that only root can write to."""
+    """Return a folder that only root can write to. Create it if necessary."""
     top = next((place for place in PLACES if os.access(place, os.W_OK)), tempfile.gettempdir())
     folder = Path(top) / "ros2-grader"
     with suppress(FileExistsError):
         folder.mkdir(mode=0o700)
     about = folder.lstat()
     if not stat.S_ISDIR(about.st_mode) or about.st_uid != 0 or about.st_mode & 0o077:
-        message = f"{folder} must be a folder that only root can change. Remove it."
+        message = f"{folder} must be a folder that only root can write to. Remove it."
         raise MachineError(message)
     return folder
 
 
 def _lock(file: int, byte: int) -> bool:
-    """Lock a byte of the file for this open file (F_OFD_SETLK of fcntl(2))."""
-    # struct flock: type, whence, start, length, pid.
+    """Lock a byte of the file for this open file description (F_OFD_SETLK of fcntl(2))."""
+    # The fields of struct flock are type, whence, start, length, pid.
     wanted = struct.pack("hhqqi4x", fcntl.F_WRLCK, os.SEEK_SET, byte, 1, 0)
     try:
         fcntl.fcntl(file, fcntl.F_OFD_SETLK, wanted)

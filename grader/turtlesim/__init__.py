@@ -1,1 +1,1 @@
-"""A headless turtlesim: the motion and the pen's trail in pure Python, and an rclpy node around them."""
+"""A headless turtlesim: motion and trails in pure Python, and an rclpy node that uses them."""

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 BACKGROUND: Rgb = (69, 86, 255)
 
-# Coordinates are limited to this value. It is large enough to preserve the direction of the visible part of a line, and
-# small enough for Pillow's integers.
+# Coordinates (px) are limited to this value. It is large enough to preserve the direction of the visible part of a
+# line, and small enough for Pillow's integers.
 _FAR_PX = 100_000.0
 
 
 class Canvas:
-    """The trail, and the background behind it. A new background colour does not affect the trail."""
+    """The trail and the background. A new background colour does not affect the trail."""
 
     def __init__(self, background: Rgb = BACKGROUND) -> None:
         self.background = background
@@ -31,7 +31,7 @@ class Canvas:
 
     def clear(self) -> None:
         """Clear the trail."""
-        # The image is transparent at first. There is no blending, so a new line replaces what is below it.
+        # The image is transparent at first. Lines are not blended, so a new line replaces the pixels below it.
         self._image = Image.new("RGBA", (SIDE_PX, SIDE_PX), (0, 0, 0, 0))
         self._draw = ImageDraw.Draw(self._image)
         self._pixels: Any = self._image.load()
@@ -44,7 +44,7 @@ class Canvas:
         ink = (*pen.color, 255)
         if start != end:
             self._draw.line((start, end), ink, pen.width)
-        # The line of one frame is one or two pixels long. Pillow's short, wide lines leave gaps at their joints. These
+        # The line of one frame is one or two pixels long. Short, wide lines of Pillow leave gaps at their joints. These
         # dots fill the gaps.
         self._dot(start, ink, pen.width)
         self._dot(end, ink, pen.width)
@@ -57,7 +57,7 @@ class Canvas:
         self._draw.ellipse((left, top, left + width - 1, top + width - 1), ink)
 
     def color_at(self, x: float, y: float) -> Rgb:
-        """Return the colour at a point (m), which is that of the trail or else that of the background."""
+        """Return the colour at a point (m): the colour of the trail, or else that of the background."""
         if not (0.0 <= x <= SIDE_M and 0.0 <= y <= SIDE_M):
             return self.background
         red, green, blue, drawn = self._pixels[_pixel(x, y)]
@@ -74,7 +74,7 @@ class Canvas:
         return picture
 
     def save(self, path: Path) -> None:
-        """Write the picture to a PNG file."""
+        """Write the image to a PNG file."""
         self.image().save(path, format="PNG")
 
 

@@ -1,4 +1,4 @@
-"""What happens to the goals of an action: the action rotate_absolute reports it to whoever runs the simulator."""
+"""The events of an action goal, which the action rotate_absolute reports to the owner of the simulator."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ What = Literal["accepted", "cancel requested", "result requested", "succeeded", 
 
 @dataclass(frozen=True)
 class GoalEvent:
-    """What happened to the goal with this id of an action. turtlesim accepts every goal.
+    """An event of the goal with this id. turtlesim accepts every goal.
 
-    `content` is the Goal when it is accepted, the Result when it has ended, and otherwise None.
+    `content` is the Goal if the goal was accepted, the Result if the goal has ended, or else None.
     """
 
     action: str

@@ -39,10 +39,10 @@ class Hooks:
 
     `on_command(topic, data, twist)` is called when a command has arrived, before it moves the turtle.
     `on_publish(topic, type, data)` is called when a pose or a colour is published. `on_intervention(name)` is called
-    when somebody calls a service or an action ("spawn", "rotate_absolute") or sets a parameter ("set_background" if
+    when a client calls a service or an action ("spawn", "rotate_absolute") or sets a parameter ("set_background" if
     only colours are set, or else "set_parameters"). `on_call(service, type, request, response, waited_s)` is called
-    when a call is answered, `waited_s` (s) after it arrived, and `on_goal(event)` when something happens to the goal of
-    an action. `late` delays the answers, if it is not None.
+    when a call is answered, `waited_s` (s) after it arrived, and `on_goal(event)` at each event of a goal of
+    an action. `late` delays the answers if it is not None.
     """
 
     on_command: Callable[[str, bytes, Any], object]
@@ -53,7 +53,7 @@ class Hooks:
     late: LateAnswers | None = None
 
     def serve(self, node: Node, service_type: Any, name: str, handle: Callable[[Any, Any], Any]) -> Service:  # noqa: ANN401
-        """Create a service of the node. `on_call` hears of each call."""
+        """Create a service of the node. Each call is reported to `on_call`."""
 
         def handle_and_tell(request: Any, response: Any, waited_s: float = 0.0) -> Any:  # noqa: ANN401
             response = handle(request, response)
@@ -73,7 +73,7 @@ class TurtleInterface:
     def __init__(
         self, node: Node, name: str, world: World, hooks: Hooks, pose_every: int = 1, pose_from_s: float = 0.0
     ) -> None:
-        """Add the turtle to the ROS graph. If rclpy raises an error for an invalid name, nothing remains there."""
+        """Add the turtle to the ROS graph. If rclpy rejects the name with an error, nothing remains in the graph."""
         self.name = name
         self._world = world
         self._hooks = hooks
@@ -174,7 +174,7 @@ class TurtleInterface:
             if request.off:
                 turtle.pen = replace(turtle.pen, down=False)
             else:
-                # A width of 0 means a pen of one pixel. It does not keep the last width.
+                # A width of 0 means a pen of one pixel, and not the previous width.
                 turtle.pen = Pen((request.r, request.g, request.b), request.width or 1)
         return response
 
@@ -214,7 +214,7 @@ class _Sender:
 
 
 def _narrow(value: float) -> float:
-    """Return the value for a float32 field. A value that is out of range becomes infinity, as in C++."""
+    """Return the value for a float32 field. Values that are out of range become infinity, as in C++."""
     if abs(value) > _FLOAT32_MAX:
         return math.copysign(math.inf, value)
     return value

@@ -1,4 +1,4 @@
-"""A simulator that answers each service call late, so that a node that does not wait for the answer shows it."""
+"""Answer service calls late, so that a node that does not wait for a response fails visibly."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 class LateAnswers:
-    """Each call takes effect and is answered `after_s` (s) after its request has arrived, on the caller's clock.
+    """Handles and answers each call `after_s` (s) after its request has arrived, on the caller's clock.
 
-    `tick` says what time it is. The calls are answered in the order in which they arrived.
+    `tick` sets the time. The calls are answered in the order in which they arrived.
     """
 
     def __init__(self, after_s: float) -> None:
@@ -23,7 +23,7 @@ class LateAnswers:
         self._waiting: deque[tuple[float, Callable[[float], None]]] = deque()
 
     def delay(self, service: Service, handle: Callable[[Any, Any, float], Any]) -> None:
-        """Let the service call `handle(request, response, waited_s)` when the answer is due, and answer then."""
+        """Make the service call `handle(request, response, waited_s)` and send the response when the answer is due."""
         answer, empty = service.send_response, service.srv_type.Response
         taken: list[Any] = []
 

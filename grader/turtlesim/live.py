@@ -1,7 +1,7 @@
-"""`python -m grader.turtlesim.live`: turtlesim in wall time, watched by another process.
+"""`python -m grader.turtlesim.live`: run turtlesim in wall time for another process that shows its pictures.
 
-It writes the picture to standard output when the picture changes: four bytes for the length (big endian), and then a
-PNG. A slow reader misses some pictures, but never the last one. The program exits when its standard input is closed.
+The program writes each new picture to standard output: four bytes with the length (big endian), followed by a
+PNG image. A slow reader misses some pictures, but never the last one. The program exits when standard input is closed.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from grader.turtlesim.world import World
 
 EVERY = 12
-"""The number of frames from one picture to the next, which gives 5 pictures per second."""
+"""The number of frames between two pictures, for 5 pictures per second."""
 SIZE_PX = 330
 TURTLE: tuple[int, int, int] = (124, 197, 118)
 
@@ -54,7 +54,7 @@ def _wait_for_end(stop: threading.Event) -> None:
 
 
 class _ShownNode(TurtlesimNode):
-    """A turtlesim that shows its frames on a screen."""
+    """A turtlesim that sends its frames to a screen."""
 
     screen: _Screen | None = None
 
@@ -84,7 +84,7 @@ class _Screen:
         self._frames += 1
 
     def close(self) -> None:
-        """Show the last picture, and wait until it has been read."""
+        """Write the last picture, and wait until the reader has read it."""
         self._show()
         with self._ready:
             self._closed = True

@@ -35,15 +35,15 @@ MOST_TURTLES = 64
 """The maximum number of turtles. The real turtlesim has no limit, but ours must not crash if spawning never stops."""
 
 _FRAMES_TO_LEAVE = 4
-"""How long the entities of a killed turtle are kept, so that earlier requests are answered."""
+"""The time (s) for which the entities of a killed turtle are kept, so that earlier requests are answered."""
 
 
 def _nobody(*_: object) -> None:
-    """The default hook, which does nothing."""
+    """Do nothing. This is the default callback."""
 
 
 class TurtlesimNode(Node):
-    """turtlesim's topics, services, actions and parameters around a `World`."""
+    """The topics, services, actions and parameters of turtlesim, for a `World`."""
 
     def __init__(
         self,
@@ -60,11 +60,11 @@ class TurtlesimNode(Node):
         canvas: Canvas | None = None,
         **node: Any,  # noqa: ANN401 - handed on to rclpy
     ) -> None:
-        """Create the node. turtle1 begins at `start` (m, m, rad), also after a reset.
+        """Create the node. turtle1 starts at `start` (m, m, rad), also after a reset.
 
-        `Hooks` describes the callbacks. A pose is published every `pose_every` frames from `pose_from_s` (s) on. The
-        real turtlesim publishes one in each frame. Services are answered `answers_after_s` (s) late. `canvas`
-        is what the turtles draw on.
+        `Hooks` describes the callbacks. A pose is published every `pose_every` frames, starting at `pose_from_s` (s).
+        The real turtlesim publishes one in each frame. Services are answered `answers_after_s` (s) late. `canvas` is
+        where the turtles draw.
         """
         self._pose_every, self._pose_from_s = pose_every, pose_from_s
         self._late = LateAnswers(answers_after_s) if answers_after_s else None
@@ -74,7 +74,7 @@ class TurtlesimNode(Node):
         self.world = World(start or Start(), canvas)
         self._take_parameters(self._parameters_of_ours())
         self.add_post_set_parameters_callback(self._parameters_set)
-        # The real turtlesim subscribes to parameter events to repaint its window. There is no window here, but the node
+        # The real turtlesim subscribes to parameter events to repaint its window. This node has no window, but it
         # should look the same in the graph.
         for _ in ("turtlesim", "the clock that rclcpp gives every node"):
             self.create_subscription(
@@ -92,7 +92,7 @@ class TurtlesimNode(Node):
         self._log_spawned("turtle1")
 
     def frame(self, now_s: float) -> None:
-        """Compute one frame (16 ms) at `now_s` on the caller's clock (s), and publish it."""
+        """Compute one frame (16 ms) at `now_s` on the caller's clock (s), and publish the poses and colours."""
         self._frames += 1
         if self._late is not None:
             self._late.tick(now_s)
@@ -106,7 +106,7 @@ class TurtlesimNode(Node):
             interface.after_frame(now_s)
 
     def turtle_state(self, name: str = "turtle1") -> State | None:
-        """Return the state of a turtle after the last frame, or None if there is no turtle with that name."""
+        """Return the state of a turtle after the last frame, or None if no turtle has that name."""
         turtle = self.world.turtles.get(name)
         return turtle.state() if turtle is not None else None
 
@@ -128,7 +128,8 @@ class TurtlesimNode(Node):
         )
 
     def _hide(self, name: str) -> None:
-        # Remove it later, since this runs in a callback, and the executor may hold other callbacks of the same turtle.
+        # Remove the entities later, since this runs in a callback, and the executor may still call others of this
+        # turtle.
         self._leaving.append((self._frames + _FRAMES_TO_LEAVE, self._interfaces.pop(name)))
 
     def _log_spawned(self, name: str) -> None:
@@ -149,7 +150,7 @@ class TurtlesimNode(Node):
         try:
             self._show(name)
         except Exception as error:
-            # Here, the real turtlesim exits with an exception. Its first line says which characters are allowed.
+            # The real turtlesim exits with this exception. The first line of the message lists the allowed characters.
             self.world.kill(name)
             self.get_logger().error(f"A turtle cannot be named [{name}]: {str(error).partition(chr(10))[0]}")
             return response
@@ -181,7 +182,7 @@ class TurtlesimNode(Node):
         return response
 
     def reset(self) -> None:
-        """Reset the simulator, so that there is only turtle1 at its start and no trail."""
+        """Reset the simulator: remove the trail and all turtles, and put turtle1 at its start."""
         self.get_logger().info("Resetting turtlesim.")
         self.world.reset()
         for name in [name for name in self._interfaces if name != "turtle1"]:
@@ -193,7 +194,7 @@ class TurtlesimNode(Node):
     # --- parameters -------------------------------------------------------------------------------------------
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
-        """Set parameters as rclpy does, but reject invalid ones with the messages of turtlesim."""
+        """Set parameters as rclpy does, but reject invalid ones with the messages of the real turtlesim."""
         return parameters.refusal(self, parameter_list) or super().set_parameters_atomically(parameter_list)
 
     def _parameters_of_ours(self) -> list[Parameter]:

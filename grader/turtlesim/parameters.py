@@ -45,9 +45,9 @@ def declare(node: Node) -> None:
 
 
 def refusal(node: Node, parameters: Iterable[Parameter]) -> SetParametersResult | None:
-    """Return why these parameters cannot be set, as rclcpp says it, or None. The messages of rclpy are different.
+    """Return why these parameters cannot be set, in the words of rclcpp, or None if they can. rclpy uses other words.
 
-    Source: rclcpp/src/rclcpp/node_interfaces/node_parameters.cpp, in the order in which it examines a request.
+    Source: rclcpp/src/rclcpp/node_interfaces/node_parameters.cpp, which checks a request in this order.
     """
     given = list(parameters)
     rules = (_undeclared_or_read_only, _undeclares, _does_not_fit)

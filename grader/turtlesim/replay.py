@@ -1,4 +1,4 @@
-"""Replay a recording of the real turtlesim, and measure how much our turtle differs from it.
+"""Replay a recording of the real turtlesim, and compare its poses with those of our turtle.
 
     python -m grader.turtlesim.replay NAME.inputs.csv NAME.poses.csv
 
@@ -31,7 +31,7 @@ _HAIR_S = 1e-6
 
 @dataclass(frozen=True)
 class Difference:
-    """The largest difference between a recorded value and ours, in the unit of the value (m, rad, m/s, rad/s)."""
+    """The largest difference between a recorded value and ours, in the unit of that value (m, rad, m/s, rad/s)."""
 
     size: float
     frame: int
@@ -39,7 +39,7 @@ class Difference:
 
 
 def replay(inputs: Path, poses: Path) -> Difference:
-    """Replay the inputs, and compare every pose as published (float32) with the recorded pose."""
+    """Replay the inputs, and compare every pose, converted to float32 as in a message, with the recorded pose."""
     worst = Difference(0.0, 0, FIELDS[0])
     for (frame, recorded), (turtle, _) in zip(_poses(poses), _frames(inputs), strict=False):
         for field, theirs, ours in zip(FIELDS, recorded, _as_published(turtle.state()), strict=True):
@@ -51,7 +51,7 @@ def replay(inputs: Path, poses: Path) -> Difference:
 
 
 def rotations(inputs: Path, frames: int) -> Iterator[Rotation]:
-    """Replay the given number of frames, and yield the rotation after each frame that had one."""
+    """Replay the given number of frames, and yield the rotation after each frame that has one."""
     for _, rotation in itertools.islice(_frames(inputs), frames):
         if rotation is not None:
             yield rotation
@@ -66,7 +66,7 @@ class _Input:
 
 
 def _frames(inputs: Path) -> Iterator[tuple[Turtle, Rotation | None]]:
-    """Yield turtle1 after every frame, together with the rotation at the start of the frame. This never ends."""
+    """Yield turtle1 after each frame and the rotation at the start of the frame, without end."""
     world = World()
     turtle = world.turtles["turtle1"]
     by_frame = _inputs(inputs)

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 class _DeferringActionServer(ActionServer):
     """An action server whose goals are executed by the turtle's frames instead of a callback.
 
-    rclpy would run a callback from the acceptance of a goal to its result. This callback would have to wait, and it
-    would keep an executor busy. Therefore, a goal is only marked as executing, and the callback runs when there is a
-    result.
+    In rclpy, one callback runs from the acceptance of a goal to its result. Such a callback would have to wait, and it
+    would block an executor. Therefore, a goal is only marked as executing, and the callback runs when the result is
+    known.
     """
 
     def __init__(self, *args: Any, on_result_request: Callable[[bytes], object], **kwargs: Any) -> None:  # noqa: ANN401
@@ -129,7 +129,7 @@ class RotateAbsoluteServer:
 
     @property
     def idle(self) -> bool:
-        """Return whether there is no current goal."""
+        """Return whether no goal is active."""
         return not self._goals
 
     def destroy(self) -> None:

@@ -1,4 +1,4 @@
-"""Run turtlesim on its own in wall time, until Ctrl-C. `grader sim` and the executable turtlesim_node use this."""
+"""Run turtlesim in wall time, until Ctrl-C. `grader sim` and the executable turtlesim_node use this."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ if TYPE_CHECKING:
     OpenView = Callable[[Kind, int | None], AbstractContextManager["View"]]
 
 _MOST_AT_ONCE = 200
-"""The maximum number of callbacks that are handled per frame, so that a flood of messages cannot stop the turtle."""
+"""The maximum number of callbacks per frame, so that a flood of messages cannot stop the turtle."""
 _NO_WINDOW = (
     "This turtlesim has no window. To see the turtle, stop it with Ctrl-C and start it with --view (a page in the "
     "browser) or --view terminal."
 )
-"""This is printed only on a terminal. Other programs can read only what the real turtlesim writes."""
+"""Printed only on a terminal. In a pipe, the output is the same as that of the real turtlesim."""
 
 
 class Feed(Protocol):
@@ -76,7 +76,7 @@ class View(Protocol):
 def main(open_view: OpenView, args: Sequence[str] | None = None) -> int:
     """Run turtlesim; return the exit code, which is 0 after Ctrl-C, or 2 for invalid arguments.
 
-    `open_view` starts the view for `--view` on the given port. If the port is None, it chooses one.
+    `open_view` starts the view for `--view` on the given port. If the port is None, the view chooses one.
     """
     arguments = list(sys.argv if args is None else ["turtlesim_node", *args])
     stop = threading.Event()
@@ -116,7 +116,7 @@ def _node(view: View | None) -> TurtlesimNode:
 
 
 def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -> None:
-    """Compute a frame every 16 ms of CLOCK_MONOTONIC until `stop` is set. Late frames are caught up, not skipped.
+    """Compute a frame every 16 ms of CLOCK_MONOTONIC until `stop` is set. Missed frames are computed late, not skipped.
 
     While the simulator is paused in the view, the turtles' time does not advance.
     """
@@ -139,7 +139,7 @@ def spin(node: TurtlesimNode, stop: threading.Event, view: View | None = None) -
             if not view.open:
                 if view.kind == "terminal":
                     return
-                node.get_logger().warning("The view has ended; turtlesim continues without it.")
+                node.get_logger().warning("The view has ended. turtlesim continues without it.")
                 view = None
 
 
@@ -156,7 +156,7 @@ def _handle_what_arrived(executor: SingleThreadedExecutor) -> None:
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="turtlesim_node",
-        description="Run turtlesim in wall time, until Ctrl-C. It has no window; --view shows it.",
+        description="Run turtlesim in wall time, until Ctrl-C. It has no window; use --view to see the turtles.",
         epilog="Example: ros2 run turtlesim turtlesim_node --view",
     )
     parser.add_argument("--image", type=Path, metavar="FILE.png", help="write the canvas with the trails on exit")

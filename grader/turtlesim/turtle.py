@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple, Protocol
 
 FRAME_S = 0.016
-"""The duration of one frame. turtlesim advances by this time, even if a frame is late."""
+"""The duration of one frame (s). turtlesim advances by this time, even if a frame is late."""
 
 PIXELS_PER_M = 45
 SIDE_PX = 500
@@ -20,23 +20,23 @@ SIDE_M = 11.088889122009277
 """The length of a side of the canvas (m), which is (SIDE_PX - 1) / PIXELS_PER_M as a float32."""
 
 TIME_OUT_S = 1.0
-"""A turtle stops when its last command is older than this."""
+"""The age (s) of the last command after which a turtle stops."""
 
 ROTATE_SPEED = 1.0
 """The angular speed of rotate_absolute (rad/s)."""
 ROTATE_TOLERANCE = 0.02
-"""rotate_absolute has succeeded when the remaining angle (rad) is smaller than this."""
+"""rotate_absolute succeeds when the remaining angle (rad) is smaller than this value."""
 
 Rgb = tuple[int, int, int]
 
 
 def normalize(angle: float) -> float:
-    """Return the same direction as an angle in [-pi, pi), or nan for nan and infinity."""
+    """Return an equal direction as an angle in [-pi, pi), or nan for nan and infinity."""
     if -math.pi <= angle < math.pi:
         return angle
     if not math.isfinite(angle):
         return math.nan
-    # fmod is exact, so the result is in the interval even for a huge angle, unlike the result of turtlesim's formula.
+    # fmod is exact, so the result is in the interval even for a huge angle. This is not true for turtlesim's formula.
     turned = math.fmod(angle + math.pi, math.tau)
     turned += math.pi if turned < 0.0 else -math.pi
     return turned if turned < math.pi else -math.pi
@@ -60,7 +60,7 @@ class Pen:
 
 
 class State(NamedTuple):
-    """A turtle after a frame, in m, m, rad, m/s (never negative) and rad/s. `wall` is true if a wall stopped it."""
+    """The state of a turtle after a frame, in m, m, rad, m/s (never negative) and rad/s. `wall`: a wall stopped it."""
 
     x: float
     y: float
@@ -71,7 +71,7 @@ class State(NamedTuple):
 
 
 class Paper(Protocol):
-    """The canvas that a turtle draws on and whose colours it sees. Coordinates are in m."""
+    """The surface that a turtle draws on and whose colours its sensor reads. Coordinates are in m."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         """Draw a line from (x0, y0) to (x1, y1)."""
@@ -88,9 +88,9 @@ class Rotation:
     start: float
     remaining: float = 0.0
     delta: float = 0.0
-    """The turn from the current direction back to the start. The result of turtlesim has this sign."""
+    """The turn (rad) from the current direction back to the start. The result of turtlesim has this sign."""
     cancel: bool = False
-    """Whether the caller requests the cancellation of the goal. The next frame handles the request."""
+    """Whether a client has requested the cancellation of the goal. The next frame handles the request."""
     end: Literal["succeeded", "canceled", "aborted"] | None = None
 
 
@@ -106,16 +106,16 @@ class _Relative(NamedTuple):
 
 
 class Turtle:
-    """One turtle. Requests take effect in the next `update`, but velocities are set immediately."""
+    """One turtle. Requests take effect in the next `update`, but velocity commands take effect immediately."""
 
     def __init__(self, start: Start = Start()) -> None:  # noqa: B008 (a tuple cannot be changed)
         self.x, self.y, self.theta = start
         self.pen = Pen()
         self.color: Rgb = (0, 0, 0)
-        """The colour that the sensor saw in the last frame."""
+        """The colour that the sensor read in the last frame."""
         self.rotation: Rotation | None = None
         self.clamped_from: tuple[float, float] | None = None
-        """The position that the turtle would have had in the last frame without a wall, or None if it hit no wall."""
+        """The position that the turtle would have had in the last frame without walls, or None if it hit no wall."""
         self.last_command_s: float | None = None
         self._command_is_new = False
         self._vx = self._vy = self._spin = 0.0
@@ -169,7 +169,7 @@ class Turtle:
         x, y = self.x, self.y
         self._move(dt)
         self._clamp()
-        # The sensor looks before the pen draws, so it sees what was on the canvas before this frame.
+        # The sensor reads the canvas before the pen draws, so its colour does not include this frame's line.
         self.color = paper.color_at(self.x, self.y)
         if (self.x != x or self.y != y) and self.pen.down:
             paper.line(x, y, self.x, self.y, self.pen)

@@ -1,4 +1,4 @@
-"""All turtles on one canvas, moved frame by frame. The caller passes the time, since this module has no clock."""
+"""All turtles on one canvas, moved frame by frame. This module has no clock; the caller passes the time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class World:
         self.reset()
 
     def reset(self) -> None:
-        """Remove all turtles and the trail, and put turtle1 at its start. The parameters do not change."""
+        """Remove all turtles and the trail, and put turtle1 at its start. Parameters do not change."""
         for turtle in self.turtles.values():
             turtle.abort_rotation()
         self.turtles.clear()
@@ -28,11 +28,11 @@ class World:
         self.canvas.clear()
 
     def new_name(self) -> str:
-        """Return the next free name of the form turtleN. No number is used twice between two resets."""
+        """Return the next free name of the form turtleN. A number is not used again before the next reset."""
         return next(name for number in self._numbers if (name := f"turtle{number}") not in self.turtles)
 
     def spawn(self, name: str, start: Start) -> str:
-        """Add a turtle, which is called turtleN if `name` is empty. Return its name, or "" if the name is taken."""
+        """Add a turtle and return its name, or "" if `name` is taken. An empty `name` means the next free turtleN."""
         if name in self.turtles:
             return ""
         name = name or self.new_name()
@@ -42,7 +42,7 @@ class World:
         return name
 
     def kill(self, name: str) -> bool:
-        """Remove a turtle and keep its trail; return False if there is no turtle with that name."""
+        """Remove a turtle but keep its trail. Return False if no turtle has that name."""
         turtle = self.turtles.pop(name, None)
         if turtle is None:
             return False
@@ -50,7 +50,7 @@ class World:
         return True
 
     def command(self, name: str, linear_x: float, linear_y: float, angular_z: float) -> None:
-        """Give a turtle a velocity command (m/s, m/s, rad/s). `linear_y` only has an effect on holonomic turtles."""
+        """Send a velocity command (m/s, m/s, rad/s) to a turtle. `linear_y` affects only holonomic turtles."""
         self.turtles[name].command(linear_x, linear_y if self.holonomic else None, angular_z)
 
     def step(self, now_s: float) -> None:

@@ -1,4 +1,4 @@
-"""A learner at a terminal, from the first step of the course to the last."""
+"""A learner who uses a terminal, from the first step of the course to the last."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ GRADER = str(Path(sys.executable).with_name("grader"))
 LAST = list(catalogue())[-1]
 FIRST_TO_COPY = "03-circle-publisher"
 PATIENCE_S = 300
-"""The time for one verdict on a busy machine (s). A command that takes longer hangs."""
+"""The maximum time for one verdict on a busy machine (s)."""
 
 
 class Learner:
-    """A learner at a terminal, with a home folder of their own."""
+    """A learner who uses a terminal, with a separate home folder."""
 
     def __init__(self, home: Path, grader: str = GRADER) -> None:
         self.home = home
@@ -57,13 +57,13 @@ class Learner:
         return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", child.before or "")
 
     def solves(self, step: str) -> None:
-        """Write the whole solution into the workspace, as if the learner had done the work."""
+        """Write the complete solution into the workspace, as if the learner had done the work."""
         exercise = find_exercise(step)
         solution = ROOT / "solutions" / step
         mine = work_folder(exercise, self.home / "ros2_ws")
         for file in sorted((solution / exercise.package).rglob("*") if exercise.package else solution.rglob("*")):
             place = mine / file.relative_to(solution / exercise.package)
-            # The learner keeps their own numbers of this step.
+            # The learner's individual numbers of this step stay.
             own = exercise.numbers
             if file.is_file() and not (own is not None and place.name == own.file):
                 place.parent.mkdir(parents=True, exist_ok=True)
@@ -86,7 +86,7 @@ BAG = "circle_bag"
 
 
 def record_own_bag(package: Path, own: OwnNumbers) -> None:
-    """Replace the bag of the solution and the answers about it by those of a learner with these numbers."""
+    """Replace the bag of the solution and the answers about it by those of a student with these numbers."""
     radius_m, speed = float(own.values["radius_m"]), float(own.values["speed_m_s"])
     poses = made_bag.poses(radius_m, speed=speed, drive_s=1.1 * 2.0 * math.pi * radius_m / speed)
     made_bag.record(package / BAG, poses)
@@ -108,11 +108,11 @@ OWN = {
     "lookout.py": {"radians(85)": "radians({left_deg})", "radians(-80)": "radians({right_deg})"},
     "draw_star.py": {"SIDE = 2.3": "SIDE = {side_m}", "radians(10)": "radians({first_deg})"},
 }
-"""Where our solutions contain own numbers: file -> string -> the string with a learner's numbers."""
+"""The individual numbers in our solutions: file -> string -> the string with a student's numbers."""
 
 
 def with_numbers(text: str, name: str, own: OwnNumbers) -> str:
-    """Return the text of a solution's file with the learner's numbers."""
+    """Return the text of a solution's file with the student's numbers."""
     turn = 1.0 if own.values.get("direction") == "counter-clockwise" else -1.0
     for old, new in OWN.get(name, {}).items():
         assert old in text
@@ -160,7 +160,7 @@ def walk(learner: Learner, steps: list[str]) -> None:
             screen.expect("Not passed")
             screen.expect(f"{following}: ")
             if following == FIRST_TO_COPY:
-                screen.expect("This step needs more lines in package.xml. Add to yours")
+                screen.expect("This step needs more lines in package.xml. Add these to your file")
             screen.expect("Watching")
     if steps[-1] == LAST:
         screen.send("n")

@@ -13,7 +13,7 @@ from grader.learner.exercise_argument import guessed, meant
 
 @pytest.fixture(autouse=True)
 def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A workspace in which step 03 was started, and an empty current folder."""
+    """Create a workspace in which step 03 was started, and an empty current folder."""
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     monkeypatch.setenv("ROS2_WORKSPACE", str(tmp_path / "ros2_ws"))
     (tmp_path / "elsewhere").mkdir()

@@ -86,7 +86,7 @@ def test_passed_checks_get_no_hint() -> None:
     done = "each package that they import must be there when the node runs."
     assert reported == {text for text in all_texts("04") if not text.endswith(done)}
     verdict("04-package-files", passed=True)
-    assert hints.hint(None, None) == "04-package-files has passed. You need no more hints."
+    assert hints.hint(None, None) == "04-package-files has passed, so you do not need more hints."
 
 
 @pytest.mark.parametrize("words", [("07", "d"), ("7", "D"), ("07", "d)"), ("d",)])
@@ -98,13 +98,13 @@ def test_a_part_has_hints_of_its_own(words: tuple[str, ...]) -> None:
 
 def test_a_part_that_has_passed_needs_no_hint() -> None:
     verdict(LAST, done=("goal", "goal-subscription"), failed=("square",))
-    assert hints.hint("07", None, "d") == "Part d) of 07-challenges has passed. You need no more hints."
+    assert hints.hint("07", None, "d") == "Part d) of 07-challenges has passed, so you do not need more hints."
 
 
 def test_an_unknown_part_is_an_error_that_lists_the_parts() -> None:
-    with pytest.raises(UsageError, match=r"07-challenges has the parts a, b, c and d: 'e' is not one of them\."):
+    with pytest.raises(UsageError, match=r"'e' is not a part of 07-challenges, which has the parts a, b, c and d\."):
         hints.hint("07", None, "e")
-    with pytest.raises(UsageError, match="03-circle-publisher has no parts: 'a'"):
+    with pytest.raises(UsageError, match="'a' is not a part of 03-circle-publisher, which has no parts"):
         hints.hint("03", None, "a")
 
 

@@ -1,4 +1,4 @@
-"""How a learner's file differs from the solution, in one sentence."""
+"""The sentence about how a learner's file differs from the solution."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ REST = "The code is the same in __init__ and the lines outside of functions."
             OURS.replace("def step", "def go"),
             f"{REST} Only you have go. Only the solution has step.",
         ),
-        ("", "You have no such file."),
+        ("", "You do not have this file."),
     ],
 )
 def test_it_is_said_in_words(theirs: str, said: str) -> None:

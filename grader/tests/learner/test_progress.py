@@ -28,7 +28,7 @@ FIRST, SECOND = "01-first-node", "02-discover-topics"
 
 @pytest.fixture(autouse=True)
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A learner with a progress file of their own."""
+    """Create a learner with a separate progress file."""
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.delenv("XDG_STATE_HOME", raising=False)
     monkeypatch.delenv("ROS2_WORKSPACE", raising=False)
@@ -115,7 +115,9 @@ def test_start_lists_lines_that_a_later_step_needs_in_package_files(home: Path) 
         "package.xml": ("<depend>geometry_msgs</depend>", "<depend>turtlesim</depend>"),
         "setup.py": ('"draw_circle = my_robot_controller.draw_circle:main",',),
     }
-    assert 'This step needs more lines in setup.py. Add to yours:\n    "draw_circle' in steps.begin_message(begun)
+    assert 'This step needs more lines in setup.py. Add these to your file:\n    "draw_circle' in steps.begin_message(
+        begun
+    )
     assert steps.start("03", None, fresh=True).started.lacking == {}
 
 
@@ -192,7 +194,9 @@ def test_a_package_of_somebody_else_has_a_workspace_of_its_own(home: Path) -> No
     before = {path: path.read_bytes() for path in own.rglob("*") if path.is_file()}
     begun = steps.start("04", None)
     assert begun.started.folder == home / "ros2_ws/apart/04-package-files/src/my_robot_controller"
-    assert (home / "ros2_ws/apart/COLCON_IGNORE").is_file(), "colcon must not build it with the learner's own package"
+    assert (home / "ros2_ws/apart/COLCON_IGNORE").is_file(), (
+        "colcon must not build it together with the learner's package"
+    )
     assert begun.started.lacking == {}
     assert {path: path.read_bytes() for path in own.rglob("*") if path.is_file()} == before
     assert steps.current(None) == (begun.exercise, begun.started.folder)

@@ -16,7 +16,7 @@ NODE = "src/my_robot_controller/my_robot_controller/draw_circle.py"
 
 @pytest.fixture(scope="module")
 def learner(tmp_path_factory: pytest.TempPathFactory) -> Learner:
-    """A learner who has solved step 03."""
+    """Create a learner who has solved step 03."""
     learner = Learner(tmp_path_factory.mktemp("home"))
     learner.env["ROS_DOMAIN_ID"] = str(own_domain())
     learner.reads("start", "03")
@@ -32,7 +32,7 @@ def children_of(pid: int) -> list[int]:
 def test_one_command_shows_the_turtle_and_ctrl_c_ends_everything(learner: Learner) -> None:
     child = learner.types("run")
     child.expect("See it move: http://127")
-    child.expect("draw_circle runs")
+    child.expect("draw_circle is running")
     child.expect(r"\[draw_circle\]: ")
     started = children_of(child.pid)
     assert len(started) == 2, "a turtlesim and a node"
@@ -51,7 +51,7 @@ def test_a_crash_shows_the_learners_own_file(learner: Learner) -> None:
     node.write_text(right, "utf-8")
     assert f'File "{node}", line ' in printed
     assert "NameError: name 'Twits' is not defined" in printed
-    assert "draw_circle has ended by itself, with exit code 1." in printed
+    assert "draw_circle has ended with exit code 1." in printed
 
 
 def test_it_says_what_colcon_says(learner: Learner) -> None:
@@ -61,11 +61,11 @@ def test_it_says_what_colcon_says(learner: Learner) -> None:
     printed = learner.reads("run")
     setup.write_text(right, "utf-8")
     assert "SyntaxError" in printed
-    assert "The package could not be built: colcon says why, above." in printed
+    assert "The package could not be built. See the messages of colcon above." in printed
 
 
 def test_it_names_what_it_can_run(learner: Learner) -> None:
-    assert "Did you mean draw_circle? It has: draw_circle." in learner.reads("run", "03", "drawcircle")
+    assert "Did you mean draw_circle? Its programs are: draw_circle." in learner.reads("run", "03", "drawcircle")
     learner.reads("start", "02")
     assert "02-discover-topics has no node to run." in learner.reads("run")
 

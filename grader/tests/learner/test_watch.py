@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[3]
 STEP = "03-circle-publisher"
 PATIENCE_S = 180.0
-"""A wait that takes longer than this hangs (s)."""
+"""The time (s) after which a wait fails."""
 
 
 @pytest.fixture
@@ -65,7 +65,7 @@ def change(file: Path, old: str, new: str) -> None:
 
 
 def ignored(_: str) -> None:
-    """What is being done, which no one reads."""
+    """Discard a progress message."""
 
 
 def failed(watched: Watched) -> list[str]:
@@ -122,7 +122,7 @@ def test_the_screen_shows_a_proof_when_it_is_there(package: Path, terminal: bool
     assert re.search(r"likely:? +The first argument of create_timer", verdict)
     assert re.search(r"why:? +The first argument of create_timer", proof)
     assert re.search(rf"tried:? +{re.escape(PASSES)}", proof)
-    # A terminal shows the whole report again, but not over a list that the learner has asked for.
+    # A terminal shows the whole report again, unless the learner has requested a list.
     assert ("\x1b[2J" in proof) == ("✓ The node starts" in proof) == (terminal and not asked)
     assert ("Watching " in proof) == (terminal and not asked)
     assert ("steps passed" in proof) == asked
@@ -164,7 +164,7 @@ def test_a_save_is_noticed_with_every_kind_of_editor(package: Path, how: str) ->
     events = Events(None)
     events.watch(package)
     heard = iter(events)
-    assert next(heard).kind == "saved"  # from now on, every save is noticed
+    assert next(heard).kind == "saved"  # every save is noticed after this event
     saves[how]()
     assert next(heard).kind == "saved"
     events.close()
@@ -177,9 +177,9 @@ def test_watching_follows_the_path_when_another_folder_takes_it(package: Path) -
     assert next(happened).kind == "saved"
     kept = package.with_name("kept-aside")
     package.rename(kept)
-    assert next(happened).kind == "saved"  # the file is gone
+    assert next(happened).kind == "saved"  # the file was removed
     shutil.copytree(kept, package.with_name("another")).rename(package)
-    assert next(happened).kind == "saved"  # another file has its name
+    assert next(happened).kind == "saved"  # another file took its name
     node_of(package).write_text("x = 1\n")
     assert next(happened).kind == "saved"
     events.close()

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Point:
-    """An object that looks like a message of rclpy."""
+    """An object with the methods of an rclpy message."""
 
     def __init__(self) -> None:
         self.x = 0.0
@@ -217,7 +217,7 @@ def interfaces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("interfaces")
 def test_shows_what_a_field_consists_of() -> None:
-    # Like the real command: a space after the message keeps the # of the comment that is left out.
+    # Like the real command, keep the space between the type and the removed comment.
     side = ["\tfloat64 length 1.5 #", "\tstring<=5 name '#1' #"]
     top = ["int32 MOST=3", "# four of them", "Side[4] sides", "things/Side[] more # too", "bool[<=3] flags"]
     box = [*top[:3], *side, top[3], *side, top[4]]

@@ -80,7 +80,7 @@ def test_there_is_no_such_domain(domain: int) -> None:
 
 @pytest.mark.parametrize("home", ["home", "home of Ada"])
 def test_colcons_scripts_get_a_python_without_a_space_in_its_path(home: str, tmp_path: Path) -> None:
-    # They start it without quotes.
+    # colcon's scripts start Python without quotes around its path.
     python = tmp_path / home / ".venv/bin/python3"
     python.parent.mkdir(parents=True)
     python.symlink_to(Path(sys.executable).resolve())
@@ -180,7 +180,7 @@ def test_what_grader_env_prints_is_understood(tmp_path: Path, name: str) -> None
         give_up(name, name)
     env = {**SOURCED_ENV, "PATH": f"{BIN}:{PATH}", "HOME": str(tmp_path)}
     env["XDG_CACHE_HOME"] = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    underlay.ensure(HERE)  # without the redirection, the output would contain the message about the build
+    underlay.ensure(HERE)  # otherwise, the output would contain the progress of the build
     what = "source <(grader env --domain 57) && echo $ROS_DISTRO $ROS_DOMAIN_ID"
     done = subprocess.run([name, "-c", what], cwd=tmp_path, env=env, capture_output=True, text=True, check=False)
     used = f"The ROS 2 that is sourced in this terminal is used: {HERE.prefix} (ROS domain 57, "

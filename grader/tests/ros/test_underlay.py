@@ -1,4 +1,4 @@
-"""The turtlesim interfaces are built once and completely, or not at all. They are found without starting a process."""
+"""The turtlesim interfaces are built once and completely, or not at all. Finding them starts no process."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def builds(monkeypatch: pytest.MonkeyPatch) -> list[Sequence[str]]:
-    """Replace cmake. Returns the list of commands that were run; the install command creates one file."""
+    """Replace cmake. Return the list of commands that were run; the install command creates one file."""
     ran: list[Sequence[str]] = []
 
     def run(command: Sequence[str], env: dict[str, str], _: object) -> None:
@@ -57,7 +57,7 @@ def without(monkeypatch: pytest.MonkeyPatch, *programs: str) -> None:
 
 
 def test_two_at_once_build_it_once_and_both_get_it(ros: installation.Ros, tmp_path: Path) -> None:
-    """The current folder is full of traps, and the build loads and runs none of them."""
+    """The current folder contains modules and programs with the names of real ones. The build must not use them."""
     traps = Traps(tmp_path / "current", tmp_path / "touched")
     code = "from grader.ros import installation, underlay; print(underlay.ensure(installation.find_ros(), print))"
     env = {**careless(), "XDG_CACHE_HOME": str(tmp_path / "home of Ada")}
@@ -145,7 +145,7 @@ def test_missing_tools_are_named_with_what_installs_them(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     without(monkeypatch, "c++", "cmake")
-    with pytest.raises(MachineError, match=r"lacks a C\+\+ compiler and cmake .*apt-get install -y g\+\+ cmake"):
+    with pytest.raises(MachineError, match=r"lacks a C\+\+ compiler and cmake\. .*apt-get install -y g\+\+ cmake"):
         underlay.ensure(ros)
 
 

@@ -25,7 +25,7 @@ def run(
     limits: Limits = Limits(),  # noqa: B008
     view: bubblewrap.View = SEEN,
 ) -> process.Finished:
-    """Run Python code in a cell of its own."""
+    """Run Python code in a cell."""
     with call_filter() as filter_fd, cell_user() as user:
         command = bubblewrap.lone_cell(
             [sys.executable, "-c", code], view, env=ENV, limits=limits, user=user, filter_fd=filter_fd
@@ -70,7 +70,7 @@ def test_a_room_has_shared_memory_because_lttng_needs_it() -> None:
 
 
 def test_a_cell_sees_only_named_parts_of_a_hidden_folder(tmp_path: Path) -> None:
-    """The libraries of an installed grader are also those of a node. A cell needs only the grader's launcher."""
+    """A node uses the libraries in the environment of the grader, but needs only the launcher of the grader itself."""
     package = tmp_path / "site-packages" / "grader"
     for name in ("trial/launcher.py", "trial/rest.py", "solutions/a.py", "fastdds.xml"):
         (package / name).parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""The kernel counts what a cell uses in total, if groups are allowed. Otherwise the cell runs without a group."""
+"""The kernel limits what a cell uses in total, if groups are allowed. Otherwise, the cell runs without a group."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_a_group_over_its_limit_is_ended_and_this_is_reported() -> None:
 
 @pytest.mark.usefixtures("group")
 def test_the_memory_of_several_processes_counts_together() -> None:
-    # Two processes that use half of too much memory each.
+    # Start two processes, each of which uses more than half of the allowed memory.
     half = f"{sys.executable} -c 'x = bytearray({340 * MIB}); import time; time.sleep(60)'"
     with control_group(SMALL) as group:
         script = f"{half} & {half} & wait -n; kill $(jobs -p) 2>/dev/null; wait"
@@ -83,11 +83,11 @@ def test_without_groups_the_command_runs_unchanged(monkeypatch: pytest.MonkeyPat
         assert not group.out_of_memory()
 
 
-# Not every machine has version 2 with systemd's tree, so its files are created in a folder.
+# Not every machine has version 2 with systemd's tree, so the tests create its files in a folder.
 
 
 def version_2(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Create the tree of a user's terminal. Its upper slice passes the controllers on."""
+    """Create the tree of a user's terminal, in which the upper slice delegates the controllers."""
     slice_ = folder / "user.slice/user-1000.slice/user@1000.service/app.slice"
     scope = slice_ / "terminal.scope"
     scope.mkdir(parents=True)

@@ -1,4 +1,4 @@
-"""How long the processes of a cell were ready to run does not depend on what else uses the machine."""
+"""The time for which the processes of a cell are ready to run does not depend on other load of the machine."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ for _ in range(2):
         os._exit(0)
 sys.stdin.readline()
 """
-"""Two processes that work on one processor, so that at any time one of them waits."""
+"""A program that starts two processes on one processor, so that at any time one of them waits."""
 LIMITS = Limits(processes=50, cpu_s=60)
 
 

@@ -1,4 +1,4 @@
-"""If root grades, each cell has a user of its own, and two cells at the same time have different users."""
+"""If root grades, each cell has a separate user, and two cells at the same time have different users."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ with user.cell_user() as mine:
 
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """A machine with few user ids, and with its own lock file."""
+    """Provide a machine with few user ids and a separate lock file."""
     monkeypatch.setattr(user, "_users", lambda _: FEW_USERS)
     monkeypatch.setattr(user, "PLACES", (str(tmp_path),))
 
@@ -42,7 +42,7 @@ def test_two_cells_never_have_the_same_user_at_the_same_time() -> None:
     with ExitStack() as stack:
         users = [stack.enter_context(cell_user()) for _ in FEW_USERS]
         assert sorted(map(str, users)) == sorted(map(str, FEW_USERS))
-        with pytest.raises(MachineError, match="There is no free user id"):
+        with pytest.raises(MachineError, match="All user ids for cells are in use"):
             stack.enter_context(cell_user())
     with cell_user() as again:
         assert again in FEW_USERS
@@ -95,7 +95,7 @@ def test_a_lock_file_that_others_can_change_is_refused(monkeypatch: pytest.Monke
     monkeypatch.setattr(user, "PLACES", (str(tmp_path),))
     (tmp_path / "ros2-grader").mkdir()
     (tmp_path / "ros2-grader").chmod(0o777)
-    with pytest.raises(MachineError, match="only root can change"), cell_user():
+    with pytest.raises(MachineError, match="only root can write to"), cell_user():
         pass
 
 

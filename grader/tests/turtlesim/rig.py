@@ -1,4 +1,4 @@
-"""turtlesim, driven by the test, and a client, both in one process with ROS 2."""
+"""turtlesim, whose frames the test computes, and a client, both in one process with ROS 2."""
 
 # ruff: noqa: ANN401 - mypy sees everything of ROS 2 as Any
 
@@ -29,7 +29,7 @@ STATUS = {
 
 
 class Rig:
-    """turtlesim with frames that follow each other as fast as possible, and a client. Long waits raise an error."""
+    """turtlesim that computes frames as fast as possible, and a client. Waits that take too long raise an error."""
 
     def __init__(self, **hooks_and_start: Any) -> None:
         rclpy.init(args=[])
@@ -47,10 +47,10 @@ class Rig:
         rclpy.shutdown()
 
     def until(self, condition: Callable[[], bool]) -> None:
-        """Let time pass until the condition holds."""
+        """Compute frames until the condition holds."""
         deadline = time.monotonic() + HANG_S
         while not condition():
-            assert time.monotonic() < deadline, "it never came"
+            assert time.monotonic() < deadline, "the condition never held"
             self.executor.spin_once(timeout_sec=0.001)
             self.frame()
 

@@ -1,4 +1,4 @@
-"""Functions that test_node.py runs in processes with ROS 2: turtlesim, driven by the test, and a client."""
+"""Functions that test_node.py runs in processes with ROS 2. They use turtlesim, frame by frame, and a client."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def parameters() -> dict[str, Any]:
 
 
 def as_recorded() -> dict[str, Any]:
-    """Do the same actions as during the recording of the real turtlesim's log."""
+    """Send the same requests as during the recording of the real turtlesim's log."""
     with Rig() as rig:
         found = {
             "spawn": rig.call(Spawn, "/spawn", x=2.0, y=2.0, theta=0.2, name="t2").name,
@@ -150,7 +150,7 @@ def rotations() -> dict[str, Any]:
         found: dict[str, Any] = {"status": status, "delta": delta}
         # The last feedback may arrive after the result, when the client no longer receives it.
         found["feedback"] = len(feedback) > 5 and all(a > b for a, b in itertools.pairwise(feedback))
-        # The goals below turn for several seconds, so that they are active when something happens to them.
+        # The goals below turn for several seconds, so that they are active when the next event happens.
         goal = rig.goal(3.0, [])
         cancelled = goal.cancel_goal_async()
         rig.until(cancelled.done)
@@ -252,7 +252,7 @@ def hooks() -> dict[str, Any]:
 
 
 def late_frames() -> list[float]:
-    """Run in wall time without a client. One frame takes as long as ten."""
+    """Run in wall time without a client. Computing a frame takes as long as ten frames."""
     times: list[float] = []
     stop = threading.Event()
 

@@ -1,4 +1,4 @@
-"""A simulator that answers late: a call takes effect when it is answered, in the order of the calls."""
+"""A call to a simulator that answers late takes effect when it is answered. The calls stay in order."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from grader.turtlesim.late_answers import LateAnswers
 
 
 class Service:
-    """What an executor of rclpy does with a service."""
+    """The parts of an rclpy service that an executor uses."""
 
     class srv_type:  # noqa: N801 - as in rclpy
-        """A type of a service, whose responses are lists."""
+        """A service type whose responses are lists."""
 
         Response = list
 

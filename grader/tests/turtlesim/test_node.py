@@ -27,7 +27,7 @@ def golden(name: str) -> list[str]:
 
 
 def log_of(stderr: str) -> list[str]:
-    """Return level and text of each line that the node logged, without the time."""
+    """Return the level and the text of each line that the node logged, without the time."""
     return re.findall(r"^(\[[A-Z]+\]) \[[0-9.]+\] (\[turtlesim\]: .*)$", stderr, re.MULTILINE)
 
 

@@ -1,4 +1,4 @@
-"""The motion of a turtle, compared with recordings of the real turtlesim, and rule by rule."""
+"""The motion of a turtle, compared with recordings of the real turtlesim, and tests of each rule."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from grader.turtlesim.turtle import FRAME_S, SIDE_M, Pen, Rgb, Start, Turtle, no
 
 RECORDINGS = sorted((Path(__file__).parents[1] / "golden" / "turtlesim").glob("*.inputs.csv"))
 PRECISION = 1e-6
-"""One step of a 32-bit float at the largest coordinate of the canvas."""
+"""The difference between two neighbouring 32-bit floats at the largest coordinate of the canvas."""
 
 
 class NoCanvas:
-    """Paper that ignores everything."""
+    """A canvas that ignores everything."""
 
     def line(self, x0: float, y0: float, x1: float, y1: float, pen: Pen) -> None:
         pass

@@ -1,2 +1,2 @@
-# A workspace's install/setup.bash sources this file. It does nothing, since the environment with ROS 2 has turtlesim
-# already; colcon expects such a file in each prefix.
+# A workspace's install/setup.bash sources this file, since colcon expects it in each prefix. It does nothing, because
+# the environment of ROS 2 includes turtlesim already.

@@ -1,1 +1,1 @@
-"""The other executables in the package turtlesim: turtle_teleop_key, draw_square and mimic. Each of them is a node."""
+"""The nodes turtle_teleop_key, draw_square and mimic of the package turtlesim."""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rclpy.task import Future
 
 _POSES_TO_SKIP = 3
-"""How many poses to skip after the reset, because an older pose may arrive after the response to the reset."""
+"""The number of poses to skip after the reset, because an older pose may arrive after the response to the reset."""
 
 
 class DrawSquare(Node):

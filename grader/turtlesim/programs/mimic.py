@@ -1,4 +1,4 @@
-"""mimic: make one turtle imitate another one, from input/pose to output/cmd_vel (remap these topics)."""
+"""mimic: make one turtle imitate another one, from input/pose to output/cmd_vel (remap both topics)."""
 
 from __future__ import annotations
 

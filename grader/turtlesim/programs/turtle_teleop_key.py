@@ -33,10 +33,10 @@ The arrow keys drive the turtle, for one second per key press.
 F stops turning, Q quits."""
 _NO_TERMINAL = (
     "turtle_teleop_key reads keys from a terminal, but its standard input is not a terminal (it is a pipe or a file, "
-    "or it was started in the background). Start it in a terminal of its own: ros2 run turtlesim turtle_teleop_key"
+    "or it was started in the background). Start it in a separate terminal: ros2 run turtlesim turtle_teleop_key"
 )
 _DISCOVERY_S = 2.0
-"""The maximum time that the discovery of a running turtlesim takes."""
+"""The maximum time (s) that the discovery of a running turtlesim takes."""
 
 
 class Teleop(Node):
@@ -85,13 +85,13 @@ class Teleop(Node):
         super().destroy_node()
 
     def _see_that(self, somebody: Callable[[], bool], name: str) -> bool:
-        """Return whether somebody is listening. Print a message if nobody is after the first two seconds."""
+        """Return whether the condition holds. If it does not after the first two seconds, print a message."""
         while not somebody() and time.monotonic() < self._begun + _DISCOVERY_S:
             time.sleep(0.01)
         there = somebody()
         if not there:
             domain = os.environ.get("ROS_DOMAIN_ID", "0")
-            self._tell(f"Nobody listens on {name} here (ROS_DOMAIN_ID is {domain}). Is turtlesim running?")
+            self._tell(f"No node subscribes to or serves {name} (ROS_DOMAIN_ID is {domain}). Is turtlesim running?")
         return there
 
 
@@ -100,7 +100,7 @@ def main() -> int:
     if not is_terminal():
         print(_NO_TERMINAL, file=sys.stderr)
         return 1
-    # A signal must interrupt Python's wait for a key. The signal handler of rclpy would interrupt only its own waits.
+    # Python's signal handler must interrupt the wait for a key. The handler of rclpy interrupts only waits of rclpy.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
     node = Teleop()

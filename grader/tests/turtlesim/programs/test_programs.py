@@ -41,7 +41,7 @@ def terminal(of: World, command: str = "bash --norc --noprofile") -> pexpect.spa
 
 
 def poses(of: World, turtle: str) -> Running:
-    """Lines x,y,theta,linear,angular of a turtle, from now on."""
+    """Return a process that prints lines x,y,theta,linear,angular of a turtle from now on."""
     return of.start(f"ros2 topic echo /{turtle}/pose --csv", ",")
 
 
@@ -91,7 +91,7 @@ def test_the_terminal_is_left_as_it_was(alone: World, how: str) -> None:
         shell.expect("ready")
         shell.sendline("fg")
         shell.expect(TELEOP)
-        # The terminal passes on single keys again.
+        # The program receives single keys again.
         until(lambda: not shell.getecho())
     if how.startswith("SIG"):
         os.kill(job, signal.Signals[how])
@@ -107,11 +107,11 @@ def test_the_terminal_is_left_as_it_was(alone: World, how: str) -> None:
 def test_it_ends_when_the_terminal_is_lost(alone: World) -> None:
     keys = terminal(alone, TELEOP)
     keys.expect("Q quits")
-    # `close` would kill it.
+    # `close` would kill the process.
     keys.ptyproc.fileobj.close()
     keys.ptyproc.closed = keys.closed = True
     until(lambda: not keys.isalive())
-    # It ended by itself. The real `ros2 run` ends with the terminal.
+    # The process ended by itself. The real `ros2 run` ends together with the terminal.
     assert REAL_ROS2 or keys.signalstatus is None
 
 
@@ -119,7 +119,7 @@ def test_it_says_when_nobody_listens(alone: World) -> None:
     keys = terminal(alone, TELEOP)
     keys.expect("Q quits")
     keys.send(UP)
-    keys.expect(r"Nobody listens on /turtle1/cmd_vel here \(ROS_DOMAIN_ID is [0-9]+\)")
+    keys.expect(r"No node subscribes to or serves /turtle1/cmd_vel \(ROS_DOMAIN_ID is [0-9]+\)")
     keys.send("q")
     keys.expect(pexpect.EOF)
 
@@ -147,7 +147,7 @@ def test_draw_square_resets_and_drives_around_the_corner(beside: World) -> None:
     assert not any("Traceback" in line for line in square.lines)
     path = [tuple(map(float, line.split(",")[:3])) for line in observed.lines if line.count(",") == 4]
     path = [place for place in path if place[:2] != (1.0, 9.0)]
-    # It is reset to the middle, drives 2 m to the right, and then turns upwards.
+    # The turtle is reset to the middle, drives 2 m to the right, and then turns upwards.
     assert path[0] == pytest.approx((5.544445, 5.544445, 0.0), abs=1e-4)
     assert max(abs(y - 5.544445) for x, y, _ in path if x < 7.5) < 0.02
     assert path[-1][0] == pytest.approx(7.544445, abs=0.02)
@@ -162,7 +162,7 @@ def test_mimic_drives_one_turtle_as_the_other_moves(beside: World) -> None:
     twist = "{linear: {x: 0.75}, angular: {z: -0.25}}"
     beside.start(f"ros2 topic pub -r 10 /turtle1/cmd_vel geometry_msgs/msg/Twist '{twist}'")
     first.wait_for(",0.75,-0.25")
-    # It has the same velocity in several frames, so it moves.
+    # The velocity is the same in several frames, so the turtle moves.
     second.wait_for(",0.75,-0.25", times=round(1.0 / FRAME_S))
     *_, last = (line for line in second.lines if line.endswith(",0.75,-0.25"))
     assert math.dist((2.0, 2.0), tuple(map(float, last.split(",")[:2]))) > 0.5

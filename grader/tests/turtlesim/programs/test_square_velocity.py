@@ -1,4 +1,4 @@
-"""The square with the simulator's own motion. The commands arrive some frames late."""
+"""The square on our motion model of turtlesim. The commands arrive some frames late."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Point = tuple[float, float]
 
 
 def drive(late: int, seconds: float = 36.0) -> tuple[list[Point], list[Leg]]:
-    """Return the positions of the turtle in each frame, and the legs in order."""
+    """Return the position of the turtle in each frame, and the legs in order."""
     world = World()
     turtle = world.turtles["turtle1"]
     legs = [first(turtle.x, turtle.y, turtle.theta)]
@@ -48,7 +48,7 @@ def test_the_turtle_drives_a_square_of_two_metres(late: int) -> None:
     assert max(off_the_square(place, corners) for place in places) < 0.02
     for corner in corners:
         assert min(math.dist(place, corner) for place in places) < 0.01
-    # There are four sides with a turn each, and it continues.
+    # The turtle has driven four sides with a turn each, and continues.
     assert [leg.turning for leg in legs[:9]] == [False, True] * 4 + [False]
 
 
