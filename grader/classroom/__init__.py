@@ -1,1 +1,1 @@
-"""Grade a whole class: many submissions in parallel, with each result saved as soon as it is ready."""
+"""Grade a class: many submissions in parallel. Each result is saved as soon as it is ready."""

@@ -1,4 +1,4 @@
-"""Unpack a student's archive into a temporary folder: unpack.py does the work, and this module sets its limits."""
+"""Unpack a student's archive into a temporary folder. unpack.py does this; this module limits its resources."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 ENDINGS = (".zip", ".tar.gz", ".tgz", ".tar")
 OTHER_ENDINGS = (".7z", ".rar", ".tar.xz", ".tar.bz2", ".tar.zst", ".gz", ".xz", ".bz2")
-"""Other archive formats that students hand in. They are not unpacked."""
+"""Archive formats that are not supported, although students hand them in."""
 MOST_PACKED = 100 * 1024 * 1024
 _SCRIPT = Path(__file__).with_name("unpack.py")
 _MIB = 1024 * 1024
@@ -32,7 +32,7 @@ class NotUnpackedError(Exception):
 
 
 def stem(name: str) -> str | None:
-    """Return the name of an archive without its extension, or None if the name is not that of an archive."""
+    """Return the name of an archive without its extension, or None if the file is not an archive."""
     ending = next((each for each in (*ENDINGS, *OTHER_ENDINGS) if name.lower().endswith(each)), None)
     return name[: -len(ending)] or None if ending else None
 
@@ -43,7 +43,7 @@ def unpacked(archive: Path) -> Iterator[Path]:
 
     Raises:
         NotUnpackedError: the archive cannot be unpacked, or is larger than a submission may be.
-        DiskError: the disk that it is unpacked on failed.
+        DiskError: the disk for temporary files failed.
     """
     if not archive.name.lower().endswith(ENDINGS):
         message = "is not a supported archive: hand in a .zip or a .tar.gz"
@@ -55,7 +55,7 @@ def unpacked(archive: Path) -> Iterator[Path]:
         message = f"is larger than {MOST_PACKED // _MIB} MiB"
         raise NotUnpackedError(message)
     with tempfile.TemporaryDirectory(prefix="grader-unpacked-") as folder:
-        # Use a separate process, so that an archive that takes forever or uses all memory harms only that process.
+        # Use a separate process, so that an archive that takes too much time or memory stops only that process.
         start = interpreter("-S", str(_SCRIPT), str(archive.absolute()), folder)
         try:
             done = subprocess.run(
@@ -79,6 +79,8 @@ def _why(done: subprocess.CompletedProcess[bytes] | None) -> str | None:
         return f"could not be unpacked within {_CPU_S} s and 1 GiB of memory"
     answer: str | None = json.loads(done.stdout)["why"]
     if done.returncode != 0:
-        message = f"A submission could not be unpacked: {answer}. Make room in {tempfile.gettempdir()} and try again."
+        message = (
+            f"A submission could not be unpacked: {answer}. Free some space in {tempfile.gettempdir()} and try again."
+        )
         raise DiskError(message)
     return answer

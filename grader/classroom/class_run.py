@@ -1,4 +1,4 @@
-"""Run: grade all submissions of an order, even if worker processes die."""
+"""Grade all submissions of an order, even if worker processes die."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done
 
 TRIES = 2
-"""How many times a submission may kill its worker or end with an `error` before this becomes its result."""
+"""The number of times that a submission may kill its worker or end with an `error` before the error is its result."""
 LOOK_S = 0.5
-"""How long to wait for events of the engine (s)."""
+"""The maximum time to wait for events of the engine (s)."""
 
 
 def run(order: Order, todo: list[Todo], engine: Engine, results: Results, screen: Screen) -> list[Result]:
     """Grade the submissions and write each result as soon as it is ready, in any order.
 
-    Submissions that end with an `error` are graded once more after all others, if at least one other submission could
-    be judged. In that case, the machine works, so the error occurred by chance or was caused by the submission.
+    Submissions that end with an `error` are graded once more after all others if at least one other submission could
+    be judged. The machine works in that case, so the error occurred by chance or was caused by the submission.
 
     Raises:
-        MachineError: nothing more can be graded or written. Results that were written are kept.
+        MachineError: the machine cannot grade or write any more. Results that were written are kept.
     """
     one = _Run(order, deque(todo), engine, results, screen)
     with engine:
@@ -55,7 +55,7 @@ class _Run:
     graded: dict[Name, Result] = field(default_factory=dict)
 
     def goes_on(self) -> bool:
-        """Return whether anything is left to do. Submissions that ended with an `error` come last."""
+        """Return whether any submission is left. Submissions that ended with an `error` come last."""
         if not self.waiting and not self.running and self.again:
             if len(self.again) < len(self.graded):
                 self.waiting.extend(self.again.values())
@@ -67,7 +67,7 @@ class _Run:
         return bool(self.waiting or self.running)
 
     def start(self) -> None:
-        """Give the engine as many tasks as it has room for."""
+        """Start as many tasks as the engine has room for."""
         while self.waiting and self.engine.has_room():
             one = self.waiting.popleft()
             task = self.order.task(one.found)
@@ -84,7 +84,7 @@ class _Run:
             self._keep(name, event.done)
         elif self.failures[name] + 1 < TRIES:
             self.failures[name] += 1
-            self.screen.show(name, "Its worker was lost. It will be tried again later")
+            self.screen.show(name, "The worker was lost. The submission will be graded again later")
             self.waiting.append(self.running.pop(name))
         else:
             self._keep(name, set_aside(event.task, _in_words(event.why)))
@@ -98,13 +98,11 @@ class _Run:
         self.graded[name] = result
         if broken and self.failures[name] < TRIES:
             self.again[name] = one
-            self.screen.show(name, "It could not be judged. It will be tried again later")
+            self.screen.show(name, "The submission could not be judged. It will be graded again later")
         else:
             self.screen.finished(result)
 
 
 def _in_words(why: str) -> str:
-    return (
-        f"The grader's own process was lost twice while it had this submission ({why}). It is reported as an error, "
-        "which says nothing about its quality. Grade it alone with `grader check`, or run the same command again."
-    )
+    return f"The grader's process was lost twice while it graded this submission ({why}). This is reported as an "
+        "error, which says nothing about its quality. Grade it alone with `grader check`, or run the same command again."

@@ -12,7 +12,7 @@ from grader.errors import UsageError
 from grader.exercise.completion import steps as known_steps
 
 PANEL = "Teach"
-"""The heading in --help."""
+"""The heading of these commands in --help."""
 
 gradescope = typer.Typer(name="gradescope", help="Grade with Gradescope.", no_args_is_help=True)
 
@@ -42,7 +42,7 @@ def grade(
     submissions: Annotated[
         list[Path],
         typer.Argument(
-            help="A folder with one folder or archive (.zip, .tar.gz) per student; nbgrader's submitted/; or a "
+            help="A folder with one folder or archive (.zip, .tar.gz) per student, nbgrader's submitted/, or a "
             "folder of classroom clones."
         ),
     ],
@@ -55,7 +55,7 @@ def grade(
     jobs: Annotated[
         Optional[int],  # noqa: UP045
         typer.Option(
-            min=1, help="Number of submissions graded at once. Default: as many as processors and memory allow."
+            min=1, help="Number of submissions to grade in parallel. Default: as many as processors and memory allow."
         ),
     ] = None,
     engine: Annotated[
@@ -67,7 +67,7 @@ def grade(
     out: Annotated[
         Path,
         typer.Option(
-            help="Folder for the results. Submissions that have a result in it are not graded again.", metavar="DIR"
+            help="Folder for the results. Submissions with a result in this folder are not graded again.", metavar="DIR"
         ),
     ] = Path("grades"),
     fail_under: Annotated[
@@ -90,28 +90,28 @@ def grade(
             metavar="FILE.csv",
         ),
     ] = None,
-    clock: Annotated[Clock, typer.Option(help="auto: simulated time, and wall time in doubtful cases.")] = Clock.auto,
+    clock: Annotated[Clock, typer.Option(help="auto: simulated time, or wall time in doubtful cases.")] = Clock.auto,
     seed: Annotated[Optional[int], typer.Option(help="Seed for a random start pose of the turtle.")] = None,  # noqa: UP045
     explain: Annotated[
         bool,
         typer.Option(
             "--explain/--no-explain",
-            help="Prove the causes of failed checks: change them in a copy, and run it again. Then a failed "
-            "submission takes longer: up to 1.5 times a build and a run.",
+            help="Prove the causes of failed checks: fix them in a copy and run it again. A failed "
+            "submission then takes longer, up to 1.5 times a build and a run.",
         ),
     ] = True,
     trusted: Annotated[
         bool,
         typer.Option(
             "--trust-submissions",
-            help="Run submissions even without a sandbox. They can then read and change all files of this user.",
+            help="Run submissions even without a sandbox. They can then read and change all files of your user.",
         ),
     ] = False,
     repository_folder: Annotated[
         str, typer.Option(help="Path of the package in the repository, for GitHub's annotations.", metavar="PATH")
     ] = "",
 ) -> None:
-    """Grade a class, several submissions at once. If you stop it, the same command continues where it was."""
+    """Grade a class, several submissions in parallel. After an interruption, the same command continues."""
     from grader.classroom.grade_class import Request, exit_code, grade_class
 
     request = Request(
@@ -131,7 +131,7 @@ def grade(
     try:
         graded = grade_class(request, typer.echo, lambda text: typer.echo(f"{text} ...", err=True))
     except KeyboardInterrupt:
-        typer.echo(f"\nStopped. The results so far are in {out}. The same command continues from there.", err=True)
+        typer.echo(f"\nStopped. The results so far are in {out}. Run the same command again to continue.", err=True)
         raise
     typer.echo(f"Marks: {out / 'summary.csv'}\nThe class: {out / 'index.html'}")
     raise typer.Exit(exit_code(graded, fail_under))
@@ -153,11 +153,11 @@ def build(
         bool,
         typer.Option(
             "--trust-submissions",
-            help="Run submissions even if Gradescope allows no sandbox. A submission could then write its own mark.",
+            help="Run submissions even if Gradescope allows no sandbox. A submission could then change its mark.",
         ),
     ] = False,
 ) -> None:
-    """Make the archive to upload to Gradescope as an autograder."""
+    """Create the archive to upload to Gradescope as an autograder."""
     from grader.classroom.gradescope_archive import build_archive
 
     if file.is_dir() or file.suffix != ".zip":

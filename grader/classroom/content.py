@@ -1,4 +1,4 @@
-"""Read the package of a submission from a folder or an archive, or find the reason why there is none."""
+"""Read the package of a submission from a folder or an archive, or return why it cannot be read."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from grader.exercise.model import Exercise
 
 MOST_DEEP = 4
-"""The maximum depth of the folders around answers.toml, if each of them contains nothing but the next one."""
+"""The maximum depth of nested folders above answers.toml, if each of them contains nothing else."""
 
 
 @dataclass(frozen=True)
 class Refused:
-    """There is nothing to grade; `reason` is a text for the student.
+    """The submission cannot be graded. `reason` is a text for the student.
 
-    `of_the_machine` is true if the machine failed while the submission was read. Other submissions are still graded.
+    `of_the_machine` is whether the machine failed while reading the submission. Other submissions are still graded.
     """
 
     reason: str
@@ -37,10 +37,10 @@ class Refused:
 
 
 def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused:
-    """Return the submission to be graded; `student` is the person who handed it in.
+    """Return the submission to grade. `student` is the person who handed it in.
 
     Raises:
-        DiskError: the disk that archives are unpacked on failed.
+        DiskError: the disk for temporary files failed.
     """
     if found.refused:
         return Refused(found.refused)
@@ -66,10 +66,10 @@ def read(found: Found, exercise: Exercise, student: str) -> Submission | Refused
 def fingerprint(found: Found, exercise: Exercise) -> str:
     """Return the sha256 of all relevant files of a submission, or of the reason why they cannot be read.
 
-    An archive is not unpacked for this.
+    An archive is hashed without unpacking it.
 
     Raises:
-        DiskError: the disk that archives are unpacked on failed.
+        DiskError: the disk for temporary files failed.
     """
     archive = None if found.refused else _archive(found.path)
     if archive is not None:
@@ -85,7 +85,7 @@ def _of_archive(archive: Path) -> str:
     whole = hashlib.sha256(archive.name.encode("utf-8", "surrogateescape") + b"\0")
     try:
         with archive.open("rb") as file:
-            # If the archive is too large to be unpacked, this much of it is enough.
+            # If the archive is too large to be unpacked, hashing this part of it is enough.
             while file.tell() <= archives.MOST_PACKED and (data := file.read(1024 * 1024)):
                 whole.update(data)
     except OSError as error:
@@ -104,7 +104,7 @@ def _folder(found: Found) -> Iterator[Path]:
 
 
 def _archive(path: Path) -> Path | None:
-    """Return the archive with the submission: the path itself, or (as with Moodle) the only file in the folder."""
+    """Return the archive with the submission: the path itself, or (as in Moodle) the only file in the folder."""
     try:
         if not path.is_dir():
             return path

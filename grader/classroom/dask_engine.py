@@ -1,9 +1,9 @@
 """An engine that grades with Dask workers on one or many machines.
 
-The machines need only this project. Submissions are sent to them as bytes. Each thread of a Dask worker runs one of our
-worker processes (worker.py), so a submission that kills this process does not kill the Dask worker. This module decides
-which Dask worker gets which submission. Each thread gets one submission at a time, without a queue. Therefore, it is
-always known which submissions were lost with a machine, and no submission is blamed for the fault of another one.
+The machines need only this project. They receive submissions as bytes. Each thread of a Dask worker runs one of our
+worker processes (worker.py), so a submission that kills that process does not kill the Dask worker. This module decides
+which Dask worker gets which submission. Each thread gets one submission at a time, without a queue. Therefore, the
+engine knows which submissions were lost with a machine and does not blame a submission for the fault of another one.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 CONNECT_S = 10.0
 WORKERS_S = 60.0
-"""How long to wait for the first worker, or for a new one after all workers are gone (s)."""
+"""The maximum time to wait for the first worker, or for a new one after all workers are gone (s)."""
 LOOK_S = 1.0
-"""The interval for checking which workers are available (s)."""
+"""The interval of checking which workers are available (s)."""
 
-# These belong to the process of the Dask worker. They outlive a task, so the next task can use a warm process.
+# The Dask worker's process keeps these workers after a task, so the next task does not have to start one.
 _idle: list[Worker] = []
 _lock = Lock()
 
@@ -39,9 +39,9 @@ _lock = Lock()
 def perform_here(packed: bytes) -> tuple[str, object]:
     """Grade a pickled task in a separate process. This function runs in a thread of a Dask worker.
 
-    Returns ("done", Done), ("fails", text) if this machine cannot grade, or ("died", text) if the process died.
+    Return ("done", Done), ("fails", text) if this machine cannot grade, or ("died", text) if the process died.
     """
-    task = pickle.loads(packed)  # Ctrl-C is handled by the instructor's command, not here.
+    task = pickle.loads(packed)  # the instructor's command handles Ctrl-C
     with _lock:
         worker = _idle.pop() if _idle else Worker()
     worker.send(task)
@@ -65,7 +65,7 @@ class _Running:
 
 
 class DaskEngine:
-    """Give each thread of each worker one submission at a time."""
+    """Grades one submission at a time per thread of each Dask worker."""
 
     def __init__(self, address: str, jobs: int | None) -> None:
         try:
@@ -102,7 +102,7 @@ class DaskEngine:
             self._client.close(timeout=5)
 
     def has_room(self) -> bool:
-        """Return whether a thread of a worker is free."""
+        """Return whether a thread of a worker is idle."""
         return (self._most is None or len(self._running) < self._most) and self._free() is not None
 
     def start(self, task: Task) -> None:
@@ -119,7 +119,7 @@ class DaskEngine:
         future.add_done_callback(lambda ended: self._ended.put(ended.key))
 
     def events(self, timeout_s: float) -> list[Event]:
-        """Return what has happened since the last call; see Engine."""
+        """Return the events since the last call; see Engine."""
         happened: list[Event] = []
         try:
             first = self._ended.get(timeout=timeout_s)

@@ -1,4 +1,4 @@
-"""An engine runs tasks: in processes on this machine (local.py), or with Dask on many machines (dask_engine.py)."""
+"""The interface of the engines that run tasks: local.py on this machine, dask_engine.py on many machines."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Progress:
-    """The current state of a task, in words."""
+    """The current stage of a task, as text."""
 
     task: Task
     text: str
@@ -29,7 +29,7 @@ class Finished:
 
 @dataclass(frozen=True)
 class Died:
-    """The worker of a task is gone: it was killed, it ran out of memory, or its machine was lost."""
+    """The worker of a task was killed, ran out of memory, or was lost with its machine."""
 
     task: Task
     why: str
@@ -59,10 +59,10 @@ class Engine(Protocol):
         """Return whether another task can be started now."""
 
     def start(self, task: Task) -> None:
-        """Start a task. Call this only if there is room."""
+        """Start a task. Call this only if `has_room` is true."""
 
     def events(self, timeout_s: float) -> list[Event]:
-        """Return what has happened since the last call. Wait at most `timeout_s` for something to happen.
+        """Return the events since the last call. Wait at most `timeout_s` (s) for the first one.
 
         Raises:
             MachineError: this machine can no longer grade any submission.

@@ -1,10 +1,10 @@
-"""Find the submissions of a class: which student handed in what, and for which exercise.
+"""Find the submissions of a class with their students and exercises.
 
 Three layouts are supported and can be mixed: one folder or archive per student; nbgrader's submitted/STUDENT/EXERCISE;
 and a folder of classroom clones, each of which contains the course's exercises/EXERCISE.
 
-No student is left out: each folder and archive becomes a submission, even if it contains only the reason why it cannot
-be graded.
+No student is omitted. Each folder and archive becomes a submission. If it cannot be graded, the submission contains
+the reason.
 This module uses os.path, whose functions return False for a path that cannot be accessed. The methods of pathlib raise
 an exception instead.
 """
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
 UNKNOWN = ""
-"""The exercise of a folder that does not indicate which exercise it is for."""
+"""The exercise of a folder whose layout does not name one."""
 OWN = "exercises"
 """The folder of a clone in which the student works."""
 
@@ -44,7 +44,7 @@ class Found:
     exercise: str
     path: Path
     refused: str = ""
-    """Why it cannot be graded, if this is already known."""
+    """Why the submission cannot be graded, if this is already known."""
 
     @property
     def name(self) -> str:
@@ -56,13 +56,13 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
     """Return all submissions in the given folders, archives and packages except `leave_out`, sorted by student.
 
     Raises:
-        UsageError: there are no submissions, or the exercise is not known.
+        UsageError: no submission was found, or the exercise is not known.
     """
     wanted = find_exercise(exercise).id if exercise else None
     found = [each for path in given for each in _in(path, wanted, leave_out)]
     if not found:
         message = (
-            f"There is no submission in {a_list([shown(str(path)) for path in given])}. Give the folder with one "
+            f"No submission was found in {a_list([shown(str(path)) for path in given])}. Give the folder with one "
             "folder or archive (.zip, .tar.gz) per student."
         )
         raise UsageError(message)
@@ -74,7 +74,7 @@ def find_submissions(given: Sequence[Path], exercise: str | None, leave_out: Pat
 
 
 def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
-    """Yield each submission with its exercise. If it is unknown, yield one for each exercise of the others.
+    """Yield each submission with its exercise. Without one, yield the submission once for each exercise of the others.
 
     Raises:
         UsageError: no exercise is known.
@@ -98,7 +98,7 @@ def _of_known_exercises(found: Sequence[Found]) -> Iterator[Found]:
 
 
 def _one_of(alike: Sequence[Found]) -> Found:
-    """Return the submission of a student for an exercise. If there are several, none of them is graded."""
+    """Return a student's only submission for an exercise, or one that states why none of several is graded."""
     if len(alike) == 1:
         return alike[0]
     paths = a_list([shown(str(each.path)) for each in alike])
@@ -127,13 +127,13 @@ def _entries(folder: Path) -> list[Path]:
 
 
 def _same(one: Path, other: Path) -> bool:
-    """Return whether both paths lead to the same place. A loop of symbolic links is not an error."""
+    """Return whether both paths lead to the same file or folder. A loop of symbolic links is not an error."""
     return os.path.realpath(one) == os.path.realpath(other)
 
 
 def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
     if not os.path.exists(path):
-        message = f"There is no {shown(str(path))}. Give the folder with one folder or archive per student."
+        message = f"{shown(str(path))} does not exist. Give the folder with one folder or archive per student."
         raise UsageError(message)
     absolute = Path(os.path.realpath(path))
     if not os.path.isdir(path) or _is_one(path):
@@ -150,18 +150,18 @@ def _in(path: Path, wanted: str | None, leave_out: Path) -> Iterator[Found]:
 
 
 def _is_one(folder: Path) -> bool:
-    """Return whether a folder is itself one submission: a package, or a clone of the course."""
+    """Return whether a folder is a submission itself: a package, or a clone of the course."""
     return any(os.path.exists(folder / name) for name in (*PACKAGE_FILES, OWN))
 
 
 def _student(entry: Path) -> str | None:
-    """Return the student's name, or None for other entries, such as hidden files, lists and notes."""
+    """Return the name of the student of an entry, or None for other entries, such as hidden files and lists."""
     if entry.name.startswith(".") or entry.name == "__MACOSX":
         return None
     try:
         mode = entry.lstat().st_mode
     except OSError:
-        return entry.name  # The entry is not readable. The error is reported when it is read.
+        return entry.name  # the error is reported when the entry is read
     if stat.S_ISDIR(mode):
         return entry.name
     return archives.stem(entry.name) if stat.S_ISREG(mode) else None
@@ -182,7 +182,7 @@ def _of_student(student: str, path: Path, wanted: str | None) -> Iterator[Found]
 
 
 def _assignments(path: Path) -> list[str]:
-    """Return the exercises in a student's folder, in nbgrader's layout."""
+    """Return the exercises in a student's folder in nbgrader's layout."""
     if not os.path.isdir(path) or _is_one(path):
         return []
     return [name for name in catalogue() if os.path.isdir(path / name) and not os.path.islink(path / name)]

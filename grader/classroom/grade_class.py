@@ -1,4 +1,4 @@
-"""Grade a class, as `grader grade` does: from a folder of submissions to a folder of results."""
+"""Grade a class, from a folder of submissions to a folder of results. This implements `grader grade`."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ DASK = "dask://"
 
 @dataclass(frozen=True)
 class Request:
-    """The command-line options."""
+    """The options of the command."""
 
     submissions: Sequence[Path]
     out: Path
@@ -51,11 +51,11 @@ class Request:
 
 
 def grade_class(request: Request, say: Callable[[str], None], tell: Callable[[str], None]) -> list[Result]:
-    """Grade everything that has no valid result yet, write all files, and return every result, sorted by student.
+    """Grade each submission without a valid result, and write all files. Return all results, sorted by student.
 
     Raises:
         UsageError: the command is wrong.
-        MachineError: nothing more can be graded or written. Written results are kept, and the next run continues.
+        MachineError: the machine cannot grade or write any more. Written results are kept, and the next run continues.
     """
     _engine_is_known(request)
     return grade_found(request, find_submissions(request.submissions, request.exercise, request.out), say, tell)
@@ -64,7 +64,7 @@ def grade_class(request: Request, say: Callable[[str], None], tell: Callable[[st
 def grade_found(
     request: Request, found: tuple[Found, ...], say: Callable[[str], None], tell: Callable[[str], None]
 ) -> list[Result]:
-    """Grade submissions that have already been found. Raises the same exceptions as `grade_class`."""
+    """Grade submissions that were found already. Raises the same exceptions as `grade_class`."""
     local = _engine_is_known(request)
     roster = read_owners(request.roster) if request.roster else {}
     beside = passed_over(request.submissions, request.out)
@@ -81,7 +81,7 @@ def grade_found(
         in_cell=bubblewrap.require(trusted=request.trusted) if local else not request.trusted,
         trusted=request.trusted,
     )
-    assert order.exercises  # a mistake in private checks must be reported before anything is graded
+    assert order.exercises  # report mistakes in private checks before grading
     with results.opened(request.out) as folder:
         tell(f"Reading {count(len(found), 'submission')}")
         kept, todo = sort_out(order, folder)
@@ -99,7 +99,7 @@ def grade_found(
         left = folder.others({result.page for result in ordered})
     say(summary(ordered))
     if left:
-        say(f"{count(left, 'result')} in {request.out}/{results.REPORTS} of other submissions stay unchanged.")
+        say(f"{count(left, 'result')} of other submissions in {request.out}/{results.REPORTS} stay unchanged.")
     return ordered
 
 
@@ -113,7 +113,7 @@ def _engine_is_known(request: Request) -> bool:
 
 
 def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
-    """Return 3 if the machine failed, 1 if a submission got less than `fail_under` percent, otherwise 0."""
+    """Return 3 if the machine failed, 1 if a submission got less than `fail_under` percent, or else 0."""
     if any(result.report.with_status(Status.ERROR) for result in graded):
         return 3
     shares = [result.report.points / result.report.max if result.report.max else 0.0 for result in graded]
@@ -122,11 +122,11 @@ def exit_code(graded: Sequence[Result], fail_under: float | None) -> int:
 
 
 def _ros(*, local: bool, tell: Callable[[str], None]) -> str:
-    """Return the name of the ROS 2 that a result depends on. With Dask, all workers must have the same ROS 2."""
+    """Return the name of the ROS 2 that the results depend on. With Dask, all workers must have the same ROS 2."""
     try:
         ros = find_ros()
         if local:
-            underlay.ensure(ros, tell)  # once here, instead of in all workers at the same time
+            underlay.ensure(ros, tell)  # build it once here, not in all workers at the same time
     except MachineError:
         if local:
             raise

@@ -1,4 +1,4 @@
-"""Make the archive for Gradescope's autograder: setup.sh, run_autograder, and the course with its grader."""
+"""Create the archive for Gradescope's autograder: setup.sh, run_autograder, and the course with the grader."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _FILES = ("LICENSE", "Makefile", "README.md", "pyproject.toml", "requirements.lo
 _FOLDERS = ("course", "grader")
 _LEFT_OUT = frozenset({"__pycache__", "tests", "benchmarks"})
 _WHEN = (1980, 1, 1, 0, 0, 0)
-"""A fixed date, so that the same files always make the same archive."""
+"""A fixed date, so that equal files always give an equal archive."""
 
 
 def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bool = False) -> None:
-    """Write the archive; `checks` is a folder of private checks, which are included.
+    """Write the archive. `checks` is a folder of private checks to include.
 
     With `trusted`, submissions run even if Gradescope's container allows no sandbox.
 
@@ -35,7 +35,7 @@ def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bo
     """
     known = find_exercise(exercise)
     sources = sources_of({known.id}, checks)[known.id]
-    exercise_from(sources)  # mistakes must be reported here, not on Gradescope
+    exercise_from(sources)  # report mistakes here, not on Gradescope
     root = course_folder().parent
     if not (root / "Makefile").is_file():
         message = f"The archive needs a checkout of the course, but {root} is not one."
@@ -57,7 +57,7 @@ def build_archive(exercise: str, file: Path, checks: Path | None, *, trusted: bo
 
 
 def _course(root: Path) -> Iterator[Path]:
-    """Yield the files of the course that grading needs, without solutions and tests."""
+    """Yield the files of the course that grading needs. Solutions and tests are omitted."""
     yield from (root / name for name in _FILES if (root / name).is_file())
     for folder in _FOLDERS:
         for path in sorted((root / folder).rglob("*")):

@@ -1,4 +1,4 @@
-"""The key of a result: everything that the result depends on. If the key changes, the submission is graded again."""
+"""The key of a result: everything that the result depends on. If it changes, the submission is graded again."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NOT_JUDGING = ("tests", "benchmarks", "__pycache__", "templates")
 
 @dataclass(frozen=True)
 class Key:
-    """What a result depends on, as strings."""
+    """The values that a result depends on, as strings."""
 
     submission: str
     """The sha256 of the submission."""
@@ -32,12 +32,12 @@ class Key:
     """The clock, the seed, and whether the submission ran in a sandbox."""
 
     def to_data(self) -> dict[str, str]:
-        """Return the key as it is stored in the JSON of a result."""
+        """Return the key as a dictionary for the JSON of a result."""
         return asdict(self)
 
 
 def changed(old: Mapping[str, Any], new: Key) -> tuple[str, ...]:
-    """Return the names of the parts that differ from the key in the JSON of a result."""
+    """Return the names of the parts of the key that differ from the stored key in the JSON of a result."""
     return tuple(name for name, value in new.to_data().items() if old.get(name) != value)
 
 

@@ -1,4 +1,4 @@
-"""An engine with worker processes on this machine, as many as its processors and its memory allow."""
+"""An engine with worker processes on this machine. Their number depends on the processors and the memory."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from grader.classroom.task import Task
 
 MEMORY_A_TASK = 1536 * 1024 * 1024
-"""The memory for a task (bytes). A cell may use more (sandbox.Limits), but few do, and never all at the same time."""
+"""The memory per task (bytes). A cell may use more (sandbox.Limits), but few do, and never all at the same time."""
 WAITING_A_JOB = 2
-"""How many additional tasks per job are started while tasks wait for wall time and hardly use the processor."""
+"""The number of additional tasks per job that may start while other tasks wait for wall time."""
 TASK_S = 1800.0
-"""A worker that is still busy after this time hangs, because all limits of one grading add up to less (s)."""
+"""The time (s) after which a busy worker is considered to hang. The limits of one grading add up to less."""
 
 
 def default_jobs() -> int:
-    """Return how many submissions are graded at once: one per processor, if there is enough memory."""
+    """Return the number of submissions to grade in parallel: one per processor, if the memory is sufficient."""
     return max(1, min(_processors(), _memory() // MEMORY_A_TASK))
 
 
@@ -37,7 +37,7 @@ def _processors() -> int:
         quota, period = Path("/sys/fs/cgroup/cpu.max").read_text().split()
         return max(1, min(processors, round(int(quota) / int(period))))
     except (OSError, ValueError):
-        return processors  # there is no control group, or it has no limit
+        return processors  # no control group, or a control group without a limit
 
 
 def _memory() -> int:
@@ -61,7 +61,7 @@ class _Busy:
 
 
 class LocalEngine:
-    """Keep worker processes, give each one task at a time, and replace those that die."""
+    """Keeps worker processes, gives each one task at a time, and replaces those that die."""
 
     def __init__(self, jobs: int) -> None:
         self._jobs = jobs
@@ -90,7 +90,7 @@ class LocalEngine:
         worker.send(task)
 
     def events(self, timeout_s: float) -> list[Event]:
-        """Return what has happened since the last call; see Engine."""
+        """Return the events since the last call; see Engine."""
         happened: list[Event] = []
         by_connection = {worker.connection: worker for worker in self._busy}
         for ready in wait(list(by_connection), timeout_s):

@@ -1,4 +1,4 @@
-"""Order: what a run of `grader grade` has to do, and what earlier runs have already done."""
+"""The order of a run of `grader grade`: the submissions to grade, and the results of earlier runs that are valid."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Order:
-    """The submissions of a class and how to grade them; `roster` maps the name of a submission to a student id."""
+    """The submissions of a class and the options. `roster` maps the name of a submission to a student id."""
 
     found: tuple[Found, ...]
     roster: Mapping[str, str]
@@ -35,9 +35,9 @@ class Order:
     clock: ClockChoice = "auto"
     seed: int | None = None
     explain: bool = True
-    """Whether supposed causes are tested by changing them in a copy."""
+    """Whether to test supposed causes by fixing them in a copy."""
     in_cell: bool = True
-    """Whether there is a sandbox. It is False only if the submissions are trusted."""
+    """Whether submissions run in a sandbox. It is False only for trusted submissions on a machine without one."""
     trusted: bool = False
 
     @cached_property
@@ -114,17 +114,17 @@ def sources_for(found: tuple[Found, ...], checks: Path | None) -> dict[str, Sour
 
 @dataclass(frozen=True)
 class Todo:
-    """A submission that must be graded; `why` is a short reason: "new", "changed", ..."""
+    """A submission to grade, with a short reason in `why`: "new", "changed", ..."""
 
     found: Found
     key: Key
     why: str
     errors: int = 0
-    """How many times in a row grading it has ended with an `error` so far."""
+    """The number of gradings in a row that have ended with an `error`."""
 
 
 def sort_out(order: Order, results: Results) -> tuple[list[Result], list[Todo]]:
-    """Return the results that are still valid, and what must be graded. Raises DiskError like `content.read`."""
+    """Return the results that are still valid, and the submissions to grade. Raises DiskError like `content.read`."""
     kept: list[Result] = []
     todo: list[Todo] = []
     for found in order.found:

@@ -1,7 +1,7 @@
-"""Show the progress of a run: a live table on a terminal, one line per submission elsewhere.
+"""Show the progress of a run: a live table on a terminal, or one line per submission elsewhere.
 
-Names come from students. They are escaped so that they cannot control a terminal or a continuous integration (CI)
-system.
+Students choose the names of submissions. Names are escaped, so that they cannot control a terminal or a continuous
+integration (CI) system.
 """
 
 from __future__ import annotations
@@ -31,23 +31,23 @@ Name = tuple[str, str]
 
 
 class Screen(Protocol):
-    """An observer of a run."""
+    """Displays the progress of a run."""
 
     def show(self, name: Name, text: str) -> None:
-        """Show what is being done with a submission."""
+        """Show the current stage of a submission."""
 
     def finished(self, result: Result) -> None:
         """Show the result of a submission."""
 
 
 def plain(text: str) -> str:
-    """Return the text without anything that controls a terminal or a program that reads logs."""
+    """Return the text without characters that control a terminal or a program that reads logs."""
     # GitHub executes ::command:: at the beginning of a line and ##[command] anywhere, and Azure Pipelines ##vso[.
     return printable(text).replace("::", ": :").replace("##", "# #")
 
 
 def estimate(done: int, of: int, seconds: float) -> str:
-    """Estimate how long the rest will take at the average speed so far."""
+    """Return an estimate of the remaining time, based on the average speed so far, or an empty string."""
     if not done or done >= of:
         return ""
     left_s = seconds / done * (of - done)
@@ -56,7 +56,7 @@ def estimate(done: int, of: int, seconds: float) -> str:
 
 @contextmanager
 def screen(amount: int, *, several: bool) -> Iterator[Screen]:
-    """Yield a screen for this many submissions. If there are `several` exercises, their names are shown too."""
+    """Yield a screen for this number of submissions. If `several` is true, it also shows the exercises."""
     if not amount:
         yield Lines(amount, several=several)
     elif sys.stderr.isatty() and not os.environ.get("CI"):
@@ -72,14 +72,14 @@ def screen(amount: int, *, several: bool) -> Iterator[Screen]:
 
 
 class Lines:
-    """Print one line for each submission that is finished."""
+    """Prints one line for each finished submission."""
 
     def __init__(self, amount: int, *, several: bool) -> None:
         self._amount, self._several, self._done = amount, several, 0
         self._begun = time.monotonic()
 
     def show(self, name: Name, text: str) -> None:
-        """Print nothing, because one line for each step would be too much."""
+        """Print nothing."""
 
     def finished(self, result: Result) -> None:
         """Print the result of the submission."""
@@ -90,7 +90,7 @@ class Lines:
 
 
 class Table:
-    """Show the submissions in progress, with a progress bar below them. Finished submissions stay above them."""
+    """Shows the submissions in progress with a progress bar below. Finished submissions stay above the table."""
 
     def __init__(self, amount: int, console: Console, *, several: bool) -> None:
         self._amount, self._several, self._console = amount, several, console
@@ -99,7 +99,7 @@ class Table:
         self._begun = time.monotonic()
 
     def show(self, name: Name, text: str) -> None:
-        """Show what is being done with a submission."""
+        """Show the current stage of a submission."""
         since = self._now[name][1] if name in self._now else time.monotonic()
         self._now = {**self._now, name: (text, since)}
 
@@ -114,7 +114,7 @@ class Table:
         self._console.print(Text(f"{SIGNS[kind]} {_line(result, self._several)}", style=STYLES[kind]))
 
     def render(self) -> RenderableType:
-        """Return what the terminal should show now."""
+        """Return the current content of the display."""
         from rich.console import Group
         from rich.progress_bar import ProgressBar
         from rich.table import Table as Grid
@@ -142,7 +142,7 @@ def _line(result: Result, several: bool) -> str:
 
 
 def summary(results: list[Result]) -> str:
-    """Return a summary of the whole class in a few sentences."""
+    """Return a summary of the class in a few sentences."""
     tones = [tone(result.report) for result in results]
     counted = [f"{tones.count(kind)} {word}" for kind, word in _WORDS if kind in tones]
     judged = [each.report for each, kind in zip(results, tones, strict=True) if kind != "error" and each.report.max]
@@ -151,7 +151,7 @@ def summary(results: list[Result]) -> str:
     parts = [f"{count(len(results), 'submission')}: {', '.join(counted)}{mean}."]
     attention = suspicions([(result.report, result.errors) for result in results])
     parts += [
-        plain(f"Look at {result.student} ({result.report.exercise}): {why}.")
+        plain(f"See {result.student} ({result.report.exercise}): {why}.")
         for result, why in zip(results, attention, strict=True)
         if why
     ]

@@ -4,7 +4,7 @@
     summary.csv           for a spreadsheet or gradebook, for the instructor
     junit.xml             for the list of tests in a CI system
     gradescope/NAME.json  Gradescope's results.json of each submission
-    github-summary.md, github-annotations.txt   for a step of GitHub Actions
+    github-summary.md, github-annotations.txt   for a GitHub Actions step
 
 Students may see the files for CI and Gradescope, so these do not contain hidden checks.
 """
@@ -34,7 +34,7 @@ GITHUB_ANNOTATIONS = "github-annotations.txt"
 
 
 def write_all(results: Results, graded: Sequence[Result], folder: str = "") -> None:
-    """Write the files; `folder` is the path of the package in a repository. Raises MachineError if the disk fails."""
+    """Write the files. `folder` is the path of the package in a repository. Raises MachineError if the disk fails."""
     from urllib.parse import quote
 
     rows = [(result.student, result.report) for result in graded]

@@ -5,8 +5,8 @@
                                         the instructor, because it contains hidden checks
     OUT/reports/STUDENT.EXERCISE.html   the page of the submission, without hidden checks
 
-Each file is written completely or not at all. The JSON is written after the page, so a result with a JSON file is
-complete. A killed run may leave files whose names end in .partial. The next run removes them. Only one run at a time
+Each file is written completely or not at all. The JSON is written after the page, so every result with a JSON file is
+complete. A killed run may leave files whose names end in .partial, which the next run removes. Only one run at a time
 may use a folder.
 """
 
@@ -36,7 +36,7 @@ _LOCK = ".grader-results"
 _PARTIAL = ".partial"
 _SAFE = re.compile(r"[^A-Za-z0-9 _@+,=-]")
 _LONGEST = 120
-"""A length in bytes. Longer file names are truncated, and a digest keeps them distinct."""
+"""The maximum length of a file name (bytes). Longer names are truncated, and a digest keeps them distinct."""
 
 
 @dataclass(frozen=True)
@@ -48,13 +48,13 @@ class Result:
     key: Mapping[str, Any]
     page: str
     errors: int = 0
-    """How many times in a row grading it has ended with an `error`, including this time."""
+    """The number of gradings in a row that ended with an `error`, including this one."""
 
 
 def file_name(student: str, exercise: str) -> str:
     """Return the file name of a result without its extension.
 
-    It is different for every student and valid on every file system.
+    The name is different for every student and valid on every file system.
     """
     # Characters are replaced with numbers, so that different names stay different. A dot would look like an extension.
     safe = _SAFE.sub(lambda match: "".join(f"%{byte:02X}" for byte in os.fsencode(match.group())), student)
@@ -67,12 +67,12 @@ def file_name(student: str, exercise: str) -> str:
 
 @dataclass(frozen=True)
 class Results:
-    """The folder of the results. Use `opened` to create an instance."""
+    """The folder of the results. Create instances with `opened`."""
 
     folder: Path
 
     def load(self, student: str, exercise: str) -> Result | None:
-        """Return the complete result of a submission, regardless of its key, or None if there is none."""
+        """Return the complete result of a submission with any key, or None if none exists."""
         name = file_name(student, exercise)
         file = self.folder / REPORTS / f"{name}.json"
         try:
@@ -82,7 +82,7 @@ class Results:
                 return None
             return Result(student, from_json(text), data["key"], f"{name}.html", int(data.get(ERRORS, 0)))
         except (OSError, ValueError, KeyError, TypeError, UsageError):
-            return None  # damaged, or written by another version of the grader: it is graded again
+            return None  # damaged, or written by another version of the grader
 
     def save(self, student: str, report: Report, key: Key, page: bytes, errors: int = 0) -> Result:
         """Write a result. Raises MachineError if the disk is full or not writable."""
@@ -94,7 +94,7 @@ class Results:
         return Result(student, report, key.to_data(), f"{name}.html", errors)
 
     def write(self, name: str, content: bytes) -> Path:
-        """Write a file in the folder, completely or not at all. Raises MachineError if that is not possible."""
+        """Write a file in the folder, completely or not at all. Raises MachineError if this fails."""
         file = self.folder / name
         partial = file.with_name(file.name + _PARTIAL)
         try:
@@ -108,28 +108,28 @@ class Results:
             with suppress(OSError):
                 partial.unlink()
             message = (
-                f"{file} could not be written: {error.strerror}. The results so far are kept. Make room, "
-                "then the same command continues from there."
+                f"{file} could not be written: {error.strerror}. The results so far are kept. Free some space, "
+                "then run the same command again to continue."
             )
             raise DiskError(message) from error
         return file
 
     def others(self, mine: set[str]) -> int:
-        """Return how many results in the folder belong to submissions whose page is not in `mine`."""
+        """Return the number of results in the folder whose pages are not in `mine`."""
         found = {file.with_suffix(".html").name for file in (self.folder / REPORTS).glob("*.json")}
         return len(found - mine)
 
 
 @contextmanager
 def opened(folder: Path) -> Iterator[Results]:
-    """Yield the folder, which is created if necessary. No other run can use it at the same time.
+    """Yield the folder, created if necessary, and lock it against other runs.
 
         with opened(Path("grades")) as results:
             old = results.load("anna", "03-circle-publisher")
 
     Raises:
-        UsageError: another run is using it, or it contains something other than results.
-        MachineError: it cannot be written.
+        UsageError: another run is using the folder, or it contains files that are not results.
+        MachineError: the folder cannot be written.
     """
     lock = folder / _LOCK
     if folder.exists() and not (folder.is_dir() and (lock.exists() or not any(folder.iterdir()))):
@@ -139,13 +139,16 @@ def opened(folder: Path) -> Iterator[Results]:
         (folder / REPORTS).mkdir(parents=True, exist_ok=True)
         file = lock.open("a")
     except OSError as error:
-        message = f"The results cannot be written to {folder}: {error.strerror}. Make room, or name another with --out."
+        message = (
+            f"The results cannot be written to {folder}: {error.strerror}. "
+            "Free some space, or name another folder with --out."
+        )
         raise MachineError(message) from error
     with file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
-            message = f"Another `grader grade` is using {folder} now. Wait for it, or name another folder with --out."
+            message = f"Another `grader grade` is using {folder}. Let it finish, or name another folder with --out."
             raise UsageError(message) from error
         for leftover in folder.rglob(f"*{_PARTIAL}"):
             leftover.unlink(missing_ok=True)

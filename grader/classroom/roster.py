@@ -1,4 +1,4 @@
-"""Read a roster: a CSV file, written by a spreadsheet, in which an instructor lists the students of a class.
+"""Read a roster: a CSV file, exported from a spreadsheet, that lists the students of a class.
 
 The separator may be a comma or a semicolon. A byte order mark, empty lines, spaces around values, capital letters in
 column names, and additional columns are all allowed.
@@ -29,7 +29,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
     The columns in `needed` are never empty, and the values of the first one are unique.
 
     Raises:
-        UsageError: the file is not such a roster. The message names the line and says what to do.
+        UsageError: the file is not a roster. The message names the line and what to do.
     """
     (_, names), *lines = _lines(file) or [(1, [])]
     columns = [name.lower() for name in names]
@@ -39,7 +39,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
         message = f'{file} is not a roster: its first line must name the columns {wanted}, but it is "{header}".'
         raise UsageError(message)
     if not lines:
-        message = f"{file} is not a roster: there is nothing below its first line."
+        message = f"{file} is not a roster: it has only one line."
         raise UsageError(message)
     rows: dict[int, dict[str, str]] = {}
     lines_of: dict[str, int] = {}
@@ -64,7 +64,7 @@ def read_roster(file: Path, needed: Sequence[str], also: Sequence[str] = ()) -> 
 
 
 def _lines(file: Path) -> list[tuple[int, list[str]]]:
-    """Return the values of each line that is not empty, by line number. Raises UsageError if the file is not CSV."""
+    """Return the values of each non-empty line by line number. Raises UsageError if the file is not CSV."""
     try:
         data = file.read_bytes()
         text = data.decode("utf-8-sig")

@@ -1,4 +1,4 @@
-"""Task: one submission to grade, as bytes that any worker process can read, and its result."""
+"""A task, which is one submission to grade as bytes for any worker process, and its result."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ class Task:
 
     student: str
     owner: str
-    """The student id that the student's own numbers must belong to."""
+    """The student id whose individual numbers the submission must use."""
     sources: Sources
     content: dict[str, bytes] | str
     of_the_machine: bool = False
-    """True if there are no files because the machine failed."""
+    """Whether the files are missing because the machine failed."""
     package: str = ""
     rejected: tuple[str, ...] = ()
     digest: str = ""
@@ -74,12 +74,12 @@ class Done:
 def perform(
     task: Task, tell: Callable[[str], None] = lambda _: None, now: Callable[[Pace], None] = lambda _: None
 ) -> Done:
-    """Grade a task; `now` is called whenever a trial starts to wait for wall time and when it stops.
+    """Grade a task. `now` is called when a trial starts and stops waiting for wall time.
 
-    While the trial waits, other submissions can use the processors.
+    Other submissions can use the processors while the trial waits.
 
     Raises:
-        MachineError: the task was created by another version of the grader, or there is no sandbox.
+        MachineError: the task was created by another version of the grader, or no sandbox is available.
     """
     if task.grader != grader_key():
         message = (
@@ -95,7 +95,7 @@ def perform(
         return _with_page(_refused(task, exercise, task.content))
 
     class Waiting(Trial):
-        """A trial that reports when it waits for wall time."""
+        """A trial that reports the times in which it waits for wall time."""
 
         def run(self, package: str, executable: str, tree: bytes) -> Recording:
             if self._plan.clock != "wall":
@@ -106,11 +106,11 @@ def perform(
             finally:
                 now("works")
 
-    # Other submissions keep the processors busy, and memory is planned per submission.
+    # Other submissions use the processors, and the memory is calculated per submission.
     options = Options(in_cell=in_cell, clock=task.clock, seed=task.seed, explain=task.explain, trials_at_once=1)
     try:
         return _with_page(grade(exercise, _submission(task), options, tell, trial=Waiting))
-    except MachineError as error:  # the submission cannot be read here, but the next one may work
+    except MachineError as error:  # this submission cannot be read here, but others may be
         return set_aside(task, str(error))
 
 
@@ -118,11 +118,11 @@ def perform(
 def _confined(*, trusted: bool) -> bool:
     from grader.sandbox import bubblewrap
 
-    return bubblewrap.require(trusted=trusted)  # tried once per process, because the answer does not change
+    return bubblewrap.require(trusted=trusted)  # once per process, because the result does not change
 
 
 def set_aside(task: Task, why: str) -> Done:
-    """Return the result of a submission that could not be graded: an `error`."""
+    """Return the result of a submission that could not be graded, an `error`."""
     exercise = exercise_from(task.sources)
     return _with_page(_unjudged(task, exercise, Finding(Status.ERROR, why)))
 
@@ -140,7 +140,7 @@ def _submission(task: Task, files: dict[str, bytes] | None = None) -> Submission
 
 
 def _refused(task: Task, exercise: Exercise, reason: str) -> Graded:
-    """Return a result with no points for a submission without a package. The reason comes first."""
+    """Return a result with 0 points for a submission without a package. The reason comes first."""
     what = "a package" if exercise.package else "answers.toml"
     title = f"The submission contains {what}"
     expected = f"One folder with {what} in it, or a .zip or .tar.gz of this folder."

@@ -1,6 +1,6 @@
 """Unpack an archive that a student handed in: `python -I -S unpack.py ARCHIVE FOLDER`.
 
-archives.py runs this script in a separate process with limits. The script uses only the standard library. It creates
+archives.py runs this script in a separate process with limits. It uses only the standard library. It creates
 only plain files and folders, only inside the folder, and never exceeds the limits below. It prints JSON: {"why": null}
 on success; otherwise, "why" completes a sentence that begins with the name of the archive. It exits with code 3 if the
 disk fails.
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 MOST_BYTES = 96 * 1024 * 1024
-"""The maximum unpacked size: 1.5 times the size limit of a package, to leave space for build/ and install/."""
+"""The maximum unpacked size (bytes): 1.5 times the size limit of a package, with space for build/ and install/."""
 MOST_ENTRIES = 20_000
 MOST_DEPTH = 40
 MOST_PATH_BYTES = 1000
@@ -35,7 +35,7 @@ OF_THE_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS)
 
 
 class RefusedError(Exception):
-    """The archive cannot be unpacked; the message says why."""
+    """The archive cannot be unpacked. The message states why."""
 
 
 class Capped(io.RawIOBase):

@@ -1,6 +1,6 @@
-"""A worker: a process that grades one task after another, so that Python modules are imported only once.
+"""A worker process that grades one task after another, so that Python modules are imported only once.
 
-`python -m grader.classroom.worker DESCRIPTOR`. No student code runs in this process. It runs in the cells that the
+`python -m grader.classroom.worker DESCRIPTOR`. Student code does not run in this process, but in the cells that the
 worker starts. If the process that started the worker exits, the worker and everything that it started exit too.
 """
 
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
     from grader.classroom.task import Done, Pace, Task
 
 Message = tuple[Literal["tells"], str] | tuple[Literal["now"], "Pace"] | tuple[Literal["done"], "Done"]
-"""The messages of a worker, and ("fails", text) for a MachineError that no submission caused."""
+"""The kinds of messages from a worker, and ("fails", text) for a MachineError that no submission caused."""
 
 _LAST_WORDS = 1000
 
 
 class Worker:
-    """A worker process, as seen by its owner.
+    """A worker process, from the owner's side.
 
-    `connection` is readable when there is a message or the process has exited.
+    `connection` is readable when a message has arrived or the process has exited.
     """
 
     def __init__(self) -> None:
@@ -67,7 +67,7 @@ class Worker:
         return answer
 
     def last_words(self) -> str:
-        """Return how the process exited and the end of its output, for the instructor."""
+        """Return how the process exited and the end of its output, as text for the instructor."""
         code = self.process.wait()
         self._errors.seek(0)
         answer = self._errors.read()[-_LAST_WORDS:].decode("utf-8", "replace").strip()
@@ -83,7 +83,7 @@ class Worker:
 
 
 def main(descriptor: int) -> None:
-    """Grade tasks until the owner has exited."""
+    """Grade tasks until the owner exits."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.set_inheritable(descriptor, False)  # noqa: FBT003
     connection = Connection(descriptor)
@@ -108,7 +108,7 @@ def main(descriptor: int) -> None:
 
 
 def _import_all() -> None:
-    """Import everything that grading would import on first use, before the first task arrives and its time starts."""
+    """Import the modules that grading would import on first use, before the time of the first task starts."""
     import grader.report.html  # noqa: F401
 
     load_catkin_pkg()
@@ -116,9 +116,9 @@ def _import_all() -> None:
 
 
 def _end_with_owner(descriptor: int) -> None:
-    """Exit as soon as the owner has exited. Cells and rooms die with their parent process."""
+    """Exit as soon as the owner has exited. Cells and rooms end with their parent process."""
     poll = select.poll()
-    poll.register(descriptor, 0)  # the closing of a connection is always reported
+    poll.register(descriptor, 0)  # POLLHUP is always reported
     while True:
         for _, event in poll.poll():
             if event & (select.POLLHUP | select.POLLERR | select.POLLNVAL):

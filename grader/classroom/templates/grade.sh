@@ -1,24 +1,24 @@
 #!/usr/bin/env bash
-# Grade one submission as a class of one. All templates in this folder call this script.
+# Grade one submission as a class with one student. All templates in this folder call this script.
 #
 #   grade.sh SUBMISSION STUDENT EXERCISE OUT [options of `grader grade`, such as --fail-under 60]
 #
-# On GitHub Actions it writes the step's summary and annotations; with GRADESCOPE_RESULTS=FILE, Gradescope's results
-# too. Exit codes: 0 graded, 1 below --fail-under, 2 wrong command, 3 grader or machine broken.
+# On GitHub Actions, it writes the step's summary and annotations. With GRADESCOPE_RESULTS=FILE, it also writes
+# Gradescope's results. Exit codes: 0 graded, 1 below --fail-under, 2 wrong command, 3 grader or machine broken.
 set -euo pipefail
 [ $# -ge 4 ] || { sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 submission=$1 student=$2 exercise=$3 out=$4
 shift 4
 [[ $student =~ ^[A-Za-z0-9][A-Za-z0-9._@+-]*$ ]] || { echo "grade.sh: not a valid folder name: $student" >&2; exit 2; }
-[ -e "$submission" ] || { echo "grade.sh: there is no $submission" >&2; exit 2; }
+[ -e "$submission" ] || { echo "grade.sh: $submission does not exist" >&2; exit 2; }
 
-# A class folder with only this submission, named after the student. Links stay links.
+# Create a class folder with only this submission, named after the student. Copy links as links.
 class=$(mktemp -d)
 trap 'rm -rf "$class"' EXIT
 cp -RP -- "$submission" "$class/$student"
 
 code=0
-# Files that an earlier job left are not results of this job.
+# Remove the files of an earlier job.
 rm -rf -- "$out"
 grader grade "$class" --exercise "$exercise" --out "$out" "$@" || code=$?
 

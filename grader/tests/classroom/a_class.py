@@ -18,7 +18,7 @@ from grader.tests.case import ROOT, copy_solution
 STEP = "03-circle-publisher"
 GRADER = str(Path(sys.executable).with_name("grader"))
 ACTS = "::error::owned ##[error]"
-"""The name of a folder that a CI could take for a command."""
+"""A folder name that a CI system could mistake for a command."""
 POINTS = {
     "anna": 100.0,
     "ben": 100.0,
@@ -34,7 +34,7 @@ COMPARED = ("id", "status", "points", "diagnosis", "cause")
 
 
 def make_class(folder: Path) -> Path:
-    """Write the submissions into the new folder."""
+    """Write the submissions into a new folder."""
     folder.mkdir(parents=True)
     work = folder.parent / f"{folder.name}-made"
     copy_solution(STEP, folder / "anna" / "my_robot_controller")
@@ -67,7 +67,7 @@ def command(*arguments: object) -> list[str]:
 
 
 def environment(**more: str) -> dict[str, str]:
-    """A report as a terminal shows it, on any machine."""
+    """Return an environment in which the output is the same on every machine."""
     return {**{name: value for name, value in os.environ.items() if name not in ("CI", "GITHUB_ACTIONS")}, **more}
 
 
@@ -92,7 +92,7 @@ def reports(out: Path) -> dict[str, dict[str, Any]]:
 
 
 def judged(out: Path) -> dict[str, list[tuple[Any, ...]]]:
-    """Return the parts in which two gradings must agree: status, points, diagnosis and cause of every check."""
+    """Return the values that must be equal in two gradings: status, points, diagnosis and cause of every check."""
     return {
         student: [tuple(outcome[key] for key in COMPARED) for outcome in report["outcomes"]]
         for student, report in reports(out).items()

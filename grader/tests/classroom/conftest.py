@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Run:
-    """A class, and the results of an undisturbed grading of it."""
+    """A class, and the results of an uninterrupted grading of it."""
 
     submitted: Path
     out: Path
@@ -25,7 +25,7 @@ class Run:
 
 @pytest.fixture(scope="session")
 def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """The modules that use it may run in several processes, so no test may change its folders."""
+    """Return a shared run. Tests in several processes use it, so they must not change its folders."""
     if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")
 

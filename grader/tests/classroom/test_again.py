@@ -26,7 +26,7 @@ STEP = "03-circle-publisher"
 
 
 class Scripted:
-    """An engine that ends each submission as planned: one planned end for each try. The last one is repeated."""
+    """An engine with a planned sequence of results for each submission. The last one is repeated."""
 
     def __init__(self, ends: dict[str, list[str]]) -> None:
         self.graded: Counter[str] = Counter()
@@ -98,7 +98,7 @@ def test_an_error_that_repeats_while_others_are_judged_is_suspicious(tmp_path: P
     assert "suspicious: it could not be judged 2 times in a row" in reported["ben"]
     assert "suspicious" in reported["clara"]
     assert "2 times in a row" in (out / "index.html").read_text("utf-8")
-    # The next run continues the count until the submission is judged.
+    # The next run continues to count until the submission is judged.
     assert graded(tmp_path / "class", out, Scripted(ends), ends)["ben"].errors == 2 * TRIES
     ends["ben"] = ["failed"]
     assert graded(tmp_path / "class", out, Scripted(ends), ends)["ben"].errors == 0

@@ -1,4 +1,4 @@
-"""Archives as students hand them in, and as attackers make them."""
+"""Archives that students hand in, and archives that attackers create."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def test_a_tar_bomb_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
     archive = tmp_path / "a.tar.gz"
     if kind == "files":
         tar(archive, *((member(f"f{number}"), MANY) for number in range(4)))
-    else:  # tarfile reads a name completely, however long it is
+    else:  # tarfile reads a name of any length completely
         info = member("long")
         info.pax_headers = {"path": "a" * 4 * len(MANY)}
         with tarfile.open(archive, "w:gz", format=tarfile.PAX_FORMAT) as packed:

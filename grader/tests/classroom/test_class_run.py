@@ -1,4 +1,4 @@
-"""What a run does when its workers die. The workers are real, and the submissions kill them."""
+"""The behaviour of a run when its workers die. The workers are real, and submissions kill them."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Deadly(Task):
 
 @dataclasses.dataclass(frozen=True)
 class DeadlyOrder(Order):
-    """An order in which the submission `deadly` kills every worker that gets it."""
+    """An order in which the submission `deadly` kills every worker that receives it."""
 
     deadly: str = "deadly"
 
@@ -70,7 +70,7 @@ def graded(order: Order, engine: Engine, out: Path) -> dict[str, Result]:
 
 
 def make_four(folder: Path) -> Path:
-    """A class with a right submission, one that kills workers, and two without a package."""
+    """Create a class with a right submission, one that kills workers, and two without a package."""
     copy_solution(STEP, folder / "anna")
     copy_solution(STEP, folder / "deadly")
     for student in ("ben", "clara"):
@@ -92,7 +92,7 @@ def test_a_submission_that_kills_two_workers_is_an_error_and_the_others_are_grad
     done = graded(order, LocalEngine(2), tmp_path / "grades")
     assert_set_aside(done)
     assert "SIGKILL" in done["deadly"].report.outcomes[0].finding.observed
-    # An error is not a lasting result, so the next run tries again.
+    # An error is not a final result, so the next run grades the submission again.
     with opened(tmp_path / "grades") as results:
         kept, todo = sort_out(order, results)
     assert sorted(result.student for result in kept) == ["anna", "ben", "clara"]

@@ -54,7 +54,7 @@ class Cluster:
         return child
 
     def close(self) -> None:
-        # A nanny that is just starting a worker ignores a gentler signal.
+        # A nanny that is starting a worker ignores SIGTERM.
         for process in reversed(self.processes):
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
@@ -85,7 +85,7 @@ def test_the_submission_of_a_lost_worker_is_graded_by_another(cluster: Cluster, 
     copy_solution(STEP, tmp_path / "class" / "anna")
 
     class Striking(DaskEngine):
-        """An engine that loses its only worker during a submission. Then another worker joins."""
+        """An engine that loses its only worker during a submission and gets another one later."""
 
         def events(self, timeout_s: float) -> list[Event]:
             if self._running and lost.poll() is None:

@@ -1,4 +1,4 @@
-"""Which submissions are found, and which students they belong to."""
+"""The submissions that are found in a folder, and the students that they belong to."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run that was killed or could not write continues with the same command. No result is lost or doubled."""
+"""After a run was killed or could not write, the same command continues. No result is lost or duplicated."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 Blow = Literal["grader", "worker", "disk"]
 LONGEST_S = 600.0
 NO_ROOM = 4096
-"""Bytes. Every report is larger than this."""
+"""A limit on the size of a file (bytes). Every report is larger."""
 
 
 class Killer:
-    """Run the command, interfere at random times drawn from a seed, and start it again until it finishes."""
+    """Run the command, interrupt it at random times drawn from a seed, and start it again until it finishes."""
 
     def __init__(self, run: Run, out: Path, seed: int) -> None:
         self._arguments = (run.submitted, "--exercise", STEP, "--out", out)
@@ -40,7 +40,7 @@ class Killer:
         self.struck: list[Blow] = []
 
     def until_struck(self, blows: list[Blow], within_s: float) -> None:
-        """Interfere in each way once. If a run finishes before, it is repeated."""
+        """Interrupt the run once with each of these methods. If a run finishes before that, start another one."""
         for blow in blows:
             with subprocess.Popen(
                 command(*self._arguments),
@@ -66,7 +66,7 @@ class Killer:
             if blow == "grader":
                 os.kill(pid, signal.SIGKILL)
             elif blow == "disk":
-                # From now on the grader finds the disk full.
+                # From now on, the disk is full for the grader.
                 resource.prlimit(pid, resource.RLIMIT_FSIZE, (NO_ROOM, resource.RLIM_INFINITY))
             else:
                 workers = workers_of(pid)
@@ -90,7 +90,7 @@ def has_workers(pid: int) -> bool:
 
 
 def workers_of(pid: int) -> list[int]:
-    """Return the worker processes. For a moment the grader may have other children too."""
+    """Return the worker processes. The grader may also have other children for a moment."""
     found: list[int] = []
     with suppress(OSError):  # the process has ended
         for task in Path(f"/proc/{pid}/task").iterdir():
@@ -122,7 +122,7 @@ def test_no_result_is_lost_when_the_run_is_killed_fifty_times(undisturbed: Run, 
     while len(struck) < 50:
         out = tmp_path / f"grades-{seed}"
         killer = Killer(undisturbed, out, seed)
-        # A run whose worker was killed finishes by itself, so it is the last one.
+        # A run whose worker was killed still finishes, so do this last.
         blows: list[Blow] = ["grader", "disk", "grader"]
         random.Random(seed).shuffle(blows)
         killer.until_struck([*blows, "worker"], within_s=6.0)

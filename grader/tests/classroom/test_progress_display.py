@@ -1,4 +1,4 @@
-"""The display of a run: an estimate, the submissions in progress, and only harmless text."""
+"""The display of a run: the estimated time, the submissions in progress, and escaped names."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_an_error_that_repeats_while_others_are_judged_is_suspicious(
     said = summary(
         [*(result(f"other{number}", status) for number, status in enumerate(others)), result("dora", "error", errors)]
     )
-    assert ("Look at dora" in said) == suspicious
+    assert ("See dora" in said) == suspicious
     assert (f"{errors} times in a row" in said) == suspicious
 
 

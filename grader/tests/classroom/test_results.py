@@ -1,4 +1,4 @@
-"""Results on disk: one per submission, either complete or absent."""
+"""Results on disk: each one is either complete or absent."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_a_full_disk_leaves_the_old_result(tmp_path: Path, monkeypatch: pytest.M
             raise OSError(errno.ENOSPC, "No space left on device")
 
         monkeypatch.setattr("os.fsync", full)
-        with pytest.raises(MachineError, match=r"No space left on device.*the same command continues"):
+        with pytest.raises(MachineError, match=r"No space left on device.*run the same command again"):
             results.save("anna", report("passed"), KEY, b"<p>new")
         assert results.load("anna", saved.report.exercise) == saved
         assert not list((tmp_path / "grades").rglob("*.partial"))

@@ -45,7 +45,7 @@ def test_line_numbers_are_those_of_the_file_and_missing_columns_are_empty(file: 
         (b"", 'the columns "id", and perhaps name and email, but it is "".'),
         (b"ada,Ada\nbob,Bob\n", 'but it is "ada,Ada".'),
         (b"id,name,id\nada,Ada,a1\n", 'but it is "id,name,id".'),
-        (b"id,name\n\n", "there is nothing below its first line"),
+        (b"id,name\n\n", "it has only one line"),
         (b"id,name\nada,Lovelace, Ada\n", "line 2: 3 values for 2 columns"),
         (b"id,name\n\n,Ada\n", "line 3: the id is missing"),
         (b"id\nada\n\nbob\nada\n", 'line 5: the id "ada" is already in line 2'),

@@ -1,4 +1,4 @@
-"""Each odd submission of a class has its line in the CSV, and all others are graded."""
+"""Each odd submission of a class has a line in the CSV, and all others are graded."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def damaged(how: int) -> Callable[[Path], None]:
 
 
 def an_offset_beyond_the_file(folder: Path) -> None:
-    """A zip64 record with an offset beyond the end of the file."""
+    """Create a zip64 archive with an offset beyond the end of the file."""
     data = packed(folder / "odd.zip")
     at, end = data.index(b"PK\x01\x02"), data.index(b"PK\x05\x06")
     record, tail = data[at:end], data[end:]
@@ -171,7 +171,7 @@ passed_over([folder], folder)
 def test_a_folder_without_permission_is_reported(tmp_path: Path) -> None:
     a_closed_folder(tmp_path)
     start = interpreter("-c", LOOK)
-    # root may enter every folder
+    # root can enter every folder
     as_somebody = ["setpriv", "--reuid=65534", "--clear-groups"] if os.getuid() == 0 else []
     for folder in (tmp_path, *tmp_path.parents):
         if os.getuid() == 0 and folder.is_relative_to("/tmp/"):

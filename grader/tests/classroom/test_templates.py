@@ -1,4 +1,4 @@
-"""The templates: their script is run, and each file is valid for the system that reads it."""
+"""The templates: their script is run, and each file is valid for the system that uses it."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_the_script_grades_and_writes_for_github(tmp_path: Path) -> None:
     if not bubblewrap.usable():
         pytest.skip("there is no sandbox here")
     copy_solution(STEP, tmp_path / "package")
-    (tmp_path / "package" / "setup.py").unlink()  # is not built or run, so it is quick
+    (tmp_path / "package" / "setup.py").unlink()  # without setup.py, nothing is built or run, which is fast
     summary = tmp_path / "summary.md"
     arguments = (tmp_path / "package", "octocat", STEP, tmp_path / "grades", "--fail-under", "60")
     env = {"CI": "true", "GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(summary)}
@@ -85,7 +85,7 @@ def test_gradescopes_archive_grades_a_submission(tmp_path: Path) -> None:
     build_archive(STEP, tmp_path / "autograder.zip", None)
     (root / "source").mkdir(parents=True)
     unpack(tmp_path / "autograder.zip", root / "source")
-    # setup.sh makes this at Gradescope.
+    # On Gradescope, setup.sh creates this.
     (root / "source" / "course" / ".venv").symlink_to(BIN.parent)
     copy_solution(STEP, root / "submission" / "my_robot_controller")
     (root / "submission" / "my_robot_controller" / "setup.py").unlink()
@@ -128,13 +128,13 @@ def test_the_scripts_are_bash_and_executable(name: str) -> None:
 def test_the_workflow_is_valid_and_calls_the_script() -> None:
     workflow = template("github-classroom.yml")
     job = workflow["jobs"]["grade"]
-    assert workflow[True] == ["push", "workflow_dispatch"]  # YAML 1.1 reads `on` as true, but GitHub does not
+    assert workflow[True] == ["push", "workflow_dispatch"]  # `on` means true in YAML 1.1, but not on GitHub
     assert workflow["permissions"] == {"contents": "read"}
     steps = job["steps"]
     assert all(("uses" in step) != ("run" in step) for step in steps)
     runs = [step["run"] for step in steps if "run" in step]
     assert any("classroom/templates/grade.sh" in command for command in runs)
-    # Text that others choose is never part of a command.
+    # Text that other people choose is never part of a command.
     assert [command for command in runs if "${{" in command] == []
     for command in runs:
         assert subprocess.run(["bash", "-n", "-c", command], check=False).returncode == 0

@@ -1,4 +1,4 @@
-"""A mixed class is graded again and again, idle and under load, and every report is the same."""
+"""Grade a mixed class repeatedly, with and without load. All reports must be equal."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ATTACKS = ("301", "304", "501", "504", "602", "613")
 
 
 def make_mixed(folder: Path) -> Path:
-    """Return wrong, right and odd submissions of step 03 from all catalogues, and some hostile ones."""
+    """Create a class with wrong, right and odd submissions of step 03 from all catalogues, and some hostile ones."""
     for name, amount in AMONG.items():
         for case in spread(read_cases(TESTS / name), amount):
             make_submission(case, folder / f"{name}-{case.name}")

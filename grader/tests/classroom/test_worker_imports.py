@@ -1,4 +1,4 @@
-"""A worker imports what grading needs once, and not in each of the child processes that read a submission."""
+"""A worker imports the modules for grading once, so the child processes that read a submission do not import them."""
 
 from __future__ import annotations
 
