@@ -1,3 +1,3 @@
-"""Grade ROS 2 packages by running them: build with colcon, drive a headless turtlesim, judge what it saw."""
+"""Grade ROS 2 packages: build them with colcon, run them with a headless turtlesim, and judge the recording."""
 
 __version__ = "0.1.0"

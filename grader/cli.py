@@ -51,7 +51,7 @@ open_course.add_to(app)
 
 
 class Clock(str, Enum):
-    """The clock by which a submission is judged."""
+    """The choices for `--clock`: the clock of the trials."""
 
     auto = "auto"
     simulated = "simulated"
@@ -193,7 +193,7 @@ def main() -> None:
         from typer.completion import completion_init  # type: ignore[attr-defined]
 
         completion_init()
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's threads, as in grader.ros.installation
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # limits numpy's threads, as in grader.ros.installation
     try:
         app()
     except GraderError as error:
@@ -202,7 +202,7 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.exit(130)
     except BrokenPipeError:
-        # The reader of the pipe is gone, as in `grader check | head`.
+        # The process at the other end of the pipe has exited, as in `grader check | head`.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.exit(1)
     except Exception as error:
@@ -221,7 +221,7 @@ def main() -> None:
 
 
 def _drop_unwritten() -> None:
-    """Drop what standard output does not take. Python would try again when it exits, and exit with code 120."""
+    """Discard unwritten output. Otherwise, Python would try to write it at exit, fail, and exit with code 120."""
     try:
         sys.stdout.flush()
     except OSError:
@@ -237,7 +237,7 @@ def _judged(recording: Path, read_exercise: Callable[[Path], Exercise]) -> tuple
 
 
 def _opened(path: Path | None, name: str | None) -> tuple[Exercise, Submission]:
-    """Open the submission. If the folder does not say which exercise it is for, the package in it may."""
+    """Open the submission and determine its exercise from the path, the name or, if necessary, the package."""
     from grader.learner.exercise_argument import guessed, meant
     from grader.submission.package import open_answers, open_submission
 

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from grader.checks.diagnosis import Diagnosis
 
 OF_FILES: dict[str, dict[Diagnosis, str]] = {
-    "what is handed in": {
+    "The submission": {
         "no-package": "there is no package, or there are several",
         "no-answers-file": "there is no answers.toml, or there are several",
     },
@@ -17,7 +17,7 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "xml-malformed": "package.xml is not valid XML: a tag is not closed, or there is text after the last tag",
         "package-xml-invalid": "a required tag is missing in package.xml, or a tag is not allowed there",
         "package-xml-old-tag": "package.xml has a tag that only ROS 1 uses",
-        "ros-1-package-xml": "package.xml asks for catkin, the build tool of ROS 1",
+        "ros-1-package-xml": "package.xml requires catkin, the build tool of ROS 1",
         "build-type": "the build type in package.xml is not ament_python",
         "missing-depend": "package.xml does not declare a package that the node uses",
         "depend-misspelt": "package.xml declares a package whose name is almost that of a missing one",
@@ -106,8 +106,8 @@ OF_FILES: dict[str, dict[Diagnosis, str]] = {
         "method-in-method": "a method is indented too far, so it is inside another method",
         "name-used-twice": "an attribute has the same name as a method and hides it",
         "interface-part": "an action or a service is created instead of its Goal or Request",
-        "future-for-answer": "a future is used as if it were the answer in it",
-        "name-of-node": "an attribute has a name that every node uses itself",
+        "future-for-answer": "a future is used as if it were its result",
+        "name-of-node": "an attribute has a name that every node already uses",
         "node-publishes": "publish is called on the node instead of the publisher",
         "none-before-message": "an attribute is used while it is still None, before the first message arrived",
     },

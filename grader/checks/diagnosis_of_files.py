@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 DiagnosisOfFiles = Literal[
-    # what is handed in
+    # The submission
     "no-package",
     "no-answers-file",
     # package.xml

@@ -174,7 +174,10 @@ def unreadable(how: str) -> Finding:
     """
     observed = f"The submission could not be read: {shorten(how, 150)}."
     expected = "The grader can read the submitted files and the data that the node sends."
-    cause = "Very large, deeply nested or damaged content can cause this. If yours is none of that, please report it."
+    cause = (
+        "Very large, deeply nested or damaged content can cause this. If this does not describe your submission, "
+        "please report it."
+    )
     return failed(observed, expected, Cause("unreadable", cause))
 
 

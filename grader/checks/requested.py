@@ -1,4 +1,4 @@
-"""What a check requests of the node, as far as it can be drawn next to what was observed."""
+"""The requirements of a check, in a form that can be drawn next to the recording."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ def unpacked(archive: Path) -> Iterator[Path]:
         message = "is not a supported archive: hand in a .zip or a .tar.gz"
         raise NotUnpackedError(message)
     if not os.access(archive, os.R_OK):
-        message = "cannot be read (its permissions forbid it)"
+        message = "cannot be read (its because of its permissions)"
         raise NotUnpackedError(message)
     if archive.stat().st_size > MOST_PACKED:
         message = f"is larger than {MOST_PACKED // _MIB} MiB"

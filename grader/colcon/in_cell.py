@@ -1,12 +1,12 @@
-"""Run colcon in its cell. What colcon starts as `python setup.py` becomes a fork of an interpreter that is ready.
+"""Run colcon in its cell. Each `python setup.py` that colcon starts becomes a fork of a prepared interpreter.
 
 colcon runs the setup.py of a package three times, each time in a new interpreter that imports setuptools and reads the
-metadata of all installed packages again and again. That is most of the CPU time of a build. Here, one process does this
-once, before the submission arrives, and forks for each run of setup.py. The fork gets the folder, environment,
-arguments and streams of the process that colcon started, which only waits for the exit code. Where a fork could differ
-from a new interpreter, there is no fork (`Run.of`).
+metadata of all installed packages again. This is most of the CPU time of a build. Here, one process does this once,
+before the submission arrives, and forks for each run of setup.py. The fork gets the folder, environment, arguments and
+streams of the process that colcon started, which only waits for the exit code. If a fork might behave differently from
+a new interpreter, no fork is used (`Run.of`).
 
-This file runs as a script of its own. Standard input is the submission, a tar stream that is unpacked into src.
+This file runs as a separate script. Standard input is the submission, a tar stream that is unpacked into src.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 READY = b"colcon-is-ready\n"
-"""Printed before the first byte of the submission is read. Output after it is never about the machine."""
+"""Printed before the first byte of the submission is read. An error after it is never a fault of the machine."""
 _MOST_OPEN = 4096
 _MOST_REQUEST = 1024 * 1024
 _IGNORE = re.compile(r"ignore:([^:]*)")
@@ -46,9 +46,9 @@ _WITH_PREFIX = ("sysconfig", "distutils.sysconfig")
 
 @dataclass(frozen=True)
 class Run:
-    """What a new interpreter would run: the code after -c, or setup.py (an absolute path) if `argv` names it.
+    """The code that a new interpreter would run: the argument of -c, or setup.py (an absolute path) if `argv` names it.
 
-    `ignored` are the beginnings of the warnings that -W ignores.
+    `ignored` are the prefixes of the warnings that -W ignores.
     """
 
     code: str
@@ -59,7 +59,7 @@ class Run:
 
     @classmethod
     def of(cls, command: list[str], cwd: str, env: Mapping[str, str]) -> Run | None:
-        """Return the command as a Run, or None if a fork might not do the same as a new interpreter."""
+        """Return the command as a Run, or None if a fork might behave differently from a new interpreter."""
         python, *words = command
         ignored = []
         while words[:1] == ["-W"] and (match := _IGNORE.fullmatch(words[1])):
@@ -80,7 +80,7 @@ def _at_start(env: Mapping[str, str]) -> dict[str, str]:
 
 
 def _hides_a_module(folder: str) -> bool:
-    """Return whether a file or folder there would be imported in place of a module that the fork has already."""
+    """Return whether the folder shadows a module that the fork has already imported."""
     try:
         return any(path.name.partition(".")[0] in sys.modules for path in Path(folder).iterdir())
     except OSError:
@@ -110,9 +110,9 @@ class Forks:
         theirs.close()
 
     def do(self, run: Run) -> None:
-        """Let a fork do this run, and exit as it does. Return if there is no fork.
+        """Execute this run in a fork, and exit with its exit code. Return if no fork is available.
 
-        The caller is a process that colcon has started and that would now become a new interpreter.
+        The caller is a process that colcon has started and that would otherwise become a new interpreter.
         """
         try:
             ours, theirs = socket.socketpair()
@@ -141,7 +141,7 @@ def _import_commands() -> None:
 
 
 def _next_run(requests: socket.socket) -> Run:
-    """Serve requests. Return only in a fork, with what it has to run."""
+    """Serve requests. In the parent process, this never returns; in a fork, it returns the run to execute."""
     while True:
         request, received, _, _ = socket.recv_fds(requests, _MOST_REQUEST, 8)
         if not request:
@@ -183,7 +183,7 @@ def become(run: Run) -> NoReturn:
         raise
     except BaseException as error:
         trace = error.__traceback__
-        # Without the frame of this function.
+        # The traceback does not contain the frame of this function.
         sys.excepthook(type(error), error.with_traceback(trace and trace.tb_next), error.__traceback__)
         sys.exit(1)
     sys.exit()
@@ -206,10 +206,10 @@ def _main_of(run: Run) -> tuple[types.ModuleType, bytes]:
 
 
 class EntryPoints:
-    """`importlib.metadata.entry_points`, which reads the metadata of every installed package whenever it is called.
+    """`importlib.metadata.entry_points` with a cache. The original reads the metadata of every package in each call.
 
-    setuptools calls it up to fifteen times in a run. Here, the metadata of the machine are read once. Those in other
-    folders on sys.path, such as the folder of the submission, are read each time.
+    setuptools calls it up to fifteen times per run. Here, the metadata of the machine is read once. The metadata in
+    other folders on sys.path, such as the folder of the submission, is read in each call.
     """
 
     def __init__(self) -> None:
@@ -235,7 +235,7 @@ class EntryPoints:
 
 
 def _with_metadata(folder: str) -> list[str]:
-    """Return the names of the packages whose metadata are in the folder."""
+    """Return the names of the packages whose metadata is in the folder."""
     try:
         names = [path.name for path in Path(folder).iterdir()]
     except OSError:
@@ -245,13 +245,13 @@ def _with_metadata(folder: str) -> list[str]:
 
 
 def _entries(env: Mapping[str, str]) -> list[str]:
-    """Return what PYTHONPATH adds to sys.path."""
+    """Return the entries that PYTHONPATH adds to sys.path."""
     path = env.get("PYTHONPATH")
     return list(dict.fromkeys(map(os.path.abspath, path.split(os.pathsep)))) if path else []
 
 
 def _starting_with(forks: Forks) -> type[subprocess.Popen[Any]]:
-    """Return a Popen that lets a fork do the runs of setup.py."""
+    """Return a Popen class that executes setup.py in forks."""
 
     class Popen(subprocess.Popen[Any]):
         def __init__(self, command: Any, *rest: Any, **options: Any) -> None:  # noqa: ANN401 - as the base class
@@ -270,7 +270,7 @@ def main() -> None:
     sys.path.pop(0)
     forks = Forks()
     colcon = importlib.import_module("colcon_core.command").main
-    # colcon loads these when it builds, and goes on without what cannot be loaded: the package would be to blame.
+    # colcon loads these modules during a build and skips those that fail to load. The package would then get the blame.
     for name in ("colcon_core.shell.dsv", "colcon_core.shell.sh", "colcon_core.task.python.build"):
         importlib.import_module(name)
     for name in ("colcon_ros.package_identification.ros", "colcon_ros.task.ament_python.build"):

@@ -1,4 +1,4 @@
-"""What a recording shows of the submission during the scenario: its nodes, its publishers and its commands."""
+"""The nodes, publishers and commands of the submission during the scenario, taken from a recording."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ROS_TOPICS = ("/rosout", "/parameter_events", "/clock")
 SPINS = re.compile(r'executors\.py", line \d+, in (?:await_or_execute|handler|_execute_\w+)\b')
 """In a traceback, a stack frame of rclpy's executor that calls callbacks."""
 START_S = 0.2
-"""The length of the first moment (s): the clock may start before the publisher of the node is known."""
+"""The length of the first moment (s), in which the publisher of the node may not have been discovered yet."""
 
 
 def end_s(recording: Recording) -> float:
@@ -58,7 +58,7 @@ def nodes(recording: Recording) -> tuple[str, ...]:
 
 
 def endpoints(recording: Recording, kind: str) -> tuple[Endpoint, ...]:
-    """Return the publishers or subscriptions of the submission without duplicates, and without those of every node."""
+    """Return the publishers or subscriptions of the submission without duplicates, except those that every node has."""
     found = {
         endpoint: None
         for graph in recording.graphs

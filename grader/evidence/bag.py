@@ -21,7 +21,7 @@ _VERSION: Literal[9] = 9
 
 
 def write_bag(folder: Path, messages: Sequence[Message], prefixes: Iterable[Path]) -> None:
-    """Write the messages in order to a new folder. `prefixes` hold the .msg files of types that rosbags does not have.
+    """Write the messages in order to a new folder. `prefixes` have the .msg files of types that rosbags does not have.
 
     The timestamp is the arrival time on the trial's clock (ns), or 0 for messages from before the scenario. Messages
     that arrived at the same instant are a nanosecond apart, because readers sort by timestamp.
@@ -52,6 +52,6 @@ def read_payloads(folder: Path) -> Iterator[bytes]:
                 yield bytes(data)
     except GeneratorExit:
         raise
-    except Exception as error:  # a damaged file can cause any exception, through an offset, a string or a checksum
+    except Exception as error:  # a damaged file has wrong offsets, strings and checksums, so any exception is possible
         message = f"the bag is damaged: {error}"
         raise ValueError(message) from error

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Fault:
-    """Why `stage` and all later stages could not be completed: a fault of the machine, and what to do about it.
+    """The reason why `stage` and all later stages could not be completed: a fault of the machine, and the remedy.
 
     If `unreadable` is set, the machine is not at fault. Instead, something that the submission produced could not be
     read.
@@ -49,15 +49,15 @@ class Run:
 
     recording: Recording | None = None
     overwhelmed: str | None = None
-    """How the node brought the simulator down, twice. There is no recording in that case."""
+    """How the node made the simulator fail in two attempts. There is no recording in that case."""
     called: tuple[Called, ...] | None = None
-    """What the calls of a trial without a simulator did. There is no recording in that case."""
+    """The results of the calls in a trial without a simulator. There is no recording in that case."""
     bench: BenchResult | None = None
     """The result of the student's tests, for a trial that runs them. There is no recording in that case."""
 
     @property
     def made(self) -> bool:
-        """Whether the trial was run to its end."""
+        """Whether the trial was completed."""
         return self.recording is not None or self.called is not None or self.bench is not None
 
 
@@ -78,15 +78,15 @@ class Evidence:
     tries: Tries = field(default_factory=Tries)
     """The results of trying to fix the causes."""
     trial_id: str = ""
-    """The id of the trial that the evidence is presented for; empty for the first trial of the exercise."""
+    """The id of the trial that this evidence presents; empty for the first trial of the exercise."""
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return only the fields. What was parsed on first use is not sent to another process."""
+        """Return only the fields. Cached values are not sent to another process."""
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
     @property
     def trial(self) -> TrialSpec:
-        """The trial that the evidence is presented for."""
+        """The trial that this evidence presents."""
         return self.exercise.trial(self.trial_id) if self.trial_id else self.exercise.trials[0]
 
     @property
@@ -193,7 +193,7 @@ class Evidence:
         return self.run.recording
 
     def called(self, id_: str) -> Called:
-        """Return what the call with this id did.
+        """Return the result of the call with this id.
 
         Only checks of a trial without a simulator may use it.
         """

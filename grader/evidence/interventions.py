@@ -20,7 +20,7 @@ ALWAYS = frozenset({"kill", "set_parameters"})
 """Calls that remove a turtle or change how it obeys commands."""
 FRAME_S = 0.016
 SAME = 1e-5
-"""The largest difference (m, rad, rad/s) that counts as none."""
+"""The largest difference (m, rad, rad/s) that counts as zero."""
 KEPT_S = 1.1
 """turtlesim stops a turtle when no command arrives for 1 s."""
 
@@ -68,7 +68,7 @@ def _moved(recording: Recording, first: int) -> bool:
 
 
 def _unasked(recording: Recording, now: slice) -> Floats:
-    """Return for each of these frames whether its turning speed is one that no command of the last moment set."""
+    """Return for each of these frames whether no recent command set its turning speed."""
     frames = recording.frames
     times = np.array([command.t_s for command in recording.commands])
     speeds = np.array([command.angular[2] for command in recording.commands])

@@ -7,7 +7,7 @@
     tries.json       the fixes that were tried, with their results; for instructors, since it gives solutions away
     submission.json  name, digest and paths
     source/          the files of the submission
-    exercise/        the exercise as it was: exercise.toml
+    exercise/        the exercise at that time: exercise.toml
     COLCON_IGNORE    so that colcon never runs the submission's setup.py
 
 trials/ID/ is missing if that trial was not run, and build.json is missing if nothing was built.
@@ -56,7 +56,7 @@ class Archived:
 
 
 def save(folder: Path, evidence: Evidence, ros: str, prefixes: Iterable[Path]) -> None:
-    """Write the evidence to a folder, which must be new or empty. `prefixes` hold the .msg files of the message types.
+    """Write the evidence to a folder, which must be new or empty. `prefixes` have the .msg files of the message types.
 
     Raises:
         UsageError: the folder is not empty.
@@ -128,7 +128,7 @@ def check_free(folder: Path) -> None:
         UsageError: the path is a file, or a folder that is not empty.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        message = f"{folder} is not an empty folder. A recording needs a folder of its own: name a new one."
+        message = f"{folder} is not an empty folder. Name a new folder for the recording."
         raise UsageError(message)
 
 
@@ -170,7 +170,7 @@ def load(folder: Path, read_exercise: Callable[[Path], Exercise]) -> Archived:
         }
     except (OSError, KeyError, TypeError, ValueError, AttributeError) as error:
         why = f"{type(error).__name__}: {error}"
-        message = f"{folder} cannot be read as a recording, as `grader check --recording {folder}` writes one ({why})."
+        message = f"{folder} is not a recording from `grader check --recording` ({why})."
         raise UsageError(message) from error
     return Archived(Evidence(kept, submission, build, runs, fault, tries), ros)
 
@@ -215,6 +215,6 @@ def _write(file: Path, data: dict[str, Any]) -> None:
 def _read(file: Path) -> dict[str, Any]:
     data = json.loads(file.read_text(encoding="utf-8"))
     if not isinstance(data, dict) or data.pop("schema", None) != _SCHEMA:
-        message = f"{file.name} is not of schema {_SCHEMA}"
+        message = f"{file.name} does not have schema {_SCHEMA}"
         raise ValueError(message)
     return data

@@ -1,4 +1,4 @@
-"""Trajectory: where the turtle went up to SIGINT, from the frames of the simulator."""
+"""Trajectory: the path of the turtle up to SIGINT, from the frames of the simulator."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a function or a program of the package is called with: points of a circle, and bags with poses on a circle."""
+"""The inputs of the calls in a trial without a simulator: points on a circle, and bags with poses on a circle."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class PointsInput:
-    """One call of a function with x and y: the points of an arc, or these coordinates (m). `lists` passes lists."""
+    """One call of a function with x and y (m): the points of an arc, or given numbers, as lists if `lists` is set."""
 
     id: str
     arc: Arc | None = None
@@ -66,10 +66,10 @@ class PointsInput:
 
 @dataclass(frozen=True)
 class BagInput:
-    """One run of a program with the name of a bag as its argument.
+    """One run of a program that gets the name of a bag as its argument.
 
-    The bag holds poses of turtle1 on an arc, at `rate_hz`, and as many commands in the same time (`commands`). With
-    `poses` false, it holds commands only.
+    The bag contains poses of turtle1 on an arc, at `rate_hz`, and `commands` velocity commands in the same period. If
+    `poses` is false, it contains only the commands.
     """
 
     id: str
@@ -81,7 +81,7 @@ class BagInput:
 
 @dataclass(frozen=True)
 class CallsSpec:
-    """What is called in a trial without a simulator: a function ("package.module:function"), or the executable."""
+    """The calls in a trial without a simulator: to a function ("package.module:function") or to the executable."""
 
     function: str = ""
     points: tuple[PointsInput, ...] = ()
@@ -89,11 +89,11 @@ class CallsSpec:
 
     @property
     def ids(self) -> tuple[str, ...]:
-        """The ids of all calls, in their order."""
+        """The ids of all calls, in order."""
         return (*(each.id for each in self.points), *(each.id for each in self.bags))
 
     def __bool__(self) -> bool:
-        """Return whether anything is called."""
+        """Return whether there are any calls."""
         return bool(self.points or self.bags)
 
 

@@ -1,4 +1,4 @@
-"""Read `[[trial.points]]` and `[[trial.bag]]` in exercise.toml: what a function or a program is called with."""
+"""Read `[[trial.points]]` and `[[trial.bag]]` in exercise.toml: the inputs for a function or a program."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MOST_M = 1000.0
 
 
 def read_calls(table: Table) -> CallsSpec:
-    """Return what is called in this `[[trial]]`. A mistake is recorded in the table in which it stands."""
+    """Return the calls of this `[[trial]]`. Mistakes are recorded in the table that contains them."""
     function = table.string("function", FUNCTION, "a function, as in my_robot_controller.circle_fit:fit_circle", "")
     calls = CallsSpec(
         function,
@@ -30,15 +30,17 @@ def read_calls(table: Table) -> CallsSpec:
         tuple(_bag(each) for each in table.tables("bag")),
     )
     if bool(calls.points) != bool(function):
-        table.problem('a trial that calls a "function" needs [[trial.points]], and the other way round.')
+        table.problem(
+            'a trial that calls a "function" needs [[trial.points]], and [[trial.points]] needs a "function".'
+        )
     ids = calls.ids
     for id_ in sorted({each for each in ids if ids.count(each) > 1}):
-        table.problem(f'the id "{id_}" is used twice; each call needs one of its own.')
+        table.problem(f'the id "{id_}" is used twice; each call needs its own id.')
     return calls
 
 
 def unknown_calls(trials: Sequence[TrialSpec], checks: Sequence[CheckSpec]) -> Iterator[str]:
-    """Yield one sentence for each check that names a call which its trial does not have."""
+    """Yield a message for each check that names a call that its trial does not have."""
     calls = {trial.id: trial.calls.ids for trial in trials}
     for check in checks:
         wanted = check.params.get("call")

@@ -1,4 +1,4 @@
-"""What the Tab key offers where a command takes a step. It is read from the folders of the course, without parsing."""
+"""Shell completion of steps. It reads the names of the course's folders and parses no file."""
 
 from __future__ import annotations
 
@@ -12,5 +12,5 @@ def steps(incomplete: str) -> list[str]:
 
 
 def steps_or_next(incomplete: str) -> list[str]:
-    """Return the same steps for `grader start`, which also accepts "next"."""
+    """Return the same steps, and "next", for `grader start`."""
     return [*steps(incomplete), *(["next"] if "next".startswith(incomplete) else [])]

@@ -1,15 +1,15 @@
 """Read exercise.toml, and report all mistakes to its author at once.
 
-The keys of the format with `schema = 2`:
+The keys in `schema = 2`:
 
 - `[exercise]` has id, title, package (without a package, students submit only answers.toml), apart (the package is not
   the learner's own), show_fix (students see the change that was tried) and starting_point_fails (the ids of the checks
   that exercises/ must fail).
-- `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one of
-  each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
+- `[numbers]` has file (the name of a TOML file in the package), and lists of possible values. Each student gets one
+  value from each list. In a `[[check]]`, the value `{ own = "radius_m" }` stands for the student's own value.
 - `[[trial]]` has id, executable, node, duration_s, start, rename, pose_every, pose_from_s and
   answers_after_s. `[[trial.drive]]` has
-  from_s, linear_x_m_s and angular_z_rad_s (one number, or two between which a number is drawn). `[[trial.call]]` has
+  from_s, linear_x_m_s and angular_z_rad_s (one number, or the two limits of a random number). `[[trial.call]]` has
   at_s, service, type and request (a table with fields), `[[trial.set]]` has at_s, parameter, value and also.
   `[trial.parameters]` and `[trial.params_file]` map the names of parameters to their values.
 - A `[[trial]]` without a simulator has id and either function and `[[trial.points]]`, or executable and
@@ -52,7 +52,7 @@ PART = re.compile(r"[a-z]")
 FIELD = Allowed(
     "a number, a string, true or false", lambda value: value if isinstance(value, str | int | float) else None, ""
 )
-"""What one field of a parameter that is a table may be."""
+"""The allowed values of a field in a parameter that is a table, in words."""
 
 
 def parse_exercise(data: bytes, name: str, folder: Path, kinds: Mapping[str, KindSpec]) -> Exercise:
@@ -78,7 +78,7 @@ def of_older_schema(values: Mapping[str, Any]) -> str:
     """Return how to update a file that has an older version of the format, or an empty string for any other file."""
     schema = values.get("schema")
     known = OLDER.get(schema) if isinstance(schema, int) else None
-    return f"schema {schema} is no longer read: {known}" if known else ""
+    return f"schema {schema} is no longer supported: {known}" if known else ""
 
 
 def _exercise(top: Table, folder: Path, digest: str, kinds: Mapping[str, KindSpec]) -> Exercise:
@@ -143,7 +143,7 @@ def _must_be_check(table: Table, key: str, name: str, ids: list[str]) -> None:
     if name not in ids:
         guess = nearest(name, ids)
         hint = f' Did you mean "{guess}"?' if guess else ""
-        table.problem(f'"{key}" names "{shorten(name)}", which is no check.{hint} Allowed: {", ".join(ids)}.')
+        table.problem(f'"{key}" names "{shorten(name)}", which is not a check.{hint} Allowed: {", ".join(ids)}.')
 
 
 def _checks(
@@ -156,17 +156,17 @@ def _checks(
     ids = [spec.id for spec in specs]
     for table, spec in zip(tables, specs, strict=True):
         if spec.id and ids.count(spec.id) > 1:
-            table.problem(f'the id "{spec.id}" is used {ids.count(spec.id)} times; each check needs one of its own.')
+            table.problem(f'the id "{spec.id}" is used {ids.count(spec.id)} times; each check needs its own id.')
         for need in spec.needs:
             _must_be_check(table, "needs", need, ids)
     circle = _circle(specs)
     if circle:
-        top.problem(f'"needs" goes in a circle: {" -> ".join(circle)}. Take one of them out.')
+        top.problem(f'"needs" has a cycle: {" -> ".join(circle)}. Remove one of them.')
     return specs
 
 
 def _without_presets(tables: list[Table], trials: tuple[str, ...]) -> list[Table]:
-    """Return the tables of single checks. A preset that is still among them is wrong, and is recorded as a problem."""
+    """Return the tables without a preset. A preset that is left in the tables is invalid and is recorded as such."""
     for table in tables:
         wrong = problem_of(table.values, [{"id": trial} for trial in trials])
         if wrong:

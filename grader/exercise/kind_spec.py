@@ -18,8 +18,7 @@ Param = str | float | int | bool | Own | tuple[Any, ...]
 class Allowed:
     """The allowed values of a parameter, in words, and a function that converts a TOML value.
 
-    `accept` returns None if the value is not allowed. `about` tells the author of an exercise what the parameter means
-    (docs/kinds.md).
+    `accept` returns None if the value is not allowed. `about` describes the parameter in docs/kinds.md.
     """
 
     words: str

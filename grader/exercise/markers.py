@@ -120,7 +120,7 @@ class _Reader:
     def _line(self, number: int, line: str) -> None:
         if MEANT.search(line):
             raise self._error(
-                number, f"{line.strip()!r} is no marker, but reads like one; see grader/exercise/markers.py"
+                number, f"{line.strip()!r} looks like a marker, but is not one; see grader/exercise/markers.py"
             )
         if self.inside is None:
             self.parts.append(line)

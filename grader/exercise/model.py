@@ -54,7 +54,7 @@ Setting = bool | int | float | str
 
 @dataclass(frozen=True)
 class CallInput:
-    """At `at_s` (s), the trial calls a service of the node. `type` is such as "std_srvs/srv/SetBool"."""
+    """A call of a service of the node at `at_s` (s). `type` is the service type, for example "std_srvs/srv/SetBool"."""
 
     at_s: float
     service: str
@@ -64,13 +64,12 @@ class CallInput:
 
 @dataclass(frozen=True)
 class Scenario:
-    """What happens in a trial: it lasts for `duration_s` (s) on the trial's clock, and then SIGINT is sent.
+    """The events of a trial, which lasts `duration_s` (s) on the trial's clock and ends with SIGINT.
 
-    If `anywhere` is set, the start pose is random even without a seed. `rename` holds remapping rules for the
-    simulator, such as "/turtle1/pose:=/where". `pose_every` is the number of frames between two poses; the
-    first one is published at `pose_from_s` (s), as if the simulator were late. Its services answer
-    `answers_after_s` (s) after a call. The node starts with `parameters` on its command line, and with those of
-    `params_file` in a file.
+    If `anywhere` is set, the start pose is random even without a seed. `rename` contains remapping rules for the
+    simulator, such as "/turtle1/pose:=/where". `pose_every` is the number of frames between two poses. The first pose
+    is published at `pose_from_s` (s), to simulate a late simulator. Services respond `answers_after_s` (s) after a
+    call. The node starts with `parameters` on its command line and with `params_file` in a parameter file.
     """
 
     duration_s: float
@@ -89,9 +88,8 @@ class Scenario:
 class TrialSpec:
     """One `[[trial]]`: the executable, the name of its node (without a slash), and the scenario.
 
-    If there is no executable, the simulator runs without a node. If there are `calls`, there is neither a simulator nor
-    a node: a function, or the executable, is called once with each of them. If there are `tests`, there is no simulator
-    either: the student's tests run.
+    Without an executable, the simulator runs alone. With `calls`, neither a simulator nor a node runs: the function or
+    the executable is called once for each of them. With `tests`, the student's tests run without a simulator.
     """
 
     id: str
@@ -113,9 +111,9 @@ class Hint:
 
 @dataclass(frozen=True)
 class Exercise:
-    """The exercise of a step. A package is built and run in every trial, and the checks judge what was observed.
+    """The exercise of a step. Its package is built and run in every trial, and its checks judge the recordings.
 
-    If there is no `package`, students submit only answers.toml, and the simulator runs without a node.
+    Without a `package`, students submit only answers.toml, and the simulator runs without a node.
     """
 
     id: str
@@ -127,15 +125,15 @@ class Exercise:
     hints: tuple[Hint, ...]
     folder: Path
     digest: str = ""
-    """The SHA-256 hash of exercise.toml, which contains everything that the exercise requires."""
+    """The SHA-256 hash of exercise.toml, which defines the whole exercise."""
     numbers: NumbersSpec | None = None
     """The values that differ from student to student."""
     show_fix: bool = False
-    """Whether a student's report shows the change that was tried in a copy and made the check pass."""
+    """Whether a student's report shows the change that made the check pass when the grader tried it in a copy."""
     unsolved: tuple[str, ...] = ()
     """The checks that the starting point must fail (for `grader validate`). Checks that depend on them are skipped."""
     apart: bool = False
-    """Whether the package is in a workspace of its own, because it is not the one that grows from step to step."""
+    """Whether the package has a workspace of its own because it is not the package that grows from step to step."""
 
     def trial(self, id_: str) -> TrialSpec:
         """Return the trial with this id. Raises KeyError if there is none."""

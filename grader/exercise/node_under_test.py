@@ -1,4 +1,4 @@
-"""A node under test: what the student's tests must accept (the right node) or reject (each broken node).
+"""A node under test, which the student's tests must accept (the right node) or reject (a broken node).
 
 The node reads the turtle's pose, and publishes velocity commands that keep the turtle away from the walls. A broken
 node differs from the right one in at least one field.
@@ -28,20 +28,20 @@ class Behaviour:
     slow_m_s: float = 0.5
     """The speed near a wall."""
     turn_rad_s: float = 1.5
-    """How fast it turns near a wall; a positive number is to the left."""
+    """The angular speed near a wall. A positive value turns left."""
     speed_field: str = "linear.x"
     turn_field: str = "angular.z"
     margin_m: float = 1.0
-    """How close to a wall it starts to turn."""
+    """The distance from a wall at which the node starts to turn."""
     timeout_s: float = 1.0
-    """It stops when the last pose is older than this; 0 if it never stops."""
+    """The maximum age of the last pose. The node stops if the pose is older; with 0, it never stops."""
     walls: tuple[str, ...] = WALLS
-    """The walls that it turns away from."""
+    """The walls that the node avoids."""
     publishes: bool = True
     waits: bool = True
-    """Whether it publishes nothing before the first pose."""
+    """Whether the node publishes nothing before the first pose."""
     straightens: bool = True
-    """Whether it drives straight on again when it is away from the wall."""
+    """Whether the node drives straight ahead again when it has left the wall."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,8 @@ class NodeUnderTest:
 class TestsSpec:
     """The table `[trial.tests]`: the tests of the student run on the right node and on every broken node.
 
-    `module` and `name` are the class of the node that the tests import. `right_runs` is how often the tests run on
-    the right node. `duration_s` (s) is the longest time of one run.
+    The tests import the class `name` from `module`. They run `right_runs` times on the right node. `duration_s` (s) is
+    the maximum duration of one run.
     """
 
     __test__ = False  # pytest must not take this class for a test

@@ -26,7 +26,7 @@ Value = str | float | int
 
 @dataclass(frozen=True)
 class Own:
-    """Stands for the student's own value with this name."""
+    """A placeholder for the student's own value with this name."""
 
     name: str
 

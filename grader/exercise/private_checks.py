@@ -51,7 +51,7 @@ class Sources:
         private = read_toml(self.private, self.private_name)
         merged = merge(public, private, self.private_name)
         both = f"{digest} {hashlib.sha256(self.private).hexdigest()}"
-        named = f"{self.private_name}, laid over the course's"
+        named = f"{self.private_name}, merged into the course's exercise"
         return parse_tables(merged, named, folder, hashlib.sha256(both.encode()).hexdigest(), kinds)
 
 
@@ -80,7 +80,10 @@ def sources_of(ids: set[str], checks: Path | None) -> dict[str, Sources]:
 def _private_files(checks: Path, known: Mapping[str, Path]) -> dict[str, Path]:
     found = {file.parent.name: file for file in sorted(checks.glob(f"*/{FILE_NAME}"))}
     if not found:
-        message = f"There are no checks in {checks}: lay it out as course/, as in 03-circle-publisher/{FILE_NAME}."
+        message = (
+            f"There are no checks in {checks}. The folder needs the same layout as course/, for example "
+            f"03-circle-publisher/{FILE_NAME}."
+        )
         raise UsageError(message)
     for name in found:
         if name not in known:
@@ -100,7 +103,7 @@ def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> d
     unknown = [key for key in private if key not in ALLOWED]
     if unknown or private.get("schema") != SCHEMA:
         mistake = f'unknown key "{unknown[0]}"' if unknown else f"schema is {private.get('schema')!r}, not {SCHEMA}"
-        message = f"{name}: {mistake}. A file of private checks may hold {a_list(ALLOWED)}."
+        message = f"{name}: {mistake}. A file of private checks may contain {a_list(ALLOWED)}."
         raise UsageError(message)
     trials = _laid_over(list(public.get("trial", [])), _tables(private, "trial", name))
     own = expand(_tables(private, "check", name), trials)
@@ -111,7 +114,7 @@ def merge(public: Mapping[str, Any], private: Mapping[str, Any], name: str) -> d
 def _tables(private: Mapping[str, Any], key: str, name: str) -> list[dict[str, Any]]:
     value = private.get(key, [])
     if not isinstance(value, list) or not all(isinstance(each, dict) for each in value):
-        message = f'{name}: "{key}" must be tables [[{key}]].'
+        message = f'{name}: "{key}" must be an array of tables, [[{key}]].'
         raise UsageError(message)
     return value
 

@@ -1,4 +1,4 @@
-"""Read the `[[trial]]` tables of exercise.toml: what is run, and what happens meanwhile."""
+"""Read the `[[trial]]` tables of exercise.toml: the executables and the scenarios."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PARAMETER_TYPES = (
     (float, 3, "double_value"),
     (str, 4, "string_value"),
 )
-"""For each type of a parameter: its number in rcl_interfaces/msg/ParameterType, and the field with its value."""
+"""Type of a parameter -> its number in rcl_interfaces/msg/ParameterType, and the field that contains its value."""
 CALLS = ("function", "points", "bag")
 """The keys of a `[[trial]]` without a simulator."""
 MAX_DURATION_S = 600.0
@@ -34,14 +34,14 @@ MAX_SPEED = 10.0
 
 
 def read_trials(top: Table, package: str) -> tuple[TrialSpec, ...]:
-    """Return the trials. A mistake is recorded in the table in which it stands."""
+    """Return the trials. Mistakes are recorded in the tables that contain them."""
     tables = top.tables("trial")
     if not tables:
-        top.problem("there is no [[trial]], so nothing would be run.")
+        top.problem("there is no [[trial]], so nothing would run.")
     trials = tuple(_trial(table, package) for table in tables)
     for table, trial in zip(tables, trials, strict=True):
         if [each.id for each in trials].count(trial.id) > 1:
-            table.problem(f'the id "{trial.id}" is used twice; each trial needs one of its own.')
+            table.problem(f'the id "{trial.id}" is used twice; each trial needs its own id.')
     return trials
 
 
@@ -96,7 +96,7 @@ def _scenario(table: Table, node: str) -> Scenario:
     )
     for rule in scenario.rename:
         if not REMAP.fullmatch(rule):
-            table.problem(f'"rename" holds "{shorten(rule)}"; a rule has the form "/old/name:=/new/name".')
+            table.problem(f'"rename" contains "{shorten(rule)}"; a rule has the form "/old/name:=/new/name".')
     return scenario
 
 
@@ -114,7 +114,7 @@ def _call(table: Table) -> CallInput:
     call = CallInput(
         table.number("at_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)"),
         table.string("service", SERVICE, "a full name, as in /pause"),
-        table.string("type", SERVICE_TYPE, "a type of a service, as in std_srvs/srv/SetBool"),
+        table.string("type", SERVICE_TYPE, "a service type, as in std_srvs/srv/SetBool"),
         table.anything("request"),
     )
     table.finish()
@@ -122,7 +122,7 @@ def _call(table: Table) -> CallInput:
 
 
 def _set(table: Table, node: str) -> CallInput:
-    """Return the call that sets a parameter of the node, as `ros2 param set` makes it, or several at once."""
+    """Return the service call that sets one or several parameters of the node, as `ros2 param set` does."""
     at_s = table.number("at_s", 0.0, MAX_DURATION_S, f"from 0 to {MAX_DURATION_S:g} (s)")
     first = _parameter(table.string("parameter"), table.setting("value"))
     others = [_parameter(name, value) for name, value in table.settings("also").items()]

@@ -1,4 +1,4 @@
-"""Tables of a TOML file, read key by key. Every mistake is described in words for the author of the file."""
+"""Read tables of a TOML file key by key, and collect all mistakes as messages for the author of the file."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def read_toml(data: bytes, name: str) -> dict[str, Any]:
     try:
         return tomllib.loads(data.decode("utf-8"))
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        message = f"{name}: not TOML: {error}."
+        message = f"{name}: invalid TOML: {error}."
         raise UsageError(message) from error
 
 
@@ -156,7 +156,7 @@ class Table:
         def good(value: object) -> bool:
             return isinstance(value, list) and all(isinstance(item, dict) for item in value)
 
-        values = self._get(key, f"tables [[{key}]]", good, default=[])
+        values = self._get(key, f"an array of tables, [[{key}]]", good, default=[])
         return [Table(value, f"[[{key}]] {place}", self.problems) for place, value in enumerate(values, start=1)]
 
     def finish(self, also: Iterable[str] = ()) -> None:
@@ -170,7 +170,7 @@ class Table:
 
 
 def shown(value: object) -> str:
-    """Return a TOML value almost as its author wrote it."""
+    """Return a TOML value in the form in which messages quote it."""
     if isinstance(value, str):
         return f'"{shorten(value)}"'
     if isinstance(value, bool):

@@ -19,7 +19,7 @@ MAX_RUN_S = 60.0
 
 
 def read_tests(table: Table) -> TestsSpec:
-    """Return how the student's tests are run in this trial. A mistake is recorded in the table in which it stands."""
+    """Return how to run the student's tests in this trial. Mistakes are recorded in the tables that contain them."""
     tests = table.table("tests")
     duration_s = table.number("duration_s", 1.0, MAX_RUN_S, f"from 1 to {MAX_RUN_S:g} (s)")
     tests.place = f"{table.place}, tests"
@@ -43,12 +43,12 @@ def _broken(table: Table, right: Behaviour) -> NodeUnderTest:
     id_ = table.string("id", ID, "small letters, digits and single dashes, as in wrong-topic")
     behaviour = _behaviour(table, right, ("id",))
     if behaviour == right:
-        table.problem("this node is not broken: give it a key that differs from the right node.")
+        table.problem("this node equals the right node: change at least one key.")
     return NodeUnderTest(id_, behaviour)
 
 
 def _behaviour(table: Table, right: Behaviour, known: tuple[str, ...]) -> Behaviour:
-    """Return the right behaviour with the keys of this table changed. A mistake is recorded in the table."""
+    """Return `right` with the changes in this table. Mistakes are recorded in the table."""
     changed: dict[str, object] = {}
     for each in fields(Behaviour):
         if each.name not in table.values:
@@ -67,7 +67,7 @@ def _behaviour(table: Table, right: Behaviour, known: tuple[str, ...]) -> Behavi
         if getattr(made, name) not in allowed:
             table.problem(f'"{name}" must be one of {", ".join(allowed)}.')
     if not set(made.walls) <= set(WALLS):
-        table.problem(f'"walls" must hold some of {", ".join(WALLS)}.')
+        table.problem(f'"walls" must contain some of {", ".join(WALLS)}.')
     if made.period_s <= 0.0:
         table.problem('"period_s" must be above 0.')
     table.finish(also=(*known, *(each.name for each in fields(Behaviour))))

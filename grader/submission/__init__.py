@@ -1,1 +1,1 @@
-"""A submission: the package of a student. It is found, read without running it, and copied."""
+"""Submissions: find the package of a student, read it without running it, and copy it."""

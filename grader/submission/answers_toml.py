@@ -24,9 +24,9 @@ Answer = str | float | tuple[str, ...]
 
 @dataclass(frozen=True)
 class Answers:
-    """The table [answers], by id. Only strings, numbers and lists of strings that are not empty and not 0 are kept.
+    """The table [answers], by id: strings, numbers and lists of strings. Empty answers, 0 and other types are left out.
 
-    `lines` are the line numbers of the answers, counted from 1. `problem` says why the file cannot be read.
+    `lines` are the line numbers of the answers, counted from 1. `problem` is the reason why the file cannot be read.
     """
 
     given: Mapping[str, Answer] = field(default_factory=dict)

@@ -23,7 +23,7 @@ MOST_MESSAGES = 200_000
 MOST_CHUNK_BYTES = 16 * 1024 * 1024
 """The maximum size of one record of a bag, and of a chunk after decompression (bytes). rosbag2 writes 0.8 MB."""
 _POSE = {0: struct.Struct(">4x2f"), 1: struct.Struct("<4x2f")}
-"""How x and y stand in a serialized pose, by the second byte of its header."""
+"""The struct format of x and y in a serialized pose. The key is the second byte of its header, the byte order."""
 
 Problem = Literal["", "missing", "elsewhere", "unfinished", "storage", "damaged"]
 
@@ -39,9 +39,9 @@ class Poses:
 
 @dataclass(frozen=True)
 class BagFolder:
-    """A bag. `problem` says why it cannot be read, `detail` gives the folder, file or error that belongs to it.
+    """A bag. `problem` is the reason why it cannot be read, and `detail` the folder, file or error that caused it.
 
-    `types` has the type of each topic, `counts` the number of its messages, and `poses` those of type Pose.
+    `types` has the type of each topic, `counts` the number of its messages, and `poses` the messages of type Pose.
     """
 
     problem: Problem
@@ -52,7 +52,7 @@ class BagFolder:
 
 
 def read_bag(files: Mapping[str, bytes], folder: str) -> BagFolder:
-    """Read the bag in this folder of a submission. What is wrong with it is stored in `problem`, and never raised."""
+    """Read the bag in this folder of a submission. Errors are stored in `problem` and never raised."""
     inside = {path.removeprefix(f"{folder}/"): data for path, data in files.items() if path.startswith(f"{folder}/")}
     stored = sorted(path for path in inside if path.endswith(".mcap"))
     if not inside:
@@ -60,16 +60,16 @@ def read_bag(files: Mapping[str, bytes], folder: str) -> BagFolder:
         return _unread("elsewhere" if others else "missing", others[0] if others else "")
     if not stored:
         other = sorted(path for path in inside if path.endswith((".db3", ".zstd", ".lz4")))
-        return _unread("storage", other[0]) if other else _unread("damaged", "it has no file that ends in .mcap")
+        return _unread("storage", other[0]) if other else _unread("damaged", "it has no .mcap file")
     if METADATA not in inside:
         return _unread("unfinished", "")
-    from mcap.exceptions import EndOfFile  # slow, and most exercises have no bag
+    from mcap.exceptions import EndOfFile  # this import is slow, and most exercises have no bag
 
     try:
         return _read([inside[path] for path in stored])
     except EndOfFile:
         return _unread("damaged", "a file ends in the middle")
-    except Exception as error:  # a damaged file can cause any exception, through an offset, a string or a checksum
+    except Exception as error:  # any exception is possible: a damaged file has wrong offsets, strings and checksums
         return _unread("damaged", shorten(str(error) or type(error).__name__, 80))
 
 

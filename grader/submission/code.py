@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
 MAX_BYTES = 400_000
-"""The maximum size of a file that is parsed (bytes). A larger one was not written by hand."""
+"""The maximum size of a file that is parsed (bytes). Nobody writes a larger file by hand."""
 MOST_BYTES = 1_000_000
 """The maximum total size of the files of one node (bytes)."""
 MAX_NAME = 500
@@ -30,7 +30,7 @@ SRC = "src/"
 
 @dataclass(frozen=True)
 class Unreadable:
-    """Why Python cannot read a file. `line` counts from 1; it is None if Python does not name a line."""
+    """The reason why Python cannot parse a file. `line` counts from 1; it is None if Python does not name a line."""
 
     message: str
     line: int | None = None

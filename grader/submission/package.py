@@ -42,8 +42,8 @@ class Submission:
     files: Mapping[str, bytes]
     rejected: tuple[str, ...]
     digest: str
-    """The SHA-256 hash of the sorted paths and contents of `files`. It is the same on every machine, whatever the
-    permissions are."""
+    """The SHA-256 hash of the sorted paths and contents of `files`. It is independent of machine
+    and permissions."""
     executable: frozenset[str] = frozenset()
     """The paths in `files` that have the executable bit."""
     student: str | None = None
@@ -104,7 +104,7 @@ def _answers(name: str) -> Submission:
     if ANSWERS not in found.files:
         why = found.rejected.get(ANSWERS)
         problem = f"{shown(name)}/{ANSWERS} {why}." if why else f"There is no {ANSWERS} in {shown(name)}."
-        message = f"{problem} Give the folder that holds your {ANSWERS}."
+        message = f"{problem} Give the folder that contains your {ANSWERS}."
         raise UsageError(message)
     files = {ANSWERS: found.files[ANSWERS]}
     return Submission(name, Path(name).resolve(), files, (), digest(files))
@@ -143,7 +143,7 @@ def write_copy(submission: Submission, destination: Path) -> None:
                 file.write(data)
                 os.fchmod(descriptor, 0o755 if path in submission.executable else 0o644)
     except FileExistsError as error:
-        message = f"{error.filename} is there already: a copy needs a new folder, on a disk where Case and case differ."
+        message = f"{error.filename} exists already: a copy needs a new folder, on a disk with case-sensitive names."
         raise MachineError(message) from error
     except OSError as error:
         todo = "Make room and try again." if error.errno in (errno.ENOSPC, errno.EDQUOT) else "Try again."

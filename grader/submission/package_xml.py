@@ -17,9 +17,10 @@ NO_NEWS = re.compile(r"Error\(s\) in package '[^']*':|Error\(s\):|The manifest c
 
 @dataclass(frozen=True)
 class Manifest:
-    """A package.xml. `run_depends` are declared for running, and `other_depends` only for building or testing.
+    """A package.xml. `run_depends` are the run-time dependencies; `other_depends` are only for building or testing.
 
-    `problem` says why the file is not valid, and `line` says where, if known. The other fields are empty then.
+    `problem` is the reason why the file is invalid, and `line` the line of the error, if known. The other fields are
+    then empty.
     """
 
     name: str = ""
@@ -53,7 +54,7 @@ def read_manifest(data: bytes) -> Manifest:
 
 
 def open_tag(data: bytes) -> tuple[str, int]:
-    """Return the innermost tag that is open at the place where an XML file is broken, with its line."""
+    """Return the innermost open tag at the position of the first XML error, with its line."""
     parser = ParserCreate()
     opened: list[tuple[str, int]] = []
     parser.StartElementHandler = lambda name, _: opened.append((name, parser.CurrentLineNumber))

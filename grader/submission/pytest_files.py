@@ -23,7 +23,7 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 @dataclass(frozen=True)
 class TestFunction:
-    """A function or method that pytest runs as a test, with its file."""
+    """A function or method that pytest runs as a test, and the file that contains it."""
 
     __test__ = False  # pytest must not take this class for a test
 
@@ -38,7 +38,7 @@ class TestFunction:
 
 @dataclass(frozen=True)
 class TestCode:
-    """The Python files outside of the package's modules (`folder`), except setup.py: tests, and what helps them."""
+    """The Python files outside of the package's modules (`folder`), except setup.py: the tests and their helpers."""
 
     __test__ = False
 
@@ -56,12 +56,12 @@ class TestCode:
 
 
 def is_test_file(path: str) -> bool:
-    """Return whether pytest looks for tests in a file with this name."""
+    """Return whether pytest looks for tests in a file of this name."""
     return any(fnmatch(path.rpartition("/")[2], pattern) for pattern in PATTERNS)
 
 
 def read_test_code(files: Mapping[str, bytes], folder: str) -> TestCode:
-    """Read the test files. Raises TooLargeError if they are not written by hand."""
+    """Read the test files. Raises TooLargeError if they are larger than anybody writes by hand."""
     inside = f"{folder}/"
     paths = [
         path
@@ -87,7 +87,7 @@ def is_case(node: ast.ClassDef) -> bool:
 
 
 def has_init(node: ast.ClassDef) -> bool:
-    """Return whether the class has an __init__ of its own."""
+    """Return whether the class defines its own __init__."""
     return any(isinstance(each, ast.FunctionDef) and each.name == "__init__" for each in node.body)
 
 

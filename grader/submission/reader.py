@@ -1,6 +1,6 @@
 """Reader: read a student's files in a child process with limits on time and memory.
 
-All such reading must go through `read`. The child is a fork that has all data of its parent, and it returns plain data.
+All such reading must go through `read`. The child is a fork, so it has all data of its parent. It returns plain data.
 A test (grader/tests/test_reading.py) finds every other place that reads a submission.
 """
 
@@ -107,7 +107,7 @@ def _run(sends: int, function: Callable[[], object]) -> NoReturn:
     """Run the function in the child, and exit."""
     try:
         _Child.inside = True
-        gc.disable()  # it would touch, and therefore copy, all memory of the parent
+        gc.disable()  # garbage collection would write to, and therefore copy, all memory of the parent
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
         _close_all_but(sends)
@@ -121,7 +121,7 @@ def _run(sends: int, function: Callable[[], object]) -> NoReturn:
 
 
 def _close_all_but(sends: int) -> None:
-    """Close the parent's files, because the child reads none of them and must not keep a pipe open."""
+    """Close the parent's files: the child needs none of them, and an open copy would keep a pipe open."""
     for number in [int(entry.name) for entry in Path("/proc/self/fd").iterdir()]:
         if number > 2 and number != sends:
             with suppress(OSError):  # the descriptor that was used for listing the folder
@@ -161,7 +161,7 @@ def _packed(*, fine: bool, value: object) -> bytes:
     try:
         _Packer(packed, pickle.HIGHEST_PROTOCOL).dump((fine, value))
     except (pickle.PicklingError, AttributeError, TypeError) as error:
-        message = f"what was read cannot be handed over: {error}"
+        message = f"the result cannot be sent: {error}"
         raise MachineError(message) from error
     return packed.getvalue()
 
@@ -190,14 +190,14 @@ def _value(answer: bytes | None, status: int | None) -> Any:  # noqa: ANN401 - w
         number = os.WTERMSIG(status)
         if number in (signal.SIGXCPU, signal.SIGKILL):
             raise TooLargeError(_too_much())
-        message = f"it could not be read: reading it ended with {signal.Signals(number).name}"
+        message = f"it could not be read: the reading process was stopped by {signal.Signals(number).name}"
         raise UnreadableError(message)
     if os.WEXITSTATUS(status) != 0 or not answer:
-        raise TooLargeError(_too_much())  # there was not enough memory even for the answer
+        raise TooLargeError(_too_much())  # not even the error message fitted into memory
     try:
         fine, value = _Unpacker(io.BytesIO(answer)).load()
     except Exception as error:
-        message = f"What was read cannot be taken: {error}. Please report that."
+        message = f"The result of the reading process is invalid: {error}. Please report it."
         raise MachineError(message) from error
     if not fine:
         raise value

@@ -18,7 +18,7 @@ from grader.submission.tree import Entry, shown
 
 PACKAGE_FILES = ("package.xml", "setup.py")
 IGNORE_MARKER = "COLCON_IGNORE"
-GIVE = "Give the folder of your package: the one with package.xml in it."
+GIVE = "Give the folder of your package: the one that contains package.xml."
 MAX_FOLDERS = 5000
 MAX_NAMED = 10
 """The maximum number of names in a message."""
@@ -61,14 +61,14 @@ def why_not_opened(error: OSError, name: str) -> str:
     if Path(name).is_file():
         return f"{path} is a file. {_for_a_file(name)}"
     if Path(name).is_symlink():
-        return f"{path} is a link to a place that does not exist. {GIVE}"
+        return f"{path} is a symlink to a path that does not exist. {GIVE}"
     return f"There is no folder {path}{_nearest_parent(name)}. {GIVE}"
 
 
 def _visit(search: _Search, folder: int, path: str, depth: int, name: str) -> None:
     search.folders += 1
     if search.folders > MAX_FOLDERS:
-        message = f"{shown(name)} holds more than {MAX_FOLDERS} folders. {GIVE}"
+        message = f"{shown(name)} contains more than {MAX_FOLDERS} folders. {GIVE}"
         raise UsageError(message)
     listing = tree.entries(folder) or []
     names = {entry.name for entry in listing if not entry.is_folder}
@@ -110,14 +110,15 @@ def _is_folder_behind(name: str, folder: int) -> bool:
 def _several(packages: list[str], name: str) -> str:
     paths = [shown(posixpath.join(name, package)) for package in packages]
     return (
-        f"{shown(name)} holds {len(paths)} packages: {_listed(paths)}. Give the one to grade, for example {paths[0]}."
+        f"{shown(name)} contains {len(paths)} packages: {_listed(paths)}. Give the one to grade, for example "
+        f"{paths[0]}."
     )
 
 
 def _none(search: _Search, root: int, name: str) -> str:
     none = f"There is no package in {shown(name)}: no folder in it has a package.xml or a setup.py."
     if search.nearly:
-        return f"{none} {shown(search.nearly[0])} is nearly one: the name must be exactly package.xml or setup.py."
+        return f"{none} {shown(search.nearly[0])} is almost right: the name must be exactly package.xml or setup.py."
     if search.linked:
         return (
             f"{none} {shown(search.linked[0])} is a link, and links are not followed: give the folder that it leads to."
@@ -126,11 +127,11 @@ def _none(search: _Search, root: int, name: str) -> str:
         return f"{none} colcon ignores {shown(search.ignored[0])}, because a file {IGNORE_MARKER} is in it."
     for above in list(Path(name).resolve().parents)[:2]:
         if any((above / file).is_file() for file in PACKAGE_FILES):
-            return f"{none} The folder around it, {shown(str(above))}, is one: give that."
+            return f"{none} Its parent folder, {shown(str(above))}, is a package: give that folder."
     names = [shown(entry.name) + ("/" if entry.is_folder else "") for entry in tree.entries(root) or []]
     if not names:
         return f"{none} The folder is empty. Give the folder of your package."
-    return f"{none} It holds {_listed(names)}. {GIVE}"
+    return f"{none} It contains {_listed(names)}. {GIVE}"
 
 
 def _listed(names: list[str]) -> str:
@@ -146,7 +147,7 @@ def _for_a_file(name: str) -> str:
     if name.lower().endswith((".zip", ".tar", ".tar.gz", ".tgz")):
         return "Unpack it, and give the folder of the package."
     if name.endswith(".py"):
-        return "The grader grades whole packages. Give the folder with package.xml in it."
+        return "The grader grades whole packages. Give the folder that contains package.xml."
     return GIVE
 
 

@@ -49,7 +49,7 @@ class SetupPy:
     required: tuple[str, ...] = ()
     """The value of install_requires."""
     tested_with: tuple[str, ...] = ()
-    """The packages in extras_require["test"], which say how colcon runs the tests."""
+    """The packages in extras_require["test"], which determine how colcon runs the tests."""
     tests_require_line: int | None = None
     """The line of the argument tests_require, which setuptools ignores since version 72."""
     stray: tuple[EntryPoint, ...] = ()

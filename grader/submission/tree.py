@@ -73,7 +73,7 @@ class Tree:
     files: dict[str, bytes] = field(default_factory=dict)
     executable: set[str] = field(default_factory=set)
     rejected: dict[str, str] = field(default_factory=dict)
-    """Path -> why it is not among the files, if the folder is at fault."""
+    """Path -> the reason why the file is missing from `files`, if the student's folder is at fault."""
     links: dict[str, str] = field(default_factory=dict)
     """Path -> the target of the link, as written in the link."""
     total: int = 0
@@ -156,7 +156,7 @@ def read_tree(folder: int) -> Tree:
 def _read_folder(tree: Tree, folder: int, prefix: str, depth: int) -> None:
     listing = entries(folder)
     if listing is None or tree.entries + len(listing) > MAX_ENTRIES:
-        tree.rejected[prefix.rstrip("/") or "."] = f"holds more than the {MAX_ENTRIES} entries that are read"
+        tree.rejected[prefix.rstrip("/") or "."] = f"contains more than {MAX_ENTRIES} entries"
         return
     tree.entries += len(listing)
     for entry in listing:
@@ -179,7 +179,7 @@ def _read_folder(tree: Tree, folder: int, prefix: str, depth: int) -> None:
 
 def _read_below(tree: Tree, folder: int, entry: Entry, path: str, depth: int) -> None:
     if depth > MAX_DEPTH:
-        tree.rejected[path] = f"lies more than {MAX_DEPTH} folders deep"
+        tree.rejected[path] = f"is nested more than {MAX_DEPTH} folders deep"
         return
     try:
         with open_folder(entry.name, folder) as below:
@@ -190,18 +190,18 @@ def _read_below(tree: Tree, folder: int, entry: Entry, path: str, depth: int) ->
 
 def _has_room(tree: Tree, path: str, size: int) -> bool:
     if len(tree.files) >= MAX_FILES:
-        tree.rejected[path] = f"is beyond the {MAX_FILES} files that are read"
+        tree.rejected[path] = f"is beyond the limit of {MAX_FILES} files"
     elif size > MAX_FILE_BYTES:
-        tree.rejected[path] = f"has {size} bytes, more than the {MAX_FILE_BYTES} that a file may have"
+        tree.rejected[path] = f"has {size} bytes; a file may have at most {MAX_FILE_BYTES}"
     elif tree.total + size > MAX_TOTAL_BYTES:
-        tree.rejected[path] = f"is beyond the {MAX_TOTAL_BYTES} bytes that are read in all"
+        tree.rejected[path] = f"is beyond the limit of {MAX_TOTAL_BYTES} bytes in total"
     else:
         return True
     return False
 
 
 def _read_file(tree: Tree, folder: int, entry: Entry, path: str) -> None:
-    # O_NONBLOCK ensures that a pipe that replaced the file after the listing does not block us.
+    # O_NONBLOCK keeps this from blocking if a pipe has replaced the file since the listing.
     flags = os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
     try:
         descriptor = os.open(entry.name, flags, dir_fd=folder)
@@ -225,21 +225,21 @@ def _add(tree: Tree, path: str, data: bytes, *, executable: bool) -> None:
 
 
 def _resolve(tree: Tree, path: str) -> None:
-    """Give a link the content of its target, if the target is one of the files. This does not read the disk."""
+    """Replace a link by the content of its target, if the target is one of the files. This does not read the disk."""
     at = path
     for _ in range(len(tree.links)):
         target = tree.links[at]
         if target.startswith("/"):
-            tree.rejected[path] = f"is a link to {shown(target)}, a place on one machine only"
+            tree.rejected[path] = f"is a link to {shown(target)}, an absolute path that exists only on one machine"
             return
         at = posixpath.normpath(posixpath.join(posixpath.dirname(at), target))
         if at == ".." or at.startswith("../"):
-            tree.rejected[path] = f"is a link to {shown(target)}, which lies outside the package"
+            tree.rejected[path] = f"is a link to {shown(target)}, which is outside the package"
             return
         if at not in tree.links:
             break
     if at not in tree.files:
-        tree.rejected[path] = f"is a link to {shown(tree.links[path])}, which is no file of the package"
+        tree.rejected[path] = f"is a link to {shown(tree.links[path])}, which is not a file of the package"
     elif _has_room(tree, path, len(tree.files[at])):
         _add(tree, path, tree.files[at], executable=at in tree.executable)
 
@@ -250,10 +250,10 @@ def reason(error: OSError, path: str) -> str:
     If the machine is at fault, raise MachineError instead.
     """
     if error.errno in OF_THE_MACHINE:
-        message = f"{shown(path)} could not be read: {error.strerror}. This is a fault of the machine; try again."
+        message = f"{shown(path)} could not be read: {error.strerror}. This is the machine's fault; try again."
         raise MachineError(message) from error
     if error.errno in (errno.EACCES, errno.EPERM):
-        return "may not be read (its permissions forbid it)"
+        return "cannot be read because of its permissions"
     if error.errno in (errno.ELOOP, errno.ENOTDIR, errno.ENOENT):
         return "changed while it was read"
     return f"cannot be read ({error.strerror})"

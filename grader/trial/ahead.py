@@ -1,8 +1,8 @@
-"""The trials of one submission. They start while the submission is built, and those in simulated time run in parallel.
+"""The trials of one submission. They start during the build, and those in simulated time run in parallel.
 
-They start one after the other. This leaves most of a processor to the build, for which all of them wait. Simulated time
-does not depend on the speed of the machine, so other trials do not affect it. A trial in wall time needs the processors
-for itself, so the caller first waits for the other trials (`settle`).
+They start one after the other. This leaves most of a processor to the build, which all of them wait for. Simulated time
+does not depend on the speed of the machine, so parallel trials do not affect each other. A trial in wall time needs the
+processors for itself, so the caller first waits for the other trials (`settle`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Runs(Protocol):
     """A trial that waits for its node or already runs it."""
 
     def run(self, package: str, executable: str, tree: bytes) -> Recording:
-        """Do the same as `Trial.run`."""
+        """Run the executable and return the recording, like `Trial.run`."""
         ...
 
 
@@ -50,7 +50,7 @@ class _Started:
 
 
 class Ahead:
-    """A context manager. Leaving it stops every trial that was started in it.
+    """The trials of a submission, as a context manager. Leaving it stops every trial that it started.
 
     The name of a trial is its id. Up to `at_once` trials run in parallel.
     """
@@ -65,7 +65,7 @@ class Ahead:
         self._under_way: dict[str, Future[Recording]] = {}
 
     def __enter__(self) -> Ahead:  # noqa: PYI034 - typing.Self is Python 3.11's
-        self._pool.submit(load_numpy)  # needed to read a recording, and there is time for it now
+        self._pool.submit(load_numpy)  # reading a recording needs numpy, and there is time for the import now
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -93,10 +93,7 @@ class Ahead:
         trial.await_ready()
 
     def run(self, name: str, package: str, executable: str, tree: bytes) -> None:
-        """Start the node in a trial that is waiting for it. `trial` returns the trial.
-
-        The trial's `run` returns the recording.
-        """
+        """Start the node in a trial that is waiting for it. Then `trial(name).run` returns the recording."""
         self._under_way[name] = self._pool.submit(self._started[name].run, package, executable, tree)
 
     def trial(self, name: str) -> Runs | None:

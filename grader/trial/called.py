@@ -1,4 +1,4 @@
-"""Called: what one call of a student's function, or one run of a student's program, did."""
+"""Called: the result of one call of a student's function, or of one run of a student's program."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 MOST_TEXT = 20_000
-"""How many characters of each output are kept."""
+"""The maximum number of characters that are kept of each output."""
 MOST_VALUES = 10
 TOO_LATE = "too late"
-"""The `ended` of a call that took too long."""
+"""The value of `ended` for a call that took too long."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Called:
 
 
 def called_from_json(data: dict[str, Any]) -> Called:
-    """Return the result in this JSON. Raises ValueError, TypeError or KeyError if it is none."""
+    """Return the result in this JSON. Raises ValueError, TypeError or KeyError if it is invalid."""
     values = data["values"]
     try:
         numbers = None if values is None else tuple(float(each) for each in values[:MOST_VALUES])
@@ -48,7 +48,7 @@ def called_from_json(data: dict[str, Any]) -> Called:
 
 
 def read_called(output: bytes, ids: Sequence[str]) -> tuple[Called, ...]:
-    """Return the result of each call, from the lines that the cell wrote. A line that is not a result is left out."""
+    """Return the result of each call, from the lines that the cell wrote. Other lines are ignored."""
     found: dict[str, Called] = {}
     for line in output.splitlines():
         try:

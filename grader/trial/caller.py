@@ -1,4 +1,4 @@
-"""Caller: the service calls that the trial itself makes at given times, and what the node answered."""
+"""Caller: the service calls that the trial itself makes at given times, and the responses of the node."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from grader.trial.inputs import PlannedCall
 
 LATE_S = 1.0
-"""How long a call waits for its service, on the trial's clock (s)."""
+"""The maximum time that a call waits for its service, on the trial's clock (s)."""
 FOUND_S = 0.5
-"""How long the first attempt waits for discovery if simulated time stands still meanwhile (s of wall time)."""
+"""The maximum wall time (s) for discovery before the first call, if simulated time is stopped meanwhile."""
 
 
 class Caller:
-    """Makes the calls when they are due. The clients exist from the start, so that discovery is over by then."""
+    """Makes the calls when they are due. Its clients exist from the start, so that discovery is complete by then."""
 
     def __init__(self, node: Node, calls: tuple[PlannedCall, ...], now: Callable[[], float]) -> None:
         self._node = node
@@ -54,7 +54,7 @@ class Caller:
     def _given_up(
         self, call: PlannedCall, client: Client, now_s: float, spin: Callable[[float], object] | None
     ) -> bool:
-        """Wait for the service. Return whether it has had its time, or is there now."""
+        """Wait for the service. Return whether it is available now or the waiting time is over."""
         until = time.monotonic() + FOUND_S
         while spin is not None and id(call) not in self._first_s and time.monotonic() < until:
             spin(0.01)

@@ -1,4 +1,4 @@
-"""Calls: call a function or a program of the built package in a cell, without a simulator."""
+"""Call a function or a program of the built package in a cell, without a simulator."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ TIMEOUT_S = 60.0
 MOST_OUTPUT = 2 * MIB
 MOST_ERRORS = 64 * 1024
 AHEAD = ("numpy", "rosbags.highlevel")
-"""What most programs import. Imported once, it is there in every call."""
+"""Modules that most programs import. They are imported once, before the calls."""
 _SCRIPT = Path(__file__).with_name("cell_calls.py")
 _READY = b"ready\n"
 
@@ -43,9 +43,9 @@ def make_calls(
     executable: str = "",
     in_cell: bool,
 ) -> bytes:
-    """Call the function, or else the executable, and return what the cell wrote (called.read_called reads it).
+    """Call the function, or else the executable, and return the output of the cell (see called.read_called).
 
-    `tree` is the install tree of the package (a tar stream). `files` are added beside it, in the current folder of the
+    `tree` is the install tree of the package (a tar stream). `files` are added next to it, in the current folder of the
     program, by their paths.
 
     Raises:
@@ -83,7 +83,7 @@ def make_calls(
         done = _run(stack, start.argv, env, ros, stdin, in_cell=in_cell)
     if not done.stdout.startswith(_READY):
         errors = done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:] or ["no message"]
-        message = f"The package could not be called: {errors[0]}. `grader doctor` says what is missing."
+        message = f"The calls to the package failed: {errors[0]}. `grader doctor` says what is missing."
         raise MachineError(message)
     return done.stdout[len(_READY) :]
 

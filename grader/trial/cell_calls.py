@@ -2,7 +2,7 @@
 
 This file runs as a script of its own. It reads one line of JSON (`calls`, `script`, `function`, `python_path`, `env`,
 `install`, `files`) and then the install tree, a tar stream, from standard input. It writes one line of JSON for
-each call. A student's code may write such lines too. It gains nothing, because it has to know the right numbers.
+each call. A student's code may write such lines too, but it does not know the expected numbers.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from pathlib import Path
 from typing import Any
 
 CPU_S = 5
-"""The CPU time that one call may take (s). On a busy machine, it lasts longer, and that is not the student's fault."""
+"""The maximum CPU time of one call (s). Unlike wall time, it does not depend on the load of the machine."""
 CALL_S = 20.0
-"""How long one call may last (s). After a call that exceeds one of these limits, no further call is made."""
+"""The maximum wall time of one call (s). After a call that exceeds one of these limits, no further call is made."""
 MOST_TEXT = 20_000
 POLL_S = 0.005
 TOO_LATE = "too late"
 
 
 def main() -> None:
-    """Wait for the order, and make the calls."""
+    """Read the order and make the calls."""
     os.write(1, b"ready\n")
     order = json.loads(sys.stdin.buffer.readline())
     with tarfile.open(fileobj=sys.stdin.buffer, mode="r|") as tree:
@@ -56,7 +56,7 @@ def main() -> None:
 
 
 def _called(order: dict[str, Any], call: dict[str, Any]) -> dict[str, Any]:
-    """Make one call in a child process, and return what it did."""
+    """Make one call in a child process, and return its result."""
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err, tempfile.TemporaryFile() as returned:
         child = os.fork()
         if child == 0:

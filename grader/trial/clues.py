@@ -44,7 +44,7 @@ _NAMES = {
 _CLOCKS = {"Clock", "ROSClock"}
 """A clock other than the node's own clock does not follow /clock."""
 _TIMELESS = {"threading.Lock", "threading.RLock", "threading.local", "threading.current_thread", "threading.get_ident"}
-"""Nodes with several threads need these, and none of them waits for time to pass."""
+"""Names that multi-threaded nodes need. None of them waits for time to pass."""
 MOST_NODES = 30
 """The size of the largest expression that is shown in full (AST nodes)."""
 

@@ -46,7 +46,7 @@ On a crowded machine, CPU time alone does not show this, because neither process
 that makes three requests per pose makes 190 per second.
 """
 MESSAGES_HZ = 1000
-"""The same for the messages that arrive from other nodes than the simulator (Hz)."""
+"""The corresponding limit for messages from nodes other than the simulator (Hz)."""
 STARTED = 0.4
 STARTED_LEAST = 1.2
 """The node also caused all stalls if the processes that it started could use the machine alone: together, they were
@@ -169,7 +169,7 @@ def _own_doing(stall: tuple[float, float], node: NodeProcess, trial: SimulatedTr
 
 
 def _arrived(trial: SimulatedTrial | WallTrial) -> int:
-    """Return how many messages arrived on other topics than the simulator's."""
+    """Return how many messages arrived on topics other than those of the simulator."""
     recorder = trial.recorder
     return recorder.dropped + sum(not message.topic.endswith(SIMULATORS) for message in recorder.messages)
 

@@ -21,13 +21,13 @@ node's."""
 OTHERS = 0.2
 """Other programs use the machine if they take at least this share of one processor."""
 WAITED = 0.05
-"""Other programs that use the machine crowd it if the simulator and the node together wait for a processor for at least
-this share of the time."""
+"""The machine is crowded if other programs use it and the simulator and the node together wait for a processor for
+at least this share of the time."""
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 
 
 def is_crowded(waited_s: float, others_s: float, *, of_s: float) -> bool:
-    """Return whether others crowd the machine.
+    """Return whether other programs crowd the machine.
 
     In a period of `of_s` (s), the other programs worked for `others_s` (s), and the simulator and the node waited for
     `waited_s` (s).
@@ -119,7 +119,7 @@ def _times(threads: Threads | None) -> tuple[float, float]:
 
 
 def _stolen_s() -> float:
-    """Return how long other virtual machines on the same hardware used the processors, all together (s)."""
+    """Return the total time for which other virtual machines on the same hardware used the processors (s)."""
     return _machine_s()[7]
 
 

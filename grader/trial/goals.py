@@ -1,4 +1,4 @@
-"""The goals that nodes send to the actions of the simulator, and what became of them."""
+"""The goals that nodes send to the actions of the simulator, and their results."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MOST_GOALS = 1000
 
 
 class GoalLog:
-    """Collects what happens to each goal."""
+    """Records the events of each goal."""
 
     def __init__(self, now: Callable[[], float]) -> None:
         """Create an empty log. `now` returns the time of the trial (s)."""
@@ -31,7 +31,7 @@ class GoalLog:
         return tuple(self._goals.values())
 
     def add(self, event: GoalEvent) -> None:
-        """Take in what happened to a goal."""
+        """Record an event of a goal."""
         now_s, goal = self._now(), self._goals.get(event.goal_id)
         if event.what == "accepted" and len(self._goals) < MOST_GOALS:
             self._goals[event.goal_id] = Goal(now_s, event.action, event.type, plain(event.content))

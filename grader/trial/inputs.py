@@ -1,4 +1,4 @@
-"""Inputs: what the simulator itself does in a trial, drawn from the exercise's scenario and a seed."""
+"""Inputs: the drives, service calls and settings of a trial, drawn from the exercise's scenario and a seed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from grader.turtlesim.turtle import Pen, Rgb
 
 MOST_DRAWS = 200
-"""After this many draws, a trajectory that comes too close to a wall is accepted."""
+"""The number of draws after which a trajectory is accepted even if it is too close to a wall."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,10 @@ class PlannedCall:
 
 @dataclass(frozen=True)
 class Inputs:
-    """What happens to the node in a trial.
+    """The inputs of a trial.
 
-    `drives` holds start times (s) with speeds (m/s, rad/s). `arguments` are additional ROS arguments of the node, and
-    `params_file` is the text of a file with parameters. The others are those of the Scenario.
+    `drives` contains start times (s) with speeds (m/s, rad/s). `arguments` are additional ROS arguments of the node,
+    and `params_file` is the text of a file with parameters. The other fields are those of Scenario.
     """
 
     drives: tuple[tuple[float, float, float], ...] = ()
@@ -93,7 +93,7 @@ def _settings(parameters: Mapping[str, Setting]) -> list[str]:
 
 
 def _params_file(parameters: Mapping[str, Setting]) -> str:
-    """Return the text of a file for `--ros-args --params-file`; JSON is also YAML. Empty if there is nothing in it."""
+    """Return the text of a file for `--params-file` (JSON is also YAML), or an empty string without parameters."""
     return json.dumps({"/**": {"ros__parameters": dict(parameters)}}, indent=2) + "\n" if parameters else ""
 
 

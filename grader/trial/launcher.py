@@ -44,7 +44,7 @@ def _import_ahead() -> None:
 
 
 def _initialize_with(ours: list[str]) -> None:
-    """Add our arguments to those that each ROS context is initialized with."""
+    """Add our arguments to the initialization of every ROS context."""
     from rclpy.context import Context
 
     original = Context.init

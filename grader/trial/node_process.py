@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from grader.sandbox.limits import Limits
 
 READY = b"\x00ready\n"
-"""What the launcher writes to standard output before any of the student's code runs."""
+"""The output of the launcher before any of the student's code runs."""
 KEPT = 256 * 1024
 """The number of bytes that are kept of each stream."""
 PIPE = 1024 * 1024
 """The size of the node's pipes (bytes). It is large, so that the node does not wait for a reader after each line."""
 FULL = 0.25
-"""A node that had to wait for a full pipe wrote more than this share of the pipe size. The kernel may fill pages only
-by half."""
+"""A node that had to wait for a full pipe wrote more than this share of the pipe size. The kernel may fill each page
+only halfway."""
 STOP_S = 3.0
 """How long the node may take to exit after SIGINT (s). SIGTERM follows, and SIGKILL 1 s later."""
 
@@ -151,7 +151,7 @@ class NodeProcess:
     def start(self, order: dict[str, object], tree: bytes) -> None:
         """Send the order and the install tree to the launcher."""
         assert self._process.stdin is not None
-        # Not before: a launcher may wait for minutes, and watching it costs 1 % of a core.
+        # Not earlier, because a launcher may wait for minutes, and watching it costs 1 % of a core.
         self._guard = Guard(self._process.pid, self._limits, self._over)
         try:
             self._process.stdin.write(json.dumps(order).encode() + b"\n" + tree)
@@ -242,7 +242,7 @@ class NodeProcess:
         while not data.rstrip().endswith(b"}"):
             chunk = os.read(self._info, 4096)
             if not chunk:
-                raise LaunchError("bubblewrap told no pid")  # noqa: EM101
+                raise LaunchError("bubblewrap reported no pid")  # noqa: EM101
             data += chunk
         first = int(json.loads(data)["child-pid"])
         with open(f"/proc/{first}/task/{first}/children") as file:  # noqa: PTH123

@@ -1,4 +1,4 @@
-"""What a recording holds besides messages: service calls, goals of actions, pens, and the other turtles."""
+"""The contents of a recording other than messages: service calls, goals of actions, pens, and the other turtles."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Call:
     """A call of a service, with its request and response as plain data, at the time `t_s` of the trial's clock.
 
     If `by_trial` is False, a node called the simulator. Otherwise, the trial called the node. Then `response` is None
-    and `answered_s` is None as long as there is no response, and `missing` says that no node offered the service.
+    and `answered_s` is None until the response arrives, and `missing` says that no node offered the service.
     """
 
     t_s: float
@@ -33,7 +33,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Offer:
-    """A service that a node of the submission offers, without the services that every node has."""
+    """A service that a node of the submission offers, except the services that every node offers."""
 
     node: str
     service: str
@@ -44,8 +44,8 @@ class Offer:
 class Goal:
     """A goal that a node sent to an action of the simulator, which accepted it at the time `t_s` of the trial's clock.
 
-    The other times (s) are None if that did not happen: `result_asked_s` is when a client asked for the result,
-    `cancel_asked_s` is when a client asked to cancel the goal, and `ended_s` is when the goal ended with this `status`.
+    The other times (s) are None if the event did not happen: a client requested the result (`result_asked_s`), a client
+    requested cancellation (`cancel_asked_s`), the goal ended with this `status` (`ended_s`).
     """
 
     t_s: float
@@ -61,7 +61,7 @@ class Goal:
 
 @dataclass(frozen=True)
 class PenChange:
-    """The pen of a turtle from the time `t_s` on: its colour (red, green, blue), its width (px), whether it draws."""
+    """A turtle's pen from the time `t_s` on: its colour (red, green, blue), its width (px), whether it is down."""
 
     t_s: float
     turtle: str
@@ -72,7 +72,7 @@ class PenChange:
 
 @dataclass(frozen=True)
 class Track:
-    """Where a turtle other than turtle1 was: rows of t_s (s), x and y (m) and theta (rad), one per change.
+    """The track of a turtle other than turtle1: rows of t_s (s), x and y (m) and theta (rad), one per change.
 
     The first row is its first frame. `gone_s` is when it was killed (s), or None.
     """

@@ -1,4 +1,4 @@
-"""A ROS domain of one's own, for what runs without a network of its own."""
+"""A separate ROS domain for programs that do not run in a separate network."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long simulated time waits for a node. CPU time counts, so that a loaded machine makes no difference."""
+"""Time limits for a node in simulated time. CPU time counts, so the load of the machine makes no difference."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ REQUEST_EVERY_S = 0.02
 
 
 class HandshakePatience:
-    """How long a node may take until it waits for its clock.
+    """The limit for the time until a node waits for its clock.
 
     Time during which the node works or waits for the grader does not count.
     """
@@ -48,10 +48,9 @@ class HandshakePatience:
 
 
 class TickPatience:
-    """How long the node and the simulator may answer each other at one instant of simulated time.
+    """The limit for the node and the simulator to respond to each other at one instant of simulated time.
 
-    Reading the CPU time of the node costs as much as checking its threads. Most instants are over before that is
-    necessary.
+    Reading the CPU time of the node costs as much as checking its threads. Most instants end before it is necessary.
     """
 
     def __init__(self, node: Threads, now_s: float) -> None:
@@ -72,7 +71,7 @@ class TickPatience:
         return now_s > self._deadline_s or self._node.run_time_s() - self._cpu_s > TICK_CPU_S
 
     def several_worked(self) -> bool:
-        """Return whether several threads of the program shared the work, so that it was not one loop without a pause.
+        """Return whether several threads of the program shared the work, rather than one loop without a pause.
 
         The threads of rclpy's MultiThreadedExecutor do so by chance: until a thread begins a callback, the executor
         submits the same callback again and again, and each time wakes a thread.

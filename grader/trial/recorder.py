@@ -174,7 +174,7 @@ class Recorder(Node):
     def _endpoints(
         self, kind: Literal["publisher", "subscription"], topic: str, found: list[TopicEndpointInfo]
     ) -> set[Endpoint]:
-        """Return the endpoints of other nodes. Their participant shows whose they are, since a name can be faked."""
+        """Return the endpoints of other nodes. They are identified by their participant, since names can be faked."""
         own_name = self.get_fully_qualified_name()
         result = set()
         for info in found:

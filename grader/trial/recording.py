@@ -166,21 +166,20 @@ class Recording:
     """The grader's nodes. Every other node of the graph belongs to the submission."""
     interventions: tuple[str, ...] = ()
     """The services and actions of the simulator that were called, in order: "reset", "spawn", "teleport_absolute".
-
-    If there are very many calls, only the first ones are kept, and then each further name once.
-    """
+    After a maximum number of calls, each further name is kept only once."""
     interventions_dropped: int = 0
     """The number of calls that were not kept because there were too many."""
     calls: tuple[Call, ...] = ()
-    """The service calls of the node to the simulator and of the trial to the node, in order. There is a limit."""
+    """The service calls of the node to the simulator and of the trial to the node, in order. Their number is
+    limited."""
     goals: tuple[Goal, ...] = ()
-    """The goals that the node sent to the actions of the simulator, in order. There is a limit."""
+    """The goals that the node sent to the actions of the simulator, in order, up to a limit."""
     offers: tuple[Offer, ...] = ()
     """The services of the submission's nodes, if the trial calls any."""
     pens: tuple[PenChange, ...] = ()
-    """The changes of pens, in order. A turtle begins with the pen of turtlesim."""
+    """The changes of pens, in order. A new turtle has turtlesim's default pen."""
     tracks: tuple[Track, ...] = ()
-    """Where the turtles other than turtle1 were."""
+    """The tracks of the turtles other than turtle1."""
     graph_dropped: int = 0
     """The number of topics, nodes, endpoints and snapshots of the graph that were not kept because there were too
     many."""
@@ -203,7 +202,7 @@ class Recording:
     def stalled(self, t_s: float) -> bool:
         """Return whether this time was in a stall or right after one.
 
-        An arrival at this time says nothing about the node.
+        The time of such an arrival depends on the machine, not on the node.
         """
         return any(begin <= t_s <= end + AFTER_STALL_S for begin, end in self.stalls)
 

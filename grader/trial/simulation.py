@@ -44,8 +44,8 @@ counted."""
 class Simulation:
     """The ROS side of a trial. `frame` moves the turtle, and `spin` handles everything that has arrived.
 
-    An executor checks every service and every event each time, which takes longer than anything else in a frame. `hear`
-    only takes messages. It is sufficient as long as no other node `may_request` a service.
+    An executor checks every service and every event each time, which takes longer than anything else in a frame.
+    `hear` only handles messages. It is sufficient while no other node `may_request` a service.
     """
 
     held = False
@@ -155,7 +155,7 @@ class Simulation:
         return handled
 
     def may_request(self) -> bool:
-        """Return whether any node has a client for one of our services or actions, or owes us a response."""
+        """Return whether any node has a client for one of our services or actions, or has not responded to us yet."""
         if self.caller is not None and self.caller.pending:
             return True
         if not self._services:

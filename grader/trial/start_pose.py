@@ -1,4 +1,4 @@
-"""Where the turtle starts: the start pose of turtlesim, or a pose drawn from a seed."""
+"""The start pose of the turtle: that of turtlesim, or one drawn from a seed."""
 
 from __future__ import annotations
 

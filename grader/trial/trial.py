@@ -43,7 +43,7 @@ MOST_ANSWER = 256 * MIB
 
 @dataclass(frozen=True)
 class Plan:
-    """What happens in a trial: the clock, the start pose (m, m, rad), the duration (s), and so on."""
+    """The settings of a trial: the clock, the start pose (m, m, rad), the duration (s), and so on."""
 
     clock: ClockName
     start: Pose
@@ -91,7 +91,7 @@ def compile_conductor() -> None:
 
 
 class Trial:
-    """A context manager.
+    """One trial, as a context manager.
 
     Entering it starts the simulator and the launcher, so that both are ready when the build is done.
     """

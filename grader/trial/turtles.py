@@ -1,4 +1,4 @@
-"""What the turtles besides turtle1 did in a trial, and how the pens of all turtles changed."""
+"""The tracks of the turtles other than turtle1, and the changes of the pens of all turtles."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_CHANGES = 2000
 
 
 class TurtleWatch:
-    """Looks at the world after each frame."""
+    """Records the changes of turtles and pens, frame by frame."""
 
     def __init__(self) -> None:
         self._pens: dict[str, Pen] = {}

@@ -58,8 +58,7 @@ PACKAGE = re.compile(
 )
 """Imports that are packages of ROS 2: the names of interface packages, and those that nodes in Python often use.
 
-The installed packages are not asked, so that a report is the same on every machine. turtlesim_msgs is no package of
-Jazzy."""
+The list is fixed, so that a report is the same on every machine. turtlesim_msgs is not in Jazzy."""
 ROS_1 = frozenset({"rospy", "roslib", "tf", "catkin", "roscpp", "rosbag", "actionlib"})
 """Modules that exist only in ROS 1."""
 
@@ -71,13 +70,13 @@ OF_ROS_1 = {
     "Rate": "In ROS 2, a node does regular work in the callback of a timer.",
     "Timer": "In ROS 2, the method create_timer of the node creates one.",
     "sleep": "In ROS 2, a node does regular work in the callback of a timer.",
-    "get_time": "In ROS 2, the node's clock tells the time: get_clock().now().",
+    "get_time": "In ROS 2, the node's clock gives the time: get_clock().now().",
     "get_param": "In ROS 2, a node has declare_parameter and get_parameter.",
     "loginfo": "In ROS 2, the logger has the method info.",
     "logwarn": "In ROS 2, the logger has the method warning.",
     "logerr": "In ROS 2, the logger has the method error.",
 }
-"""Name in rospy -> what ROS 2 has instead."""
+"""Name in rospy -> its replacement in ROS 2."""
 
 NODE = (
     "create_publisher",

@@ -38,7 +38,11 @@ CAUSES: tuple[tuple[str, Diagnosis, str], ...] = (
         "colon-missing",
         "A line that starts with def, class, if, for, while, try or else must end with a colon.",
     ),
-    (r"was never closed", "bracket-open", "This bracket is never closed. Python often notices that only further down."),
+    (
+        r"was never closed",
+        "bracket-open",
+        "This bracket is never closed. Python often reports this only at a later line.",
+    ),
     (
         r"unmatched|does not match opening",
         "bracket-extra",
@@ -75,14 +79,14 @@ OTHER_LANGUAGES = (
     (r".*(?:\+\+|--)\s*;?\s*", "Python has no ++ and no --. Write += 1 or -= 1."),
     (r"\s*(?:def|class|if|for|while)\b.*\{\s*", "In Python, a block begins with a colon, not with a brace."),
     (r"\s*//.*", "In Python, a comment begins with #."),
-    (r".*=\s*new\s+\w+.*", "Python has no new. The name of a class with parentheses creates an object."),
+    (r".*=\s*new\s+\w+.*", "Python has no keyword new. The name of a class with parentheses creates an object."),
     (r"\s*else\s*:.*", "An else needs an if, for, while or try before it, with the same indentation."),
 )
-"""(pattern of a line that Python cannot read, cause): what other languages allow, and an else that stands alone."""
+"""(pattern of a line that Python cannot read, cause): syntax of other languages, and an else without an if."""
 NO_SPACE = re.compile(r"\s*(?P<keyword>def|class)(?P<rest>\w+\s*[(:].*)")
 """A definition whose first word has no space after it."""
 CONFLICT = r"^(<<<<<<<|=======|>>>>>>>)"
-OTHERWISE = "The mistake is often at the end of the line before: a bracket, a colon or the indentation."
+OTHERWISE = "The mistake is often at the end of the previous line: a bracket, a colon or the indentation."
 
 
 def why_unreadable(file: str, unreadable: Unreadable, data: bytes) -> Cause:

@@ -22,7 +22,7 @@ def too_soon(finding: Finding, evidence: Evidence) -> Finding:
     if evidence.recording.clock != "wall" or any(evidence.code.calls(name) for name in WAITS_FOR_SUBSCRIBER):
         return finding
     text = (
-        "Everything after that is right. The first commands were published before the simulator was connected, so "
+        "The rest of the trajectory is right. The first commands were published before the simulator was connected, so "
         "they were lost. Do not publish while get_subscription_count() returns 0."
     )
     return finding.because(Cause("too-soon", text, evidence.place("publish")))

@@ -1,4 +1,4 @@
-"""Tests that cannot fail although they look as if they could: no assert, or one that is never reached."""
+"""Tests that prove nothing: no assert, an assert that never runs, or one that always has the same result."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def without_assert(code: TestCode) -> tuple[TestFunction, ...]:
 
 
 def why_without_assert(test: TestFunction) -> Cause:
-    """Return why a test without an assert has none."""
+    """Return the reason why a test contains no assert."""
     for node in ast.walk(test.node):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Compare):
-            text = "Without the word assert before it, the result of a comparison is thrown away."
+            text = "Without assert before it, a comparison has no effect."
             return Cause("compares-only", text, Where(test.module.file, node.lineno))
         if isinstance(node, ast.Return) and isinstance(node.value, ast.Compare):
-            text = "pytest does not look at what a test returns. Write assert in place of return."
+            text = "pytest ignores the return value of a test. Write assert instead of return."
             return Cause("compares-only", text, Where(test.module.file, node.lineno))
     return Cause("no-assert", "A test without an assert passes on every node that does not crash.", test.where)
 
@@ -48,7 +48,7 @@ def always_true(code: TestCode) -> Cause | None:
     for module in code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Assert) and isinstance(node.test, ast.Tuple) and node.test.elts:
-                text = "assert (condition, message) tests a tuple, which is always true. Leave out the parentheses."
+                text = "assert (condition, message) tests a tuple, which is always true. Remove the parentheses."
                 return Cause("assert-tuple", text, Where(module.file, node.lineno))
     return None
 
@@ -60,7 +60,7 @@ def always_false(code: TestCode) -> Cause | None:
             value = node.test if isinstance(node, ast.Assert) else None
             is_false = isinstance(value, ast.Constant) and not value.value
             if is_false or _is_call_of(node, "fail"):
-                text = f"{shorten(test.node.name, 60)} fails on every node, the right one too."
+                text = f"{shorten(test.node.name, 60)} fails on every node, even on the right one."
                 return Cause("always-fails", text, Where(test.module.file, node.lineno))
     return None
 
@@ -72,7 +72,7 @@ def swallowed(code: TestCode) -> Cause | None:
             if isinstance(node, ast.Try) and any(isinstance(each, ast.Assert) for each in _below(node.body)):
                 for handler in node.handlers:
                     if _catches(handler) and not any(isinstance(each, ast.Raise) for each in ast.walk(handler)):
-                        text = "This except catches the AssertionError, so pytest never hears of the failure."
+                        text = "This except catches the AssertionError, so pytest does not notice the failure."
                         return Cause("swallows-failure", text, Where(module.file, handler.lineno))
     return None
 
@@ -85,7 +85,7 @@ def in_a_loop(code: TestCode) -> Cause | None:
         for node in loops if asserts else ():
             inside = set(map(id, ast.walk(node)))
             if not isinstance(node.iter, ast.Call | ast.List | ast.Tuple) and {id(each) for each in asserts} <= inside:
-                text = "When no message came, the list is empty, and the assert in this loop never runs."
+                text = "If no message arrives, the list is empty and the assert in this loop never runs."
                 return Cause("assert-in-loop", text, Where(test.module.file, node.lineno))
     return None
 
@@ -100,7 +100,7 @@ def _functions(modules: tuple[Module, ...]) -> list[tuple[str, ast.AST]]:
 
 
 def _asserts(node: ast.AST) -> bool:
-    """Return whether the function itself makes a test fail, by pytest's or by unittest's means."""
+    """Return whether the function itself can make a test fail, with pytest or with unittest."""
     for each in ast.walk(node):
         if isinstance(each, ast.Assert | ast.Raise):
             return True
@@ -112,7 +112,7 @@ def _asserts(node: ast.AST) -> bool:
 
 
 def _mentioned(node: ast.AST) -> set[str]:
-    """Return the names of functions that a function may call, and of the fixtures that it asks for."""
+    """Return the names of functions that a function may call, and of the fixtures that it requests."""
     names = {_last(each.func) for each in ast.walk(node) if isinstance(each, ast.Call)}
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
         names |= {argument.arg for argument in node.args.args}

@@ -30,9 +30,9 @@ OF_THE_NODE = re.compile(
     r"^(\w+) cannot be modified after node creation|property '(\w+)' of '\w+' object has no setter"
     r"|can't set attribute '(\w+)'"
 )
-"""How rclpy and Python 3.10 to 3.14 refuse to set an attribute that a node uses itself."""
+"""Messages of rclpy and of Python 3.10 to 3.14 about an attribute that nodes already use."""
 MANGLED = re.compile(r"^_[A-Za-z]\w*?__(?=[a-zA-Z])")
-"""What Python puts in front of an attribute whose name begins with two underscores."""
+"""The prefix that Python adds to an attribute whose name begins with two underscores."""
 PLAIN = {
     "str": "a string",
     "int": "an integer",
@@ -43,9 +43,9 @@ PLAIN = {
     "dict": "a dictionary",
     "set": "a set",
 }
-"""Built-in type -> what a beginner calls such a value."""
+"""Built-in type -> a phrase for a value of this type."""
 MOST_LETTERS = 2
-"""The largest number of letters by which a typing error makes a name longer or shorter."""
+"""The largest number of letters that a typing error adds or removes."""
 MODULES_READ = {"math": math, "time": time, "random": random}
 
 
@@ -54,7 +54,7 @@ def why_no_attribute(scene: CrashScene) -> Cause | None:
     taken = OF_THE_NODE.search(scene.crash.message)
     if taken is not None:
         name = next(filter(None, taken.groups()))
-        return Cause("name-of-node", f"Every node has an attribute named {name} of its own. Choose another name.")
+        return Cause("name-of-node", f"Every node already has an attribute named {name}. Choose another name.")
     match = NO_ATTRIBUTE.search(scene.crash.message)
     if match is None:
         return None
@@ -85,7 +85,7 @@ def _of_another_object(scene: CrashScene, owner: str, name: str) -> Cause | None
         text = f"A {owner} has no attribute or method with that name."
         return _misspelt(scene, name, ros_names.OTHERS[owner]) or _set_twice(scene, name, text)
     if owner in ("int", "float") and name == "self":
-        text = "Between two arguments there is a comma, not a dot."
+        text = "Separate two arguments with a comma, not with a dot."
         return Cause("comma-missing", text).fixed_by(at(scene.crash.where, ". self", ", self"))
     if owner in PLAIN:
         return Cause("attribute-missing", f"This value is {PLAIN[owner]}, and that has no {shorten(name)}.")
@@ -101,7 +101,7 @@ def _of_module(scene: CrashScene, module: str, name: str) -> Cause | None:
         ros_names.RCLPY if module == "rclpy" else dir(MODULES_READ[module]) if module in MODULES_READ else ()
     )
     return _misspelt(scene, name, known) or Cause(
-        "attribute-missing", f"The module {shorten(module)} has nothing with that name."
+        "attribute-missing", f"The module {shorten(module)} does not contain this name."
     )
 
 
@@ -185,7 +185,9 @@ def _of_none(scene: CrashScene, name: str) -> Cause | None:
         return _no_object(scene)
     known = [holder for holder in holders if holder]
     what = f"{shorten(known[0])} is None here, so it" if len(known) == 1 else "The value is None here, which"
-    return Cause("attribute-missing", f"{what} has no attribute {shorten(name)}. A function without return gives None.")
+    return Cause(
+        "attribute-missing", f"{what} has no attribute {shorten(name)}. A function without return returns None."
+    )
 
 
 def _no_object(scene: CrashScene) -> Cause:
@@ -196,7 +198,9 @@ def _no_object(scene: CrashScene) -> Cause:
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and given & set(map(dotted, node.targets)):
             for maker in scene.functions(dotted(node.value.func) or ""):
                 if not any(isinstance(each, ast.Return) and each.value for each in ast.walk(maker)):
-                    return Cause("no-object", f"{text} {maker.name} has no return, so it gives None.", scene.at(maker))
+                    return Cause(
+                        "no-object", f"{text} {maker.name} has no return, so it returns None.", scene.at(maker)
+                    )
     return Cause("no-object", text)
 
 

@@ -129,7 +129,7 @@ def _by_message(scene: CrashScene, text: str) -> Cause | None:
     if "'NoneType' object does not support the context manager" in text:
         return _with_init(scene) or _after_shutdown(scene)
     if "rclpy_resolve_name(): incompatible" in text:
-        return Cause("crash", "A topic name must be a string in quotation marks, or a variable that holds a string.")
+        return Cause("crash", "A topic name must be a string in quotation marks, or a variable with a string in it.")
     if "'Parameter'" in text:
         return Cause("parameter-itself", "get_parameter returns the parameter itself. Its content is in .value.")
     if "Expected QoSProfile or int" in text:
@@ -141,7 +141,7 @@ def _with_init(scene: CrashScene) -> Cause | None:
     """Return the cause if a with statement on the line calls rclpy.init, else None."""
     for call in scene.calls_on_line("init"):
         if dotted(call.func) == "rclpy.init":
-            text = "rclpy.init can stand in a with statement in newer distributions only. In Jazzy it returns nothing."
+            text = "Only newer distributions allow rclpy.init in a with statement. In Jazzy, it returns None."
             return Cause("crash", text, scene.at(call))
     return None
 
@@ -153,7 +153,7 @@ def _after_shutdown(scene: CrashScene) -> Cause | None:
     around = scene.function_around(ended[-1]) if ended else None
     if around is None or (around is not scene.function and around.name != "__init__"):
         return None
-    text = "ROS 2 ends with this call of shutdown, so nothing after it can spin or publish."
+    text = "This call of shutdown ends ROS 2 in the program. No later line can spin or publish."
     return Cause("crash", text, scene.at(ended[-1]))
 
 

@@ -27,7 +27,7 @@ def why_field(scene: CrashScene) -> Cause | None:
     if match is None:
         many = LIST.search(scene.crash.message)
         if many is not None:
-            text = f"The field {many['field']} is a list, also with one element: write it in square brackets."
+            text = f"The field {many['field']} is a list. Write square brackets, even for one element."
             return Cause("field-type", text)
         if "Invalid arguments passed to constructor" in scene.crash.message:
             return Cause("message-arguments", "Create the message without arguments, then set its fields one by one.")

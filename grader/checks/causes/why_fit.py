@@ -1,4 +1,4 @@
-"""Why a fitted circle is wrong: compare what was returned with what the usual mistakes return."""
+"""Why a fitted circle is wrong: compare the result with the results of common mistakes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from grader.exercise.call_inputs import Arc
 
 ROUGH_M = 0.02
-"""How far a mean or an extreme of noisy points may be from that of exact points (m), besides the tolerance."""
+"""The difference between a mean or an extreme of noisy points and that of exact points (m), besides the tolerance."""
 
 
 @dataclass(frozen=True)
@@ -51,23 +51,25 @@ class Fit:
 
 
 def why_fit(fit: Fit) -> Cause:
-    """Return the cause of a circle that is not right."""
+    """Return the cause of a wrong circle."""
     x, y, radius = fit.truth
     if fit.is_like((y, x, radius)):
         return Cause("x-y-swapped", "The two coordinates of the centre are swapped.")
     if any(fit.is_like(other) for other in permutations(fit.truth)):
-        return Cause("result-order", "The three numbers are right, in another order: centre x, centre y, radius.")
+        return Cause(
+            "result-order", "The three numbers are right, but their order is wrong. Return centre x, centre y, radius."
+        )
     if fit.is_like((0.5, 0.5)):
-        return Cause("wrong-fit", "This comes out for all points if the right side is x + y instead of x² + y².")
+        return Cause("wrong-fit", "You get this result if the right side is x + y instead of x² + y².")
     found = _why_radius(fit) if fit.centre_right else _why_centre(fit)
     return Cause(*found) if found is not None else Cause("wrong-fit", _FIRST_TRY)
 
 
 RADIUS_OF_C: tuple[Diagnosis, str] = (
     "radius-without-centre",
-    "The third unknown is c = r² - a² - b², and not yet r²: the squares of the centre are missing.",
+    "The third unknown is c = r² - a² - b², not r²: the squares of the centre are missing.",
 )
-"""What makes a wrong radius, or NaN, beside the right centre."""
+"""Mistakes that give a wrong radius, or NaN, with the right centre."""
 _FIRST_TRY = (
     "The equations are not right, or the circle is not what their solution says. Try it with four points of a circle "
     "that you know."
@@ -80,13 +82,13 @@ def _why_radius(fit: Fit) -> tuple[Diagnosis, str] | None:
     c = radius**2 - x**2 - y**2
     more = within * (1.0 + 2.0 * (radius + abs(x) + abs(y)))
     if abs(value - radius**2) <= within * (1.0 + 2.0 * radius):
-        return "radius-squared", "This is the square of the radius. The equation of the circle has r squared in it."
+        return "radius-squared", "This is the square of the radius. The equation of the circle contains r squared."
     if abs(value - 2.0 * radius) <= 2.0 * within:
         return "diameter", "This is the diameter, twice the radius."
     if abs(value - c) <= more or abs(value - math.sqrt(abs(c))) <= more:
         return RADIUS_OF_C
     if 0.0 < value - radius <= 4.0 * fit.arc.noise_m:
-        return "extremes-for-centre", "A radius from the outermost points alone has all their noise in it."
+        return "extremes-for-centre", "A radius from the outermost points alone contains all their noise."
     return None
 
 
@@ -95,13 +97,15 @@ def _why_centre(fit: Fit) -> tuple[Diagnosis, str] | None:
     angle = fit.arc.angles()
     xs, ys = x + fit.arc.radius_m * np.cos(angle), y + fit.arc.radius_m * np.sin(angle)
     if fit.is_like((2.0 * x, 2.0 * y), max(fit.within)):
-        return "centre-doubled", "The centre is twice as far as it should be: the equation has 2·x·a and 2·y·b in it."
+        return "centre-doubled", "The centre is twice as far as it should be: the equation contains 2·x·a and 2·y·b."
     if fit.is_like((-x, -y)) or fit.is_like((-2.0 * x, -2.0 * y), max(fit.within)):
-        return "centre-sign", "The centre has the wrong sign. Look on which side of the equation each term stands."
+        return "centre-sign", "The centre has the wrong sign. Check on which side of the equation each term is."
     if fit.is_like((float(xs.mean()), float(ys.mean())), ROUGH_M):
-        return "mean-for-centre", "This is the mean of the points. It is the centre only if they go all the way round."
+        return "mean-for-centre", (
+            "This is the mean of the points. It is the centre only if the points cover the whole circle."
+        )
     middle = ((xs.min() + xs.max()) / 2.0, (ys.min() + ys.max()) / 2.0)
     if fit.is_like(middle, ROUGH_M + 3.0 * fit.arc.noise_m):
-        text = "This is the middle between the extremes of the points. On an arc, the circle goes on beyond them."
+        text = "This is the midpoint between the extreme points. The circle of an arc extends beyond them."
         return "extremes-for-centre", text
     return None

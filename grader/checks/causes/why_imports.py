@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from grader.checks.causes.crash_scene import CrashScene
 
 NOT_HERE = {
-    "tkinter": "tkinter is Python's own module for windows.",
-    "_tkinter": "tkinter is Python's own module for windows.",
+    "tkinter": "tkinter is Python's module for graphical windows.",
+    "_tkinter": "tkinter is Python's module for graphical windows.",
     "example_interfaces": "example_interfaces is a package of ROS 2.",
 }
 """Modules that a correct program may import but that are not available where the grader runs it."""
@@ -73,4 +73,4 @@ def _no_name(scene: CrashScene, name: str, module: str) -> Cause:
         return Cause("import-wrong-place", f"{known} is in the module {right}.").fixed_by(fix)
     guess = nearest(name, [each for each, place in ros_names.MODULE_OF.items() if place == module])
     fix = at(scene.crash.where, name, guess) if guess else ()
-    return Cause("import-name", f"The module {shorten(module)} has {guess or 'nothing with that name'}.").fixed_by(fix)
+    return Cause("import-name", f"The module {shorten(module)} has {guess or 'no such name'}.").fixed_by(fix)

@@ -24,7 +24,7 @@ OF_A_TYPE = "_TYPE_SUPPORT"
 
 
 def why_interface(scene: CrashScene) -> Cause | None:
-    """Return the cause if the wrong level of a type or of an answer was used, else None."""
+    """Return the cause if the wrong part of a type or of a response was used, else None."""
     whole = NO_OBJECT.match(scene.crash.message)
     if whole is not None:
         part = PARTS[whole[1]]
@@ -37,12 +37,12 @@ def why_interface(scene: CrashScene) -> Cause | None:
         return None
     owner, name = match["object"] or match["type"] or "", match["name"]
     if owner == "str" and name == OF_A_TYPE:
-        return Cause("arguments-swapped", "A string stands where the type belongs. The type comes before the name.")
+        return Cause("arguments-swapped", "A string was passed instead of the type. The type comes before the name.")
     if owner == "Future":
-        text = f"This is a future. Its method result() returns the answer, and that one may have {shorten(name)}."
+        text = f"This is a future. Its method result() returns the response, which may have {shorten(name)}."
         return Cause("future-for-answer", text)
     inner = next((field for ending, field in WRAPPED.items() if owner.endswith(ending)), None)
     if inner is None or name in OF_A_RESULT:
         return None
-    text = f"rclpy puts the {inner} into a message of its own: {shorten(name)} is a field of its field {inner}."
+    text = f"rclpy puts the {inner} into another message: {shorten(name)} is a field of its field {inner}."
     return Cause("message-field", text)

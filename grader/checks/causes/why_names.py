@@ -79,12 +79,12 @@ def _of_self(scene: CrashScene, name: str) -> Cause | None:
 
 
 def _of_string(scene: CrashScene, name: str) -> Cause | None:
-    """Return the cause if the name stands where rclpy takes a string: a node name or a topic."""
+    """Return the cause if the name is used where rclpy expects a string (a node name or a topic), else None."""
     for function, place in TAKE_A_STRING.items():
         for call in scene.calls_on_line(function):
             given = call.args[place] if len(call.args) > place else None
             if isinstance(given, ast.Name) and given.id == name not in ros_names.MODULE_OF:
-                text = f"Here {function} takes a string, and a string needs quotation marks."
+                text = f"Here {function} expects a string, which needs quotation marks."
                 return Cause("name-undefined", text).fixed_by(at(scene.at(given), name, f'"{name}"'))
     return None
 
@@ -199,7 +199,7 @@ def why_unbound(scene: CrashScene) -> Cause:
     stores = list(_stores(scene, name))
     local = sorted(line for line, function in stores if function is not None and function is scene.function)
     if name in _imported(scene) and local:
-        text = f"Line {local[0]} gives {name} another value, so in this function {name} is not the module any more."
+        text = f"Line {local[0]} gives {name} another value, so in this function {name} is no longer the module."
         return Cause("local-name", text, scene.at(local[0]))
     outside = any(function is None for _, function in stores)
     if local and local[0] > scene.line and not outside:

@@ -17,7 +17,7 @@ FEEDBACK = "/_action/feedback"
 OF_A_TYPE = "_FeedbackMessage"
 SENDS = ("send_goal_async", "send_goal")
 ONE_FRAME_S = 0.04
-"""A goal that is aborted ends in the frame after its end was decided; two frames, to be sure (s)."""
+"""The time from the decision to abort a goal to its end (s): one frame, here two to be safe."""
 
 
 def why_no_goal(evidence: Evidence, action: str, type_name: str) -> Cause:
@@ -33,7 +33,9 @@ def why_no_goal(evidence: Evidence, action: str, type_name: str) -> Cause:
         or (
             Cause("goal-not-sent", "", evidence.place(*SENDS))
             if any(code.calls(name) for name in SENDS)
-            else Cause("goal-not-sent", "A client alone sends nothing. Its method send_goal_async sends a goal.", where)
+            else Cause(
+                "goal-not-sent", "Creating a client sends nothing. Its method send_goal_async sends a goal.", where
+            )
         )
     )
 
@@ -54,17 +56,18 @@ def _other_client(evidence: Evidence, action: str, type_name: str) -> Cause | No
     if name == action:
         text = f"The client has the type {shorten(type_)}. The action has the type {type_name}."
         return Cause("action-type", text, where)
-    text = f"The client is made for {shorten(name)}. The name of the action is {action}, with the name of the turtle."
+    text = f"The client uses the name {shorten(name)}. The name of the action is {action}, with the name of the turtle."
     return Cause("action-name", text, where)
 
 
 def why_aborted(evidence: Evidence, goals: list[Goal], goal: Goal) -> tuple[str, Cause]:
-    """Return what ended this goal, as a sentence, and the cause. The goal was aborted."""
+    """Return a sentence about what aborted this goal, and the cause."""
     until_s = (goal.t_s if goal.ended_s is None else goal.ended_s) + ONE_FRAME_S
     later = [each for each in goals[goals.index(goal) + 1 :] if each.t_s <= until_s]
     if later:
         text = (
-            "An action of turtlesim follows one goal: a second one aborts the first. Send the next goal in the "
+            "An action of turtlesim executes one goal at a time: a second goal aborts the first. Send the next goal "
+            "in the "
             "callback that receives the result."
         )
         cause = Cause("goal-replaced", text, evidence.place(*SENDS))

@@ -16,19 +16,17 @@ def why_no_test(code: TestCode) -> Cause:
         for module in code.modules:
             if any(isinstance(node, ast.Assert) for node in module.nodes):
                 name = module.file.rpartition("/")[2]
-                text = f"pytest looks into files named test_SOMETHING.py. It passes over {shorten(name, 60)}."
+                text = f"pytest collects tests from files named test_SOMETHING.py. It ignores {shorten(name, 60)}."
                 return Cause("test-file-name", text, Where(module.file))
-        return Cause("no-test-file", "The tests belong into a file test/test_SOMETHING.py.", Where("test"))
+        return Cause("no-test-file", "The tests belong in a file test/test_SOMETHING.py.", Where("test"))
     for module in code.files:
         for node in module.body:
             if isinstance(node, ast.ClassDef) and node.name.startswith("Test") and has_init(node):
-                text = "pytest leaves out a class of tests with an __init__. Use a fixture, or setup_method."
+                text = "pytest ignores a test class that has an __init__. Use a fixture, or setup_method."
                 return Cause("test-class-init", text, Where(module.file, node.lineno))
         misnamed = _misnamed(module.nodes)
         if misnamed is not None:
-            text = (
-                f"The names of tests begin with test. {shorten(misnamed.name, 60)} does not, so pytest passes over it."
-            )
+            text = f"The names of tests begin with test. {shorten(misnamed.name, 60)} does not, so pytest ignores it."
             return Cause("test-function-name", text, Where(module.file, misnamed.lineno))
     return Cause("no-test-function", "A test is a function whose name begins with test_.", Where(code.files[0].file))
 

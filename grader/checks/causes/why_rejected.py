@@ -43,16 +43,19 @@ def why_rejected(run: NodeRun, code: TestCode) -> Cause:
         return Cause("test-hangs", text, where or (code.tests[0].where if code.tests else None))
     fixture = FIXTURE.search(run.message)
     if fixture is not None:
-        text = f"No fixture is named {shorten(fixture['name'], 60)}. Is @pytest.fixture there, with the same name?"
+        text = (
+            f"No fixture is named {shorten(fixture['name'], 60)}. Does a function with this name have the "
+            "decorator @pytest.fixture?"
+        )
         return Cause("fixture-missing", text, where)
     if TWICE.search(run.message):
-        text = "The test before has not called rclpy.shutdown. In a fixture, it stands after the yield."
+        text = "The previous test did not call rclpy.shutdown. In a fixture, the call belongs after the yield."
         return Cause("not-shut-down", text, where)
     if NOT_YET.search(run.message):
-        text = "rclpy.init comes first, before any node is created. In a fixture, it stands before the yield."
+        text = "Call rclpy.init before you create a node. In a fixture, the call belongs before the yield."
         return Cause("no-init", text, where)
     if OUTSIDE.search(run.message):
-        text = "A test must run where there is no screen and no network, too."
+        text = "A test must also run without a display and without a network."
         return Cause("needs-the-outside", text, where)
     if run.outcome == "import":
         return Cause("test-import", shorten(last_error(run.message), 150), where)

@@ -121,7 +121,7 @@ def returns_before(evidence: Evidence, call: str) -> Cause | None:
 
 
 def hidden_error(evidence: Evidence, call: str) -> Cause | None:
-    """Return the cause if `call` is in a try whose except catches every error and says nothing, else None."""
+    """Return the cause if `call` is in a try statement whose except clause hides every error, else None."""
     for module in evidence.code.modules:
         for node in module.nodes:
             if isinstance(node, ast.Try) and any(_calls(each, call) for each in node.body):
@@ -146,7 +146,7 @@ def _only_waits(loop: ast.While) -> bool:
 
 
 WAITS = ("spin_until_future_complete", "send_goal", "cancel_goal", "get_result")
-"""Methods that wait for a response. The three of actions have a twin that ends in _async."""
+"""Methods that wait for a response. Those of actions also exist with the ending _async."""
 
 
 def waits_inside(node: ast.AST) -> bool:

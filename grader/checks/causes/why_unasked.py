@@ -20,7 +20,7 @@ CALLBACKS = ("create_timer", "create_subscription", "create_service", "add_done_
 
 
 def why_unasked(evidence: Evidence, service: str) -> Cause:
-    """Return the most likely cause of a call that does not arrive at this service of the simulator."""
+    """Return the most likely cause if no call arrives at this service of the simulator."""
     return (
         waits_in_callback(evidence)
         or _wrong_name(evidence, service)
@@ -53,7 +53,7 @@ def waits_in_callback(evidence: Evidence) -> Cause | None:
 
 
 def _wrong_name(evidence: Evidence, wanted: str) -> Cause | None:
-    """Return the cause if a client is made for a service that the simulator does not have. Otherwise return None."""
+    """Return the cause if a client uses the name of a service that the simulator does not have, else None."""
     clients = evidence.code.calls("create_client")
     names = {call: evaluate(call.argument(1, "srv_name"), call.module.names) for call in clients}
     if any(isinstance(name, str) and f"/{name.strip('/')}" == wanted for name in names.values()):
@@ -61,7 +61,7 @@ def _wrong_name(evidence: Evidence, wanted: str) -> Cause | None:
     for call, name in names.items():
         if not isinstance(name, str) or f"/{name.strip('/')}" in ros_names.SERVICES:
             continue
-        text = f"The client is made for {shorten(name)}. The name of the service is {wanted}."
+        text = f"The client uses the name {shorten(name)}. The name of the service is {wanted}."
         near = nearest(f"/{name.strip('/')}", [wanted]) or wanted.endswith(name.rpartition("/")[2])
         if near:
             return Cause("service-name", text, call.where)
@@ -70,8 +70,10 @@ def _wrong_name(evidence: Evidence, wanted: str) -> Cause | None:
 
 def _never_called(evidence: Evidence) -> Cause:
     if not evidence.code.calls("create_client"):
-        return Cause("service-not-called", "The node has no client for it: see create_client.", evidence.code.start)
+        return Cause(
+            "service-not-called", "The node has no client for this service. See create_client.", evidence.code.start
+        )
     if not evidence.code.calls("call_async") and not evidence.code.calls("call"):
-        text = "A client alone sends nothing. Its method call_async sends a request."
+        text = "Creating a client sends nothing. Its method call_async sends a request."
         return Cause("service-not-called", text, evidence.place("create_client"))
     return Cause("service-not-called", "", evidence.place("call_async", "call"))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def why_topic(wanted: str, topic: str, evidence: Evidence) -> Cause:
-    """Return the cause of a wrong topic name, as far as the two names and the source show it."""
+    """Return the cause of a wrong topic name, if the two names and the source show it."""
     last = wanted.rpartition("/")[2]
     if topic == f"/{last}":
         return Cause(
@@ -44,7 +44,7 @@ def _is_absolute(evidence: Evidence, topic: str) -> bool:
 
 
 def right_name(evidence: Evidence, maker: str, topic: str, wanted: str) -> tuple[Edit, ...]:
-    """Return the edit that puts the right name in the place of a topic's, where the source has it as a string."""
+    """Return the edit that replaces a topic name with the right one, if the source contains it as a string."""
     for call in evidence.code.calls(maker):
         node = written(call.argument(1, "topic"), call.module.names)
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and topic.endswith(node.value.strip("/")):

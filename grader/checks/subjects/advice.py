@@ -1,4 +1,4 @@
-"""Advice: what would make the code better. It costs no points."""
+"""Advice: suggestions that make the code better. They cost no points."""
 
 from __future__ import annotations
 

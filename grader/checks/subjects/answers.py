@@ -59,7 +59,7 @@ class OneOf:
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     accepts: tuple[str, ...] = strings(about="The right answers. Upper and lower case and spaces do not matter.")
-    cause: str = string("a reason", default=" ", about="What the student reads as the reason when the answer is wrong.")
+    cause: str = string("a reason", default=" ", about="The reason that the student reads if the answer is wrong.")
 
 
 def answer_text(evidence: Evidence, params: OneOf) -> Finding:
@@ -78,7 +78,7 @@ class AllOf:
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
     items: tuple[str, ...] = strings(about="All items of the right answer, in any order.")
-    cause: str = string("a reason", default=" ", about="What the student reads as the reason when the answer is wrong.")
+    cause: str = string("a reason", default=" ", about="The reason that the student reads if the answer is wrong.")
 
 
 def answer_list(evidence: Evidence, params: AllOf) -> Finding:
@@ -91,12 +91,12 @@ def answer_list(evidence: Evidence, params: AllOf) -> Finding:
 class GraphQuestion:
     """A question about the ROS graph: the topics, types or nodes of the endpoints that match all these parameters.
 
-    With `connected_to`, only topics count on which that node has the opposite endpoint.
+    With `connected_to`, only topics on which that node has the opposite endpoint count.
     """
 
     answer: str = string(KEY, about="The name of the answer in answers.toml.")
-    find: str = choice("topic", "type", "node", about="What is asked about each endpoint.")
-    among: str = choice("publisher", "subscription", "all", about="Which endpoints count.")
+    find: str = choice("topic", "type", "node", about="The property of each endpoint that the question is about.")
+    among: str = choice("publisher", "subscription", "all", about="The kind of endpoint that counts.")
     node: str = string("a node's full name", start="/", default="", about="Only endpoints of this node count.")
     type_starts: str = string(
         "the beginning of a type name", default="", about="Only types that start with this string count."
@@ -173,7 +173,7 @@ class AnswerRate:
     type_ends: str = string(
         "the end of a type name", about="The messages whose type ends with this string are measured."
     )
-    tolerance_percent: float = number(5.0, above=0, at_most=100, about="How far the answer may be off.")
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the answer.")
 
 
 def answer_rate(evidence: Evidence, params: AnswerRate) -> Finding:
@@ -232,7 +232,7 @@ def _compare(evidence: Evidence, name: str, given: Answer, truth: Collection[str
 
 def _wrong(evidence: Evidence, name: str, given: Answer, why: Cause) -> Finding:
     where = Where(FILE, evidence.answers.lines.get(name) if evidence.answers is not None else None)
-    return failed(f"{name} is {_shown(given)}.", "What ROS 2 reports.", why.at(where))
+    return failed(f"{name} is {_shown(given)}.", "The value that ROS 2 reports.", why.at(where))
 
 
 def _plain(answer: str) -> str:

@@ -31,26 +31,26 @@ SHORT_M = 0.05
 """A shorter piece than this is not an arc."""
 FEW = 5
 MOST_ROOM_M = 2.5
-"""The radius of a circle for which there is surely room on either side of a random start (m)."""
+"""The radius of a circle that surely fits on either side of a random start (m)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Arc:
-    """An arc of a circle. If `red` is not negative, only what was drawn with this colour counts."""
+    """An arc of a circle. If `red` is not negative, only the parts that were drawn in this colour count."""
 
     radius_m: float = number(above=0, at_most=5.5, about="The radius.")
-    radius_tolerance_m: float = number(0.06, above=0, about="How far the radius may be off.")
+    radius_tolerance_m: float = number(0.06, above=0, about="The maximum error of the radius.")
     residual_m: float = number(0.03, above=0, about="How far the piece may deviate from the fitted circle (RMS).")
     direction: str = choice("counter-clockwise", "clockwise", about="The direction of the turn.")
     angle_deg: float = number(0.0, at_least=0, about="The angle of the arc; any angle if 0.")
-    angle_tolerance_deg: float = number(12.0, above=0, about="How far the angle may be off.")
+    angle_tolerance_deg: float = number(12.0, above=0, about="The maximum error of the angle.")
     speed_m_s: float = number(0.0, at_least=0, about="The speed; any speed if 0.")
-    speed_tolerance_m_s: float = number(0.05, above=0, about="How far the speed may be off.")
+    speed_tolerance_m_s: float = number(0.05, above=0, about="The maximum error of the speed.")
     from_s: float = number(0.0, at_least=0, about="Only the movement after this time counts.")
     until_s: float = number(600.0, above=0, about="Only the movement before this time counts.")
     red: float = number(-1.0, at_least=-1, at_most=255, about="The colour of the pen; any colour if it is left out.")
-    green: float = number(-1.0, at_least=-1, at_most=255, about="Its green part.")
-    blue: float = number(-1.0, at_least=-1, at_most=255, about="Its blue part.")
+    green: float = number(-1.0, at_least=-1, at_most=255, about="The green component of the colour.")
+    blue: float = number(-1.0, at_least=-1, at_most=255, about="The blue component of the colour.")
 
     @property
     def color(self) -> tuple[int, int, int] | None:
@@ -88,7 +88,7 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
     round_, size = Band.at_most(params.residual_m), Band.around(params.radius_m, params.radius_tolerance_m)
     if not round_.holds(fitted.rms):
         off = f"it deviates by {max(fitted.rms, 0.01):.2f} m (RMS) from the best circle"
-        text = "The command changes while this piece is driven, or it is driven with two pens."
+        text = "The command or the pen changes during this piece."
         cause = Cause("not-round", text, where)
         return failed(f"This piece is not one arc: {off}.", expected, cause, near_edge=round_.near(fitted.rms))
     near = round_.near(fitted.rms) or size.near(fitted.radius)
@@ -117,14 +117,14 @@ def _measured(evidence: Evidence, params: Arc, chosen: Steps, expected: str) -> 
 
 
 def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -> tuple[str, Cause]:
-    """Return what was seen of an arc with another angle (degrees), and its cause."""
+    """Return the observation and the cause for an arc with the wrong angle (degrees)."""
     too_long = angle > params.angle_deg
     if too_long and np.flatnonzero(chosen)[-1] == len(chosen) - 1:
         observed = f"This arc has an angle of {angle:.0f} degrees, and the turtle was still driving it at the end."
         text = "The state does not change after the last call of this arc. From which value does the counter count?"
         return observed, Cause("drives-on", text, evidence.place("publish"))
     if not too_long and params.color is not None and _goes_on(evidence, chosen):
-        text = "The pen must have this colour before the turtle moves: drive when the response has arrived."
+        text = "The pen must have this colour before the turtle moves: wait for the response before you drive."
         cause = Cause("not-in-colour", text, evidence.place("publish"))
         return "A part of this arc was drawn in another colour.", cause
     where = evidence.code.assigned("angular", "z") or evidence.place("Twist", "publish")
@@ -133,7 +133,7 @@ def _other_angle(evidence: Evidence, params: Arc, chosen: Steps, angle: float) -
 
 
 def _not_followed(evidence: Evidence, params: Arc) -> Cause | None:
-    """Return the cause if the node accepted a parameter before, and its commands stayed the same. Otherwise None."""
+    """Return the cause if the node accepted a new parameter value but did not change its commands, else None."""
     accepted = [call.t_s for call in set_calls(evidence) if call.t_s < params.from_s and was_accepted(call)]
     if not accepted:
         return None
@@ -166,13 +166,13 @@ def _chosen(evidence: Evidence, params: Arc) -> Steps:
 
 
 def _pieces(evidence: Evidence, chosen: Steps) -> int:
-    """Return how many pieces of the trajectory these are. The turtle moves between two pieces, too."""
+    """Return the number of separate pieces of the trajectory. The turtle also moves between two pieces."""
     moves = evidence.trajectory.steps > RESTS_M
     return int((np.diff(np.flatnonzero(chosen[moves])) > 1).sum()) + 1
 
 
 def _goes_on(evidence: Evidence, chosen: Steps) -> bool:
-    """Return whether the turtle drove this arc in the frame before this piece too, or in the one after it."""
+    """Return whether the turtle also drove this arc in the frame before or after this piece."""
     trajectory, ends = evidence.trajectory, np.flatnonzero(chosen)
     side = np.sign(np.median(trajectory.turn[chosen]))
     same = (trajectory.steps > RESTS_M) & (np.sign(trajectory.turn) == side)
@@ -186,7 +186,7 @@ def _nothing(evidence: Evidence, params: Arc, expected: str) -> Finding:
     if crash is not None:
         return crash_finding(evidence, crash, end_observed(evidence), expected)
     if params.color is not None and evidence.trajectory.length_m > SHORT_M:
-        text = "The pen must have this colour before the turtle moves: drive when the response has arrived."
+        text = "The pen must have this colour before the turtle moves: wait for the response before you drive."
         color = ", ".join(map(str, params.color))
         return failed(f"Nothing was drawn in the colour {color}.", expected, Cause("not-in-colour", text, where))
     cause = waits_in_callback(evidence) or Cause("not-moving", where=where)

@@ -39,14 +39,14 @@ class BagAnswer:
         "duration",
         "rate",
         "radius",
-        about="What is asked: the number of messages of the topic, the time from the first to the last one (s), their "
+        about="The quantity: the number of messages of the topic, the time from the first to the last one (s), their "
         "rate (Hz), or the radius of their circle (m).",
     )
-    tolerance_percent: float = number(2.0, at_least=0, at_most=100, about="How far the answer may be off.")
+    tolerance_percent: float = number(2.0, at_least=0, at_most=100, about="The maximum error of the answer.")
 
 
 def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:
-    """The answer is what the bag holds, with its unit."""
+    """The answer matches the bag, and has the right unit."""
     found = evidence.answers
     where = Where(FILE, found.lines.get(params.answer) if found is not None else None)
     given = found.given.get(params.answer) if found is not None else None
@@ -63,7 +63,7 @@ def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:
     observed = f"{params.answer} is {shorten(match[0])}."
     if has != unit:
         if not has:
-            cause = "A number without its unit could be anything."
+            cause = "A number needs its unit."
             return failed(observed, expected, Cause("unit-missing", cause, where))
         return failed(observed, expected, Cause("wrong-unit", f"The unit is {unit or 'none: it is a count'}.", where))
     truth = _truth(evidence, params)
@@ -73,8 +73,8 @@ def bag_answer(evidence: Evidence, params: BagAnswer) -> Finding:
     total = sum(evidence.bag(params.bag).counts.values())
     if params.quantity == "messages" and value == total:
         counts = Cause("all-messages", "Only the messages of the topic with the poses count.", where)
-        return failed(observed, "What your bag holds.", counts)
-    return failed(observed, "What your bag holds.", _why(params.quantity, value, band).at(where))
+        return failed(observed, "The value in your bag.", counts)
+    return failed(observed, "The value in your bag.", _why(params.quantity, value, band).at(where))
 
 
 def _truth(evidence: Evidence, params: BagAnswer) -> float:
@@ -98,7 +98,9 @@ def _why(quantity: str, value: float, band: Band) -> Cause:
         return Cause("period-for-rate", cause)
     if quantity == "radius" and band.holds(value / 2.0):
         return Cause("diameter", "This is the diameter, twice the radius.")
-    return Cause("wrong-answer", "`ros2 bag info` and your own program show it. Is the answer about an earlier bag?")
+    return Cause(
+        "wrong-answer", "`ros2 bag info` and your own program show the value. Is the answer about an earlier bag?"
+    )
 
 
 ANSWER = Kind(
@@ -107,5 +109,5 @@ ANSWER = Kind(
     "The answer matches the bag",
     BagAnswer,
     bag_answer,
-    about="An answer in `answers.toml` is what the student's bag holds, a number with its unit.",
+    about="An answer in `answers.toml` matches the student's bag: a number with its unit.",
 )

@@ -37,7 +37,7 @@ class LogFeedback:
 
     format: str = string("a log line with remaining in it", about="The format of a line with the number `remaining`.")
     period_s: float = number(0.5, above=0, about="The time from one line to the next.")
-    tolerance_rad: float = number(0.05, above=0, about="How far the angle may be off.")
+    tolerance_rad: float = number(0.05, above=0, about="The maximum error of the angle.")
     lag_s: float = number(0.15, above=0, about="How old the angle in a line may be.")
 
 

@@ -54,7 +54,7 @@ def _shown(numbers: OwnNumbers) -> str:
 class OwnCircle:
     """Like the kind `circle`, but radius and direction are the student's own."""
 
-    radius_tolerance_m: float = number(0.05, above=0, about="How far the radius may be off.")
+    radius_tolerance_m: float = number(0.05, above=0, about="The maximum error of the radius.")
     centre_tolerance_m: float = number(0.05, above=0, about="How far the centre may be off.")
     residual_m: float = number(
         0.02, above=0, about="How far the trajectory may deviate from the fitted circle (root mean square)."

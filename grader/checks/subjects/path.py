@@ -55,7 +55,7 @@ class CircleParams:
         at_most=5.5,
         about="The radius. The centre lies this far to the left of the start (clockwise: to the right).",
     )
-    radius_tolerance_m: float = number(0.05, above=0, about="How far the radius may be off.")
+    radius_tolerance_m: float = number(0.05, above=0, about="The maximum error of the radius.")
     centre_tolerance_m: float = number(0.05, above=0, about="How far the centre may be off.")
     residual_m: float = number(
         0.02, above=0, about="How far the trajectory may deviate from the fitted circle (root mean square)."

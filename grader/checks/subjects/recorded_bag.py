@@ -96,7 +96,7 @@ class CircleInBag(InBag):
 
     topic: str = string("a topic", start="/", default="/turtle1/pose", about="The topic with the poses.")
     radius_m: float = number(above=0, about="The radius of the circle.")
-    tolerance_percent: float = number(5.0, above=0, at_most=100, about="How far the radius may be off.")
+    tolerance_percent: float = number(5.0, above=0, at_most=100, about="The maximum error of the radius.")
     turns: float = number(1.0, above=0, about="How many turns the bag must show at least.")
 
 

@@ -181,7 +181,7 @@ def test_a_folder_without_permission_is_reported(tmp_path: Path) -> None:
     )
     (tmp_path / "odd").chmod(0o755)
     assert "odd True" in done.stdout, done.stderr
-    assert "permissions forbid it" in done.stdout
+    assert "because of its permissions" in done.stdout
 
 
 def breaks(error: Exception) -> Callable[..., object]:

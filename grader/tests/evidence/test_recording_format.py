@@ -53,5 +53,5 @@ def test_a_recording_of_an_older_grader_is_refused(tmp_path: Path) -> None:
     recording_format.save(tmp_path / "kept", some_trials(), "none", ())
     file = tmp_path / "kept" / "submission.json"
     file.write_text(json.dumps({**json.loads(file.read_text()), "schema": 1}))
-    with pytest.raises(UsageError, match=r"submission\.json is not of schema 2"):
+    with pytest.raises(UsageError, match=r"submission\.json does not have schema 2"):
         recording_format.load(tmp_path / "kept", lambda _: CHALLENGES)

@@ -97,7 +97,7 @@ def test_a_check_judges_the_first_trial_unless_it_names_another(tmp_path: Path) 
 
 def test_an_exercise_without_trials_is_a_mistake(tmp_path: Path) -> None:
     reported = problems(tmp_path, GOOD[: GOOD.index("[[trial]]")] + GOOD[GOOD.index("[[check]]") :])
-    assert reported == ["there is no [[trial]], so nothing would be run."]
+    assert reported == ["there is no [[trial]], so nothing would run."]
 
 
 def test_an_exercise_of_answers_alone_has_trials_without_a_node(tmp_path: Path) -> None:
@@ -116,12 +116,15 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
     ("old", "new", "expected"),
     [
         ("schema = 2", "schema = 3", '"schema" is 3; it must be 2, the version of this format.'),
-        ("schema = 2", "schema = 1", "schema 1 is no longer read: move `executable` and `node` out of [exercise]"),
+        ("schema = 2", "schema = 1", "schema 1 is no longer supported: move `executable` and `node` out of [exercise]"),
         ("schema = 2", "", 'the key "schema" is missing; it must be 2, the version of this format.'),
         (
             'id = "99-test"',
             'id = "99 Test"',
-            '[exercise]: "id" is "99 Test"; it must be small letters, digits and single dashes, as in 03-circle-publisher.',  # noqa: E501
+            (
+                '[exercise]: "id" is "99 Test"; it must be small letters, digits and single dashes, as in '
+                "03-circle-publisher."
+            ),
         ),
         ('title = "A test"\n', "", '[exercise]: the key "title" is missing; it must be a string.'),
         (
@@ -153,7 +156,7 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
         (
             'id = "stand"',
             'id = "drive"',
-            '[[trial]] 1 (drive): the id "drive" is used twice; each trial needs one of its own.',
+            '[[trial]] 1 (drive): the id "drive" is used twice; each trial needs its own id.',
         ),
         ('node = "other"', "", '[[trial]] 2 (stand): the key "node" is missing; it must be letters, digits and _'),
         (
@@ -176,7 +179,10 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
         (
             "rate_hz = 2",
             "",
-            '[[check]] 1 (rate): the key "rate_hz" is missing; the kind "rate" needs it: a number above 0 and at most 1000.',  # noqa: E501
+            (
+                '[[check]] 1 (rate): the key "rate_hz" is missing; the kind "rate" needs it: a number above 0 and at '
+                "most 1000."
+            ),
         ),
         (
             "rate_hz = 2",
@@ -186,18 +192,21 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
         (
             'needs = ["rate"]',
             'needs = ["rat"]',
-            '[[check]] 2 (values): "needs" names "rat", which is no check. Did you mean "rate"? Allowed: rate, values.',
+            (
+                '[[check]] 2 (values): "needs" names "rat", which is not a check. Did you mean "rate"? Allowed: rate, '
+                "values."
+            ),
         ),
         (
             'needs = ["rate"]',
             'needs = "rate"',
             '[[check]] 2 (values): "needs" is "rate"; it must be a list of strings.',
         ),
-        ('needs = ["rate"]', 'needs = ["values"]', '"needs" goes in a circle: values -> values. Take one of them out.'),
+        ('needs = ["rate"]', 'needs = ["values"]', '"needs" has a cycle: values -> values. Remove one of them.'),
         (
             'id = "values"',
             'id = "rate"',
-            '[[check]] 1 (rate): the id "rate" is used 2 times; each check needs one of its own.',
+            '[[check]] 1 (rate): the id "rate" is used 2 times; each check needs its own id.',
         ),
         ("hidden = true", 'hidden = "yes"', '[[check]] 2 (values): "hidden" is "yes"; it must be true or false.'),
         ('text = "Think."', 'text = " "', '[[hint]] 1: "text" is " "; it must be a string.'),
@@ -214,9 +223,9 @@ def test_parameters_that_were_left_out_have_their_kinds_defaults(tmp_path: Path)
         (
             'text = "Think."',
             'text = "Think."\nchecks = ["rat"]',
-            '[[hint]] 1: "checks" names "rat", which is no check. Did you mean "rate"? Allowed: rate, values.',
+            '[[hint]] 1: "checks" names "rat", which is not a check. Did you mean "rate"? Allowed: rate, values.',
         ),
-        ("[[hint]]", "[hint]", '"hint" is a table; it must be tables [[hint]].'),
+        ("[[hint]]", "[hint]", '"hint" is a table; it must be an array of tables, [[hint]].'),
     ],
 )
 def test_each_mistake_of_an_author_is_named(tmp_path: Path, old: str, new: str, expected: str) -> None:
@@ -227,7 +236,7 @@ def test_each_mistake_of_an_author_is_named(tmp_path: Path, old: str, new: str, 
 
 def test_a_circle_of_needs_is_shown(tmp_path: Path) -> None:
     reported = problems(tmp_path, GOOD.replace('kind = "rate"', 'kind = "rate"\nneeds = ["values"]'))
-    assert reported == ['"needs" goes in a circle: rate -> values -> rate. Take one of them out.']
+    assert reported == ['"needs" has a cycle: rate -> values -> rate. Remove one of them.']
 
 
 def test_all_mistakes_are_reported_at_once(tmp_path: Path) -> None:
@@ -252,7 +261,7 @@ def test_an_exercise_without_checks_is_a_mistake(tmp_path: Path) -> None:
 @pytest.mark.parametrize("data", [b"schema = ", b"\xff\xfe", b'schema = 2\n[exercise]\nid = "a"\nid = "b"'])
 def test_what_is_not_toml_is_reported(tmp_path: Path, data: bytes) -> None:
     (reported,) = problems(tmp_path, data)
-    assert reported.startswith("not TOML: ")
+    assert reported.startswith("invalid TOML: ")
 
 
 def test_a_file_that_is_not_there_is_reported(tmp_path: Path) -> None:

@@ -78,10 +78,10 @@ def test_a_text_without_markers_stays_as_it_is() -> None:
         ("# BEGIN SOLUTION\n# END SOLUTION\na\n# BEGIN STARTER\n", 4, "right below an END SOLUTION"),
         ("# BEGIN SOLUTION\n# END SOLUTION\n# BEGIN STARTER\na\n", 4, "begins with '#'"),
         ("# BEGIN SOLUTION\n# END SOLUTION\n# BEGIN STARTER\na # b\n", 4, "begins with '#'"),
-        ("a\n# Begin Solution\n", 2, "reads like one"),
-        ("a = 1  # BEGIN SOLUTION\n", 1, "reads like one"),
-        ("# BEGIN SOLUTION:\n", 1, "reads like one"),
-        ("<!-- BEGIN SOLUTION -->\n", 1, "reads like one"),
+        ("a\n# Begin Solution\n", 2, "looks like a marker"),
+        ("a = 1  # BEGIN SOLUTION\n", 1, "looks like a marker"),
+        ("# BEGIN SOLUTION:\n", 1, "looks like a marker"),
+        ("<!-- BEGIN SOLUTION -->\n", 1, "looks like a marker"),
     ],
 )
 def test_markers_amiss_are_named_with_their_line(text: str, line: int, what: str) -> None:

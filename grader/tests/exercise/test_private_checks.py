@@ -82,12 +82,12 @@ def test_both_files_are_part_of_the_digest() -> None:
     ("private", "said"),
     [
         ("schema = 3", "schema is 3"),
-        ("schema = 1\n[scenario]\nduration_s = 9", "schema 1 is no longer read: move"),
+        ("schema = 1\n[scenario]\nduration_s = 9", "schema 1 is no longer supported: move"),
         ("schema = 2\n[exercise]\nid = 'x'", 'unknown key "exercise"'),
         ("schema = 2\n[[check]]\nid = 'x'\nkind = 'circel'\npoints = 1", 'Did you mean "circle"'),
         ("schema = 2\n[[check]]\nid = 'rate'\nrate_hz = 'fast'", '"rate_hz" is "fast"'),
-        ("schema = 2\ncheck = 3", "must be tables"),
-        ("schema = ", "not TOML"),
+        ("schema = 2\ncheck = 3", "must be an array of tables"),
+        ("schema = ", "invalid TOML"),
     ],
 )
 def test_a_mistake_is_reported_with_the_file(private: str, said: str) -> None:

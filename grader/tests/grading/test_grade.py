@@ -78,10 +78,10 @@ def test_a_recording_never_overwrites(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("damage", "said"),
     [
-        ("trials/circle/trial.json", "cannot be read as a recording"),
-        ("submission.json", "cannot be read as a recording"),
+        ("trials/circle/trial.json", "is not a recording from"),
+        ("submission.json", "is not a recording from"),
         ("exercise/exercise.toml", "exercise.toml"),
-        ("trials/circle/bag/bag.mcap", "cannot be read as a recording"),
+        ("trials/circle/bag/bag.mcap", "is not a recording from"),
     ],
 )
 def test_a_damaged_recording_is_a_sentence(tmp_path: Path, recorded: Path, damage: str, said: str) -> None:

@@ -107,7 +107,9 @@ def ends(*_: object) -> NoReturn:
     os.abort()
 
 
-@pytest.mark.parametrize(("how", "why"), [(spins, "too large to be read"), (ends, "reading it ended with SIG")])
+@pytest.mark.parametrize(
+    ("how", "why"), [(spins, "too large to be read"), (ends, "the reading process was stopped by SIG")]
+)
 @pytest.mark.parametrize("when", ["early", "after the build"])
 def test_what_takes_its_reader_along_fails_every_check_and_nothing_more_is_read(
     monkeypatch: pytest.MonkeyPatch, when: str, how: Callable[..., NoReturn], why: str

@@ -1,4 +1,4 @@
-"""A bag that is handed in is read, whatever is in it, and never trusted."""
+"""Bags that students hand in: damaged and hostile ones are read without harm."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def with_data(data: bytes) -> BagFolder:
 
 
 def written(messages: int, size: int, chunk: int = 1024 * 1024) -> bytes:
-    """A file with messages of zeros, which compress well."""
+    """Return a file with messages of zeros, which compress well."""
     stream = BytesIO()
     writer = Writer(stream, chunk_size=chunk, compression=CompressionType.ZSTD)
     writer.start()

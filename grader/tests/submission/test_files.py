@@ -36,10 +36,10 @@ def test_what_tools_leave_behind_is_no_file_of_the_package(package: Path, folder
     [
         ("../../secret.txt", "outside the package"),
         ("pkg/../../secret.txt", "outside the package"),
-        ("/etc/passwd", "one machine only"),
-        ("gone.txt", "no file of the package"),
-        ("pkg", "no file of the package"),
-        ("itself", "no file of the package"),
+        ("/etc/passwd", "only on one machine"),
+        ("gone.txt", "not a file of the package"),
+        ("pkg", "not a file of the package"),
+        ("itself", "not a file of the package"),
     ],
 )
 def test_a_link_that_leads_nowhere_good_is_rejected(package: Path, target: str, why: str) -> None:
@@ -125,12 +125,12 @@ def test_an_unreadable_file_is_rejected(package: Path) -> None:
     (package / "pkg").chmod(0)
     rejected = rejected_as_nobody(package) if os.geteuid() == 0 else "|".join(open_submission(package).rejected)
     (package / "pkg").chmod(0o755)
-    forbidden = "may not be read (its permissions forbid it)."
+    forbidden = "cannot be read because of its permissions."
     assert rejected == f"pkg {forbidden}|setup.py {forbidden}"
 
 
 def rejected_as_nobody(package: Path) -> str:
-    """root can read everything. So another user looks at it, from inside, since the folders above may be closed."""
+    """Read the package as an ordinary user, since root may read everything. Return `rejected`."""
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
@@ -195,12 +195,12 @@ def test_contents_are_bytes_and_kept_as_they_are(package: Path) -> None:
 @pytest.mark.parametrize(
     ("limit", "value", "why"),
     [
-        ("MAX_FILE_BYTES", 9, "more than the 9 that a file may have"),
-        ("MAX_TOTAL_BYTES", 12, "beyond the 12 bytes"),
-        ("MAX_FILES", 3, "beyond the 3 files"),
+        ("MAX_FILE_BYTES", 9, "a file may have at most 9"),
+        ("MAX_TOTAL_BYTES", 12, "beyond the limit of 12 bytes"),
+        ("MAX_FILES", 3, "beyond the limit of 3 files"),
         ("MAX_PATH_BYTES", 14, "more than 14 bytes"),
         ("MAX_DEPTH", 0, "more than 0 folders deep"),
-        ("MAX_ENTRIES", 4, "more than the 4 entries"),
+        ("MAX_ENTRIES", 4, "more than 4 entries"),
     ],
 )
 def test_limits_leave_out_and_say_so(

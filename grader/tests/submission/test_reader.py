@@ -107,7 +107,7 @@ def test_what_takes_too_much_is_too_large(function: object, monkeypatch: pytest.
 
 
 def children() -> set[str]:
-    """The child processes of this one, also those that have exited and that nobody has waited for."""
+    """Return the child processes of this process, including those that have exited without being waited for."""
     return {pid for task in Path("/proc/self/task").iterdir() for pid in (task / "children").read_text().split()}
 
 
@@ -146,7 +146,7 @@ def test_threads_read_at_the_same_time() -> None:
 
 @pytest.mark.parametrize("value", [os.system, Path.unlink, threading.Thread, lambda: 1])
 def test_nothing_but_plain_data_is_taken(value: object) -> None:
-    with pytest.raises(MachineError, match=r"handed over|cannot be taken"):
+    with pytest.raises(MachineError, match=r"cannot be sent|is invalid"):
         read(lambda: value)
 
 

@@ -91,14 +91,14 @@ def test_an_archive_is_to_be_unpacked(tmp_path: Path) -> None:
 
 def test_a_link_to_nowhere_is_named(tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to("gone")
-    assert "link to a place that does not exist" in refused(tmp_path / "link")
+    assert "symlink to a path that does not exist" in refused(tmp_path / "link")
 
 
 def test_no_package_says_what_is_there(tmp_path: Path) -> None:
     make(tmp_path, {"draw_circle.py": "", "notes/a.txt": ""})
     message = refused(tmp_path)
     assert message.startswith("There is no package in ")
-    assert "It holds draw_circle.py, notes/." in message
+    assert "It contains draw_circle.py, notes/." in message
 
 
 def test_an_empty_folder_is_called_empty(tmp_path: Path) -> None:
@@ -106,14 +106,14 @@ def test_an_empty_folder_is_called_empty(tmp_path: Path) -> None:
 
 
 def test_inside_of_the_package_the_folder_around_is_proposed(package: Path) -> None:
-    assert refused(package / "pkg").endswith(f"The folder around it, {package.resolve()}, is one: give that.")
+    assert refused(package / "pkg").endswith(f"Its parent folder, {package.resolve()}, is a package: give that folder.")
 
 
 @pytest.mark.parametrize("name", ["Package.xml", "package.xml.txt", "SETUP.PY"])
 def test_a_name_that_is_nearly_right_is_named(tmp_path: Path, name: str) -> None:
     make(tmp_path, {f"pkg/{name}": ""})
     message = refused(tmp_path)
-    assert f"pkg/{name} is nearly one" in message
+    assert f"pkg/{name} is almost right" in message
 
 
 def test_a_linked_package_is_named_and_not_followed(tmp_path: Path, package: Path) -> None:
@@ -133,7 +133,7 @@ def test_several_packages_are_listed(tmp_path: Path) -> None:
     for name in ("two", "one"):
         make(tmp_path / "src" / name, PACKAGE)
     message = refused(tmp_path)
-    assert f"holds 2 packages: {tmp_path}/src/one, {tmp_path}/src/two." in message
+    assert f"contains 2 packages: {tmp_path}/src/one, {tmp_path}/src/two." in message
     assert message.endswith(f"for example {tmp_path}/src/one.")
 
 

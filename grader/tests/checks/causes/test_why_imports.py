@@ -37,7 +37,7 @@ HELPER = {"my_robot_controller/helper.py": "", "my_robot_controller/unhelper.py"
         (
             "cannot import name 'Banana' from 'geometry_msgs.msg'",
             "import-name",
-            "The module geometry_msgs.msg has nothing with",
+            "The module geometry_msgs.msg has no such name",
         ),
         ("DLL load failed", "crash", "That name cannot be imported from this module."),
     ],

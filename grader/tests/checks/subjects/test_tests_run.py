@@ -97,7 +97,7 @@ def test_a_damaged_recording_of_tests_is_refused(tmp_path: Path) -> None:
     save(tmp_path / "kept", given(GOOD), "none", ())
     file = tmp_path / "kept/trials/tests/tests.json"
     file.write_text(file.read_text("utf-8").replace('"message": ""', '"message": 3'), "utf-8")
-    with pytest.raises(UsageError, match="cannot be read as a recording"):
+    with pytest.raises(UsageError, match="is not a recording from"):
         load(tmp_path / "kept", load_exercise)
 
 
