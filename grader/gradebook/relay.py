@@ -96,7 +96,7 @@ class Relay:
         """Pass messages on until the cell or nbgrader exits, or `over` is no longer empty.
 
         Raises:
-            FrameError: the kernel has exceeded its budget, or has sent something that is not a message.
+            FrameError: the kernel has exceeded its budget, or has sent data that is not a message.
         """
         poller = zmq.Poller()
         for number in (0, self._out, self._beat, self._sockets[_IOPUB]):
@@ -124,7 +124,7 @@ class Relay:
         for channel, parts in self._unpacker.feed(data):
             self._account.take(parts)
             if channel == ORDER:
-                raise FrameError("something that is not a message of a kernel")  # noqa: EM101
+                raise FrameError("data that is not a message of a kernel")  # noqa: EM101
             if channel == _IOPUB and self._early is not None:
                 self._early.append(parts)
             else:

@@ -1,4 +1,4 @@
-"""The course in Jupyter: `%load_ext grader.notebook` adds the magics, `check` and `simulator` to a notebook."""
+"""The course in Jupyter. `%load_ext grader.notebook` adds the magics, `check` and `simulator` to a notebook."""
 
 from __future__ import annotations
 

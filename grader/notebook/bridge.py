@@ -1,10 +1,10 @@
-"""Bridge: start the kernel in its cell, and pass its messages through the cell's standard input and output.
+"""Start the kernel in its cell, and forward its messages through the cell's standard input and output.
 
     python -m grader.notebook.bridge FOLDER WORKSPACE
 
-The kernel's sockets are on the cell's own disk, so the cell needs no writable folder on the machine. The reader of the
-pipes (grader.gradebook.relay) decides how much it reads. FOLDER is a read-only copy of the submission. The kernel works
-on its own copy in WORKSPACE.
+The kernel's sockets are on the cell's disk, so the cell needs no writable folder of the machine. The relay that reads
+the pipes (grader.gradebook.relay) limits how much it reads. FOLDER is a read-only copy of the submission. The kernel
+works on a second copy in WORKSPACE.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ from grader.common.interpreter import interpreter
 from grader.notebook.frames import CHANNELS, CHUNK, ORDER, Unpacker, packed
 
 IDENTITY = b"bridge"
-"""The identity on all channels. The kernel addresses an input request to the identity that asked it to run code."""
+"""The identity on all channels. The kernel sends an input request to the identity that sent the code."""
 RETRY_MS = 10
-"""The interval for trying to connect to a kernel that is starting (ms)."""
+"""The interval of trying to connect to a kernel that is starting (ms)."""
 LAST_MS = 100
-"""How long to wait for the last messages of a kernel that has exited (ms)."""
+"""The maximum time to wait for the last messages of a kernel that has exited (ms)."""
 _IOPUB = CHANNELS.index("iopub")
 
 
 class Bridge:
-    """The sockets of one kernel, and the messages that are held back until it is listening."""
+    """The sockets of a kernel, and the messages that wait until the kernel is listening."""
 
     def __init__(self, folder: Path, key: dict[str, Any]) -> None:
-        """Create the sockets in `folder`; `key` is the part of the connection file about signatures."""
+        """Create the sockets in `folder`. `key` is the part of the connection file about signatures."""
         self.connection_file = folder / "kernel.json"
         info = {"transport": "ipc", "ip": str(folder / "socket"), "kernel_name": "", **key}
         self._context = zmq.Context()
@@ -60,14 +60,14 @@ class Bridge:
         return socket
 
     def send(self, channel: int, parts: list[bytes]) -> None:
-        """Pass a message to the kernel. It is held back until the kernel's replies can be received."""
+        """Forward a message to the kernel. The message waits until the kernel's replies can be received."""
         if self._waiting is not None:
             self._waiting.append((channel, parts))
         elif channel < _IOPUB:
             self._sockets[channel].send_multipart(parts)
 
     def serve(self, kernel: int) -> None:
-        """Pass messages until the end of standard input, or until the process of `kernel` (a pidfd) exits."""
+        """Forward messages until the end of standard input, or until the process of `kernel` (a pidfd) exits."""
         poller = zmq.Poller()
         for number in (0, kernel, *self._sockets):
             poller.register(number, zmq.POLLIN)
@@ -94,7 +94,7 @@ class Bridge:
                 while data:
                     data = data[os.write(1, data) :]
                 if channel == _IOPUB and self._waiting is not None:
-                    # The kernel's first message welcomes a new subscriber. From now on, no message is lost.
+                    # The first message of the kernel welcomes a new subscriber. From now on, no message is lost.
                     waiting, self._waiting = self._waiting, None
                     for each in waiting:
                         self.send(*each)

@@ -1,6 +1,6 @@
-"""The files next to a notebook: which file a cell writes, and which text counts if the cell and the file differ.
+"""The files next to a notebook that its cells write, and the text that counts if a cell and its file differ.
 
-A student hands in the package (or the answers) next to the notebook. A cell writes one of its files:
+A student hands in the package (or the answers) next to the notebook. A magic writes a cell to one of its files:
 
     %%node draw_circle.py    <package>/<package>/draw_circle.py
     %%package package.xml    <package>/package.xml
@@ -29,20 +29,20 @@ if TYPE_CHECKING:
 
 MAGICS = ("node", "package", "answers")
 KEPT = ".kept"
-"""The folder for files that were changed elsewhere before a cell replaced them. It is hidden, so it is never graded."""
+"""The folder for files that were changed elsewhere before a cell replaced them. It is hidden, so it is not graded."""
 _FIRST_LINE = re.compile(rf"\s*%%({'|'.join(MAGICS)})\b[ \t]*(.*?)\s*")
 
 
 @dataclass(frozen=True)
 class Part:
-    """The text that a cell writes to a file; `path` is relative to the notebook's folder."""
+    """The text that a cell writes to a file. `path` is relative to the notebook's folder."""
 
     path: str
     text: str
 
 
 def part_path(magic: str, name: str, exercise: Exercise) -> str:
-    """Return the file that a cell writes, relative to the notebook's folder.
+    """Return the path of the file that a cell writes, relative to the notebook's folder.
 
     Raises:
         UsageError: the name is not valid for such a file.
@@ -51,7 +51,7 @@ def part_path(magic: str, name: str, exercise: Exercise) -> str:
     if magic == "answers":
         return f"{package}/{ANSWERS}" if package else ANSWERS
     if not package:
-        message = f"{exercise.id} has no package. You hand in {ANSWERS}, which `%%answers` writes."
+        message = f"{exercise.id} has no package. Use `%%answers` to write {ANSWERS}, the file that you hand in."
         raise UsageError(message)
     if magic == "node":
         if not re.fullmatch(r"[A-Za-z_]\w*\.py", name):
@@ -65,7 +65,7 @@ def part_path(magic: str, name: str, exercise: Exercise) -> str:
 
 
 def parts_of(sources: list[str], exercise: Exercise) -> list[Part]:
-    """Return what cells with these sources write. A cell with an invalid name writes nothing.
+    """Return the files that cells with these sources write. A cell with an invalid name writes nothing.
 
     If several cells write the same file, the last one counts.
     """
@@ -89,9 +89,9 @@ def ended(text: str) -> str:
 
 
 def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
-    """Return which text is handed in: that of the file if the student has changed it, or else that of the cell.
+    """Return which text counts: that of the file if the student has changed the file, or else that of the cell.
 
-    `file` is the text of the file, and `start` its text in the starting point. Each is None if there is no such file.
+    `file` is the text of the file, and `start` is its text in the starting point. Both are None for a missing file.
     """
     if file is None or (start is not None and ended(file) == ended(start)):
         return "cell"
@@ -99,7 +99,7 @@ def counts(file: str | None, start: str | None) -> Literal["cell", "file"]:
 
 
 def starting_text(exercise: Exercise, path: str) -> str | None:
-    """Return the text of a file in the step's starting point, or None if it has no such file."""
+    """Return the text of a file in the step's starting point, or None if the file is not part of it."""
     file = workspace.starting_point(exercise) / path
     try:
         return file.read_text("utf-8")
@@ -108,10 +108,10 @@ def starting_text(exercise: Exercise, path: str) -> str | None:
 
 
 def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str, ...]:
-    """Add the step's files that are missing from `folder`, next to the notebook. Return the paths that were written.
+    """Add the step's files that are missing in `folder`, next to the notebook. Return the paths that were written.
 
-    If there is no package yet, it is copied from the learner's workspace, or else from the starting point. With
-    `alone`, it is always copied from the starting point. No file of the student is overwritten.
+    A missing package is copied from the learner's workspace, or else from the starting point. With
+    `alone`, it is always copied from the starting point. Files of the student are never overwritten.
     """
     source, target = workspace.starting_point(exercise), folder
     if not exercise.package:
@@ -128,7 +128,7 @@ def begin(exercise: Exercise, folder: Path, *, alone: bool = False) -> tuple[str
 
 
 def _own_numbers(spec: NumbersSpec, source: Path, target: Path) -> tuple[str, ...]:
-    """Draw the student's own numbers if the file still has those of the starting point."""
+    """Write the student's individual numbers if the file still has those of the starting point."""
     file = target / spec.file
     if file.read_bytes() != (source / spec.file).read_bytes():
         return ()
@@ -137,6 +137,6 @@ def _own_numbers(spec: NumbersSpec, source: Path, target: Path) -> tuple[str, ..
 
 
 def _student() -> str:
-    """Return the student's name for nbgrader: the user name, or JupyterHub's user name if the account is shared."""
+    """Return the student's name in nbgrader: the user name, or the JupyterHub user name if the account is shared."""
     name = getpass.getuser()
     return os.environ.get("JUPYTERHUB_USER", name) if name == "jovyan" else name

@@ -45,7 +45,7 @@ class Cells:
                 print(f"Added next to this notebook: {a_list(written)}.")
 
     def lesson(self, line: str) -> None:
-        """`%lesson`: show the lesson of this notebook's step; `%lesson 03-circle-publisher`: that of another step."""
+        """`%lesson`: show the lesson of this notebook's step. `%lesson 03-circle-publisher`: of another step."""
         exercise = find_exercise(line.strip()) if line.strip() else self.current()
         if not grading():
             lesson.show(exercise.folder / "lesson.md")
@@ -65,7 +65,7 @@ class Cells:
     def ros2(self, line: str) -> None:
         """`%ros2 topic list`, or just `ros2 topic list`: run the command and show its output below the cell.
 
-        When nbgrader runs the notebook, nobody reads the output, so nothing is run.
+        Nothing is run when nbgrader executes the notebook, because nobody reads the output.
         """
         if not grading():
             run_below([str(Path(sys.prefix, "bin", "ros2")), *shlex.split(line)])
@@ -73,7 +73,7 @@ class Cells:
     def current(self) -> Exercise:
         """Return the step of this notebook. Raises UsageError before `%step`."""
         if self.exercise is None:
-            message = "Which step is this notebook about? Run its first cell, for example `%step 03-circle-publisher`."
+            message = "The notebook's step is not set. Run the first cell, for example `%step 03-circle-publisher`."
             raise UsageError(message)
         return self.exercise
 
@@ -88,10 +88,10 @@ class Cells:
             return
         worked_on = cell_files.counts(present, start) == "file"
         if worked_on and (grading() or (start is not None and text == cell_files.ended(start))):
-            self._say(f"{path} has your own work and stays unchanged, because this cell is still the starting point.")
+            self._say(f"{path} contains your work. It stays unchanged, because this cell is still the starting point.")
             return
         if worked_on and self._written.get(file) != present:
-            self._say(f"{path} was changed outside of this notebook. The old version is kept in {_keep(file)}.")
+            self._say(f"{path} was changed outside this notebook. The old version is kept in {_keep(file)}.")
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")
@@ -110,7 +110,7 @@ class Cells:
 def run_below(
     argv: list[str], *, cwd: Path | None = None, env: Mapping[str, str] | None = None, seconds: float | None = None
 ) -> int:
-    """Run a command and print its output, until it exits, `seconds` have passed, or the cell is interrupted."""
+    """Run a command and print its output until it exits, `seconds` have passed, or the cell is interrupted."""
     child = subprocess.Popen(
         argv, cwd=cwd, env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         encoding="utf-8", errors="replace", bufsize=1, start_new_session=True,
@@ -134,7 +134,7 @@ def run_below(
 
 
 class _Alarm:
-    """Send SIGINT (like Ctrl-C) to a child process after some seconds, and kill it if it does not exit."""
+    """Sends SIGINT (like Ctrl-C) to a child process after some seconds, and kills it if it does not exit."""
 
     def __init__(self, child: subprocess.Popen[str], seconds: float | None) -> None:
         from threading import Timer

@@ -1,7 +1,7 @@
-"""`check("03-circle-publisher")` in a cell: grade the work next to the notebook and show the verdict below the cell.
+"""`check("03-circle-publisher")` in a cell: grade the work next to the notebook, and show the verdict below the cell.
 
-The verdict is a table with pictures, or text in a program that shows only text. If nothing has changed, the last
-verdict is returned, so the cells that return the points of individual checks take hardly any time.
+The verdict is a table with pictures, or text in a program without HTML. If nothing has changed, the previous
+verdict is returned, so cells that return the points of individual checks are fast.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from grader.notebook.cells import Cells
 
 GRACE_S = 5.0
-"""How long a worker may take to exit after the cell was interrupted (s)."""
+"""The time that a worker has to exit after the cell was interrupted (s)."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +45,9 @@ class Verdict:
     reasons: Mapping[str, str]
 
     def points(self, check: str) -> float:
-        """Return the points of one check and print the reason. Raises UsageError if there is no such check."""
+        """Return the points of a check and print its reason. Raises UsageError if the check does not exist."""
         if check not in self.all_points:
-            message = f"{self.exercise} has no check {check!r}. It has {', '.join(self.all_points)}."
+            message = f"{self.exercise} has no check {check!r}. Its checks are {', '.join(self.all_points)}."
             raise UsageError(message)
         print(self.reasons[check])
         return float(self.all_points[check])
@@ -60,19 +60,19 @@ class Verdict:
 
 
 class Checking:
-    """The `check` function of a kernel. It remembers what it has already graded."""
+    """The `check` function of a kernel, with the verdicts so far."""
 
     def __init__(self, cells: Cells) -> None:
         self._cells = cells
         self._known: dict[tuple[str, str], Verdict] = {}
 
     def check(self, step: str | None = None) -> Verdict:
-        """Grade the package (or the answers) next to this notebook. The default is the notebook's own step.
+        """Grade the package (or the answers) next to this notebook. The default is the step of the notebook.
 
             check("03-circle-publisher").points("circle")
 
         Raises:
-            UsageError: there is no such step, or nothing to grade.
+            UsageError: the step does not exist, or no package or answers were found.
             MachineError: the grader or the machine is broken.
         """
         from grader.notebook.grading_process import opened
@@ -128,7 +128,7 @@ def _end(worker: subprocess.Popen[bytes]) -> None:
 
 
 class _Progress:
-    """Show below the cell what is being done, and clear this line at the end. Under nbgrader, show nothing."""
+    """A line below the cell with the current stage, which is cleared at the end. Nothing is shown under nbgrader."""
 
     def __enter__(self) -> Self:
         from IPython.display import DisplayHandle

@@ -16,7 +16,7 @@ from pathlib import Path
 
 def main() -> None:
     """Replace this process with the kernel."""
-    # This import comes before the change to the submission's folder, whose modules must not shadow Python's.
+    # Import this before changing to the submission's folder, whose modules must not shadow Python's.
     from ipykernel import kernelapp
 
     folder = Path(sys.argv[2], "submission")

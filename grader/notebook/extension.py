@@ -1,4 +1,4 @@
-"""What `%load_ext grader.notebook` does: add magics, `check` and `simulator`, and start a guardian for processes."""
+"""Load the extension: add magics, `check` and `simulator`, and start a guardian for child processes."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 
 def load(shell: InteractiveShell) -> None:
-    """Add everything to the notebook of this shell."""
-    # In a sandbox, no guardian is needed, because all processes end when the sandbox does.
+    """Add the magics and functions to this shell."""
+    # A sandbox needs no guardian, because its processes end together with it.
     if not confined():
         _guard()
     cells = Cells()
@@ -43,16 +43,16 @@ def _tell(
     traceback: TracebackType,  # noqa: ARG001
     tb_offset: int | None = None,  # noqa: ARG001
 ) -> list[str]:
-    """Show an error of the grader as one sentence, without a traceback."""
+    """Show an error of the grader as a message without a traceback."""
     shell._showtraceback(GraderError, error, [str(error)])  # type: ignore[no-untyped-call, unused-ignore]
     return [str(error)]
 
 
 def _guard() -> None:
-    """Mark the kernel's future child processes, and start the guardian that stops them when the kernel has exited."""
+    """Mark the future child processes of the kernel, and start the guardian that stops them after the kernel."""
     mark = f"{os.getpid()}-{secrets.token_hex(8)}"
-    # Only this process holds the pipe, because Python does not pass its descriptors to child processes.
-    # The guardian must get neither the folder of the kernel nor its marks.
+    # Only this process has the write end of the pipe, because Python does not pass descriptors to child processes.
+    # The guardian must not inherit the folder or the mark of the kernel.
     env = {"PATH": os.environ.get("PATH", ""), "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
     start = interpreter(str(Path(guardian.__file__).absolute()), mark, env=env)
     started = subprocess.Popen(
@@ -69,4 +69,4 @@ def _guard() -> None:
 
 
 _guardians: list[subprocess.Popen[bytes]] = []
-"""The guardian is kept here as long as the kernel runs. If the object were deleted, its pipe would close."""
+"""The guardian, referenced for the lifetime of the kernel. If the object were deleted, its pipe would close."""

@@ -1,7 +1,7 @@
-"""Frames: the format of a kernel's messages on the pipe between relay (outside of the cell) and bridge (inside).
+"""The format of a kernel's messages on the pipe between the relay (outside the cell) and the bridge (inside).
 
-A frame is a ZeroMQ message with its channel: one byte for the channel, two for the number of parts, four for the size
-of each part, all big-endian, and then the parts. The reader therefore knows the size of a message before reading it.
+A frame is a ZeroMQ message with its channel: one byte for the channel, two for the number of parts, and four for the
+size of each part, all big-endian, followed by the parts. The reader gets the size of a message before its content.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 CHANNELS = ("shell", "control", "stdin", "iopub")
-"""The channels. A frame identifies its channel by the index in this list."""
+"""The channels. A frame contains the index of its channel in this list."""
 ORDER = len(CHANNELS)
-"""The channel of the first frame, which gives the bridge the key for the signatures."""
+"""The channel of the first frame, which contains the key for the signatures."""
 CHUNK = 1024 * 1024
 """The number of bytes that are read from a pipe at a time."""
 MOST_PARTS = 1000
@@ -25,7 +25,7 @@ _SIZE = 4
 
 
 class FrameError(ValueError):
-    """The data is not a frame, or the frame is too large. The message says which."""
+    """The data is not a frame, or the frame is too large. The message states which."""
 
 
 def packed(channel: int, parts: Sequence[bytes]) -> bytes:
@@ -35,17 +35,17 @@ def packed(channel: int, parts: Sequence[bytes]) -> bytes:
 
 
 class Unpacker:
-    """Split the bytes of a pipe into messages; `most` is the maximum size of one (bytes), or None for no limit."""
+    """Splits the bytes of a pipe into messages. `most` is the maximum size of a message (bytes), or None."""
 
     def __init__(self, most: int | None = None) -> None:
         self._most = most
         self._data = bytearray()
 
     def feed(self, data: bytes) -> Iterator[tuple[int, list[bytes]]]:
-        """Add bytes, and yield the messages that are now complete, each with its channel.
+        """Add bytes, and yield each complete message with its channel.
 
         Raises:
-            FrameError: the channel does not exist, or the message is too large. No more messages can be read after it.
+            FrameError: the channel does not exist, or the message is too large. No more messages can be read.
         """
         self._data += data
         while (sizes := self._sizes()) is not None:
@@ -60,12 +60,12 @@ class Unpacker:
             yield channel, parts
 
     def _sizes(self) -> list[int] | None:
-        """Return the sizes of the parts of the next message (bytes), or None if they have not arrived."""
+        """Return the sizes of the parts of the next message (bytes), or None if they are incomplete."""
         if len(self._data) < _HEAD.size:
             return None
         channel, count = _HEAD.unpack_from(self._data)
         if channel > ORDER or count > MOST_PARTS:
-            message = "something that is not a message of a kernel"
+            message = "data that is not a message of a kernel"
             raise FrameError(message)
         if len(self._data) < _HEAD.size + _SIZE * count:
             return None

@@ -2,8 +2,8 @@
 
     python -m grader.notebook.grading_process EXERCISE FOLDER
 
-It prints its progress line by line to standard error, and the verdict as JSON to standard output: {"points": {id:
-number}, "reasons": {id: text}, "text": the full verdict, "html": the same as HTML, "passed": bool}.
+The process prints its progress line by line to standard error, and the verdict as JSON to standard output: {"points":
+{id: number}, "reasons": {id: text}, "text": the full verdict, "html": the same as HTML, "passed": bool}.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def opened(exercise: Exercise, folder: Path) -> Submission:
-    """Open the submission next to the notebook in `folder`. Raises UsageError if there is none."""
+    """Open the submission next to the notebook in `folder`. Raises UsageError if the folder has none."""
     if not exercise.package:
         return open_answers(folder)
     own = folder / exercise.package
@@ -43,7 +43,7 @@ def opened(exercise: Exercise, folder: Path) -> Submission:
 
 
 def reason(outcome: Outcome) -> str:
-    """Return the outcome of a check as lines of plain text: its status and, if it did not pass, the reason."""
+    """Return the outcome of a check as plain text: its status and, if it did not pass, the reason."""
     sign = {Status.PASSED: "✓", Status.FAILED: "✗", Status.SKIPPED: "-", Status.ERROR: "!"}[outcome.status]
     points = f"  {outcome.points:g}/{outcome.max:g}" if outcome.max else ""
     if outcome.hidden:
@@ -63,12 +63,12 @@ def reason(outcome: Outcome) -> str:
 
 
 def to_data(graded: Graded, *, html: bool) -> dict[str, object]:
-    """Return the verdict as a dictionary, ready for JSON."""
+    """Return the verdict as a dictionary that JSON can represent."""
     from rich.console import Console
 
     from grader.report import terminal
 
-    # If the kernel is in a cell, its children are too.
+    # If the kernel is in a cell, its children are in the same cell.
     report = replace(graded.report, confined=graded.report.confined or confined())
     page = io.StringIO()
     terminal.render(report, Console(file=page, width=100, highlight=False, force_terminal=False, color_system=None))

@@ -1,6 +1,6 @@
-"""Guardian: stops the processes that a kernel started once the kernel is gone, no matter how it exited.
+"""The guardian, which stops the processes of a kernel after the kernel has exited for any reason.
 
-    python guardian.py MARK          its standard input is a pipe that only the kernel holds open
+    python guardian.py MARK          its standard input is a pipe that only the kernel keeps open
 
 Every process that a notebook starts has MARK in its environment. When the pipe closes, these processes and all their
 descendants are stopped: first with SIGINT, so that nodes can shut down properly, and then with SIGKILL.

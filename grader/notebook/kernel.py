@@ -1,8 +1,8 @@
-"""The kernel "ROS 2 Jazzy (course)": a Python kernel whose environment has ROS 2 without sourcing anything.
+"""The kernel "ROS 2 Jazzy (course)": a Python kernel with ROS 2 in its environment.
 
     python -m grader.notebook.kernel -f CONNECTION_FILE     what Jupyter runs
 
-The environment is created anew at each start, so a ROS 2 that was installed or sourced in the meantime is found.
+The environment is created at each start, so a ROS 2 that was installed or sourced in the meantime is found.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def main() -> None:
     """Replace this process with the kernel.
 
     If Jupyter was started without the ROS 2 that the course was set up for, that ROS 2 is sourced first. Without any
-    ROS 2, the kernel is a plain Python kernel, in which `check` says what is missing.
+    ROS 2, the kernel is a plain Python kernel, in which `check` reports what is missing.
     """
     from grader.errors import GraderError
     from grader.notebook.simulator import environment
@@ -43,7 +43,7 @@ def main() -> None:
 
 
 def _source_and_start_again() -> None:
-    """Restart in a shell that has sourced the ROS 2 that the course was set up for. Return if that cannot help."""
+    """Restart in a shell that sources the ROS 2 that the course was set up for. Return if this is not possible."""
     prefix, bash = made_for(Path(sys.prefix)), shutil.which("bash", path="/usr/bin:/bin")
     if prefix is None or bash is None or _AGAIN in os.environ or not Path(prefix, "setup.bash").is_file():
         return
@@ -53,7 +53,7 @@ def _source_and_start_again() -> None:
 
 
 def kernelspec() -> dict[str, object]:
-    """Return the content of kernel.json."""
+    """Return the content of kernel.json as a dictionary."""
     return {
         "argv": interpreter("-m", "grader.notebook.kernel", "-f", "{connection_file}").argv,
         "display_name": DISPLAY_NAME,
@@ -63,7 +63,7 @@ def kernelspec() -> dict[str, object]:
 
 
 def install(prefix: Path | None = None) -> Path:
-    """Install the kernel for this user's Jupyter, or for the one below `prefix`. Return the folder of the kernel.
+    """Install the kernel for this user's Jupyter, or for the Jupyter in `prefix`. Return the folder of the kernel.
 
     Raises:
         MachineError: Jupyter is not installed, or the folder cannot be written.

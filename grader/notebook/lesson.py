@@ -1,4 +1,4 @@
-"""`%lesson`: show the lesson of the notebook's step below the cell, regardless of the notebook's folder."""
+"""`%lesson`: show the lesson of the notebook's step below the cell."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _LOCAL_LINK = re.compile(r"(?<!!)\[([^\]]+)\]\((?!https?://|#)[^)\s]+\)")
 
 
 def pieces(lesson: Path) -> list[str | Path]:
-    """Return the lesson as Markdown and image files, in order. Links to other files become plain text.
+    """Return the lesson as a sequence of Markdown texts and image files. Links to other files become plain text.
 
-    A notebook may be copied without these files, so links to them could be broken.
+    A notebook may be copied without other files, so links to them could be broken.
     """
-    # Every second part is the text that the group matched.
+    # Every second part is the text of the group.
     split = _IMAGE.split(lesson.read_text(encoding="utf-8"))
     found: list[str | Path] = []
     for number, text in enumerate(split):

@@ -1,18 +1,18 @@
-"""How a notebook is being run: for a reader, or by nbgrader, which needs it to be fast and quiet."""
+"""Whether a notebook is executed by nbgrader or inside a cell, which changes what the magics do."""
 
 from __future__ import annotations
 
 import os
 
 CONFINED = "GRADER_CONFINED"
-"""Set in a kernel that already runs in a cell (grader.sandbox). Another cell cannot be started inside it."""
+"""Set in a kernel that runs inside a cell (grader.sandbox), where another cell cannot be started."""
 
 
 def grading() -> bool:
-    """Return whether nbgrader runs the notebook, to autograde or to validate it."""
+    """Return whether nbgrader executes the notebook, to autograde or to validate it."""
     return bool(os.environ.get("NBGRADER_EXECUTION"))
 
 
 def confined() -> bool:
-    """Return whether this kernel is in a cell."""
+    """Return whether this kernel runs inside a cell."""
     return bool(os.environ.get(CONFINED))

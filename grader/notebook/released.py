@@ -1,7 +1,7 @@
-"""The notebook of a step as students get it, byte for byte identical to the output of nbgrader's generate_assignment.
+"""The released notebook of a step, byte for byte identical to the output of nbgrader's generate_assignment.
 
 This module repeats the steps of nbgrader 0.9 (LockCells, ClearSolutions, ClearOutput, ClearHiddenTests,
-ComputeChecksums), so that a course can be released without Jupyter. A test compares the two.
+ComputeChecksums), so that a course can be released without Jupyter. A test compares the results.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ Cell = dict[str, Any]
 
 _FILE_CELL = re.compile(r"\s*%%\w+[ \t]+(\S+)\s*")
 _HIDDEN = {"BEGIN HIDDEN TESTS": True, "END HIDDEN TESTS": False}
-"""nbgrader's markers for hidden tests, mapped to whether a hidden test begins there."""
+"""nbgrader's markers of hidden tests. The value is whether hidden tests begin there."""
 
 
 def released_notebook(data: bytes, name: str) -> bytes:
-    """Return the released version of a source notebook. Raises UsageError with `name` and cell if it has a mistake."""
+    """Return the released version of a source notebook. Raises UsageError, which names the cell with a mistake."""
     try:
         notebook = json.loads(data)
         for number, cell in enumerate(notebook["cells"], 1):
@@ -39,14 +39,14 @@ def to_bytes(notebook: dict[str, Any]) -> bytes:
 
 
 def solved_away(source: str, cell_type: str, *, solution: bool, name: str) -> str:
-    """Return a cell's source with the starting point instead of its solutions.
+    """Return the source of a cell with its solutions replaced by the starting point.
 
     Raises:
         UsageError: markers are wrong, or a solution cell has no markers, so that all of it would be released.
     """
     text = stripped(source, _syntax(source, cell_type), name)
     if solution and text == source:
-        message = f"{name}: a solution cell without a BEGIN SOLUTION. All of it would be released."
+        message = f"{name}: a solution cell has no BEGIN SOLUTION. All of it would be released."
         raise UsageError(message)
     return text
 
@@ -73,7 +73,7 @@ def without_hidden_tests(source: str, name: str) -> str:
 
 
 def _syntax(source: str, cell_type: str) -> Syntax:
-    """Return the comment syntax of the cell, which is that of the file that the cell writes, if any."""
+    """Return the comment syntax of a cell: that of the file that the cell writes, or else that of the cell type."""
     match = _FILE_CELL.fullmatch(source.partition("\n")[0])
     if cell_type != "code":
         return ANGLE
@@ -86,10 +86,10 @@ def _release(cell: Cell, name: str) -> None:
     source = solved_away("".join(cell["source"]), kind, solution=bool(about and about["solution"]), name=name)
     hidden = without_hidden_tests(source, name)
     if hidden != source and not (about and about["grade"]):
-        message = f"{name}: hidden tests in a cell that is not graded."
+        message = f"{name}: a cell that is not graded contains hidden tests."
         raise UsageError(message)
     if MEANT.search(hidden):
-        message = f"{name}: a marker is left in it."
+        message = f"{name}: a marker remains in the released cell."
         raise UsageError(message)
     cell["source"] = hidden.splitlines(keepends=True)
     if kind == "code":
@@ -106,7 +106,7 @@ def _release(cell: Cell, name: str) -> None:
 
 
 def _checksum(source: str, kind: str, about: dict[str, Any]) -> str:
-    """Return nbgrader's checksum. It reveals whether a cell was changed, but it does not protect a secret."""
+    """Return nbgrader's checksum. It shows whether a cell was changed, but it does not protect a secret."""
     locked = not about["solution"] and (about["grade"] or about["locked"])
     parts = [source, kind, str(about["grade"]), str(about["solution"]), str(locked), about["grade_id"]]
     if about["grade"]:

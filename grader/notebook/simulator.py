@@ -4,8 +4,8 @@
         %ros2 topic list
         sim.run("draw_circle", seconds=7)
 
-It runs in a separate process, which is stopped when the `with` statement ends, the cell is interrupted or the kernel
-exits.
+turtlesim runs in a separate process, which is stopped when the `with` statement ends, the cell is interrupted, or the
+kernel exits.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 START_S = 30.0
-"""If turtlesim has shown no picture after this time, it is broken, even on a busy machine (s)."""
+"""The maximum time until the first picture of turtlesim, even on a busy machine (s)."""
 
 
 class Simulator:
-    """A running turtlesim that is shown below the cell. Under nbgrader, nothing is run."""
+    """A running turtlesim that is shown below the cell. Nothing is run under nbgrader."""
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
@@ -87,17 +87,17 @@ class Simulator:
         """Run a node of the package next to the notebook for some seconds, and print its output.
 
         Raises:
-            UsageError: there is no such file.
+            UsageError: the file of the node does not exist.
         """
         if not grading():
             argv, folder = _command(executable)
             run_below(argv, cwd=folder, env=self._env, seconds=seconds)
 
     def start(self, executable: str) -> None:
-        """Start a node and continue running the cell. The node is stopped at the end of the `with` statement.
+        """Start a node and return. The node is stopped at the end of the `with` statement.
 
         Raises:
-            UsageError: there is no such file.
+            UsageError: the file of the node does not exist.
         """
         if not grading():
             argv, folder = _command(executable)
@@ -177,7 +177,7 @@ def _command(executable: str) -> tuple[list[str], Path]:
     name = executable.removesuffix(".py")
     files = [file for file in Path.cwd().glob(f"*/*/{name}.py") if file.parent.name == file.parent.parent.name]
     if not files:
-        message = f"There is no {name}.py in the package next to this notebook. Write it with `%%node {name}.py`."
+        message = f"The package next to this notebook has no {name}.py. Write it with `%%node {name}.py`."
         raise UsageError(message)
     package = files[0].parent
     start = f"import sys; sys.path.insert(0, {str(package.parent)!r}); from {package.name}.{name} import main; main()"
@@ -185,7 +185,7 @@ def _command(executable: str) -> tuple[list[str], Path]:
 
 
 def environment() -> dict[str, str]:
-    """Return the kernel's environment with ROS 2. The course's kernel already has ROS 2; other kernels get it here."""
+    """Return the kernel's environment with ROS 2, which kernels other than the course's kernel do not have."""
     from grader.ros.installation import find_ros, users_environment
     from grader.ros.underlay import with_turtlesim
 

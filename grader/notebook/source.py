@@ -1,7 +1,7 @@
-"""The source notebook of a step. Its text is written by hand, and parts that exist elsewhere are inserted.
+"""The source notebook of a step: text written by hand, with inserted parts of the solution and of exercise.toml.
 
-A cell that begins with `%%node`, `%%package` or `%%answers` gets the text of that file of the solution, including the
-markers. Each check of exercise.toml gets a grade cell with the same id and points at the end of the notebook.
+A cell that begins with `%%node`, `%%package` or `%%answers` gets the text of its file in the solution, including the
+markers. Each check of exercise.toml gets a grade cell at the end of the notebook, with the same id and points.
 """
 
 from __future__ import annotations
@@ -19,14 +19,15 @@ if TYPE_CHECKING:
     from grader.exercise.model import CheckSpec, Exercise
 
 BEGIN = "begin"
-"""The id of the locked cell that loads the extension and names the step."""
+"""The id of the locked cell that loads the extension and sets the step."""
 
 
 def refreshed(data: bytes, exercise: Exercise, files: Mapping[str, bytes], name: str) -> bytes:
     """Return the updated source notebook. `files` are the solution's files by their paths in the step's folder.
 
     Raises:
-        UsageError: it is not a notebook, or a cell writes a file that the solution does not have. The message contains
+        UsageError: the data is not a notebook, or a cell writes a file that is not in the solution. The message
+        contains
             `name` and the cell.
     """
     try:
@@ -52,11 +53,11 @@ def _refresh(cell: Cell, exercise: Exercise, files: Mapping[str, bytes], name: s
         return
     path = part_path(magic, argument.strip(), exercise)
     if path not in files:
-        message = f"{name}: {first} writes {path}, which the solution does not have."
+        message = f"{name}: {first} writes {path}, which is not in the solution."
         raise UsageError(message)
     text = files[path].decode("utf-8")
     cell["source"] = f"{first}\n{text}".rstrip("\n").splitlines(keepends=True)
-    # The cell's id alone is not enough: a check may be called "answers" too, and nbgrader uses both as cell names.
+    # Compare more than the cell's id: a check may also be called "answers", and nbgrader uses both as cell names.
     cell["metadata"]["nbgrader"] = _about(f"write-{cell['id']}", solution=True)
 
 
@@ -80,7 +81,7 @@ def _grade_cell(exercise: Exercise, spec: CheckSpec) -> Cell:
 
 
 def _about(name: str, *, grade: bool = False, solution: bool = False, locked: bool = False) -> dict[str, Any]:
-    """Return the metadata by which nbgrader recognizes a cell (schema 3)."""
+    """Return the metadata with which nbgrader recognizes a cell (schema 3)."""
     return {
         "grade": grade,
         "grade_id": name,

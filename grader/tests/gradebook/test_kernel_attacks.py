@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
 MORE_KIB = 512 * 1024
 """The limit for the growth of nbgrader's process while it runs one of these."""
-NO_MESSAGE = "The kernel sent something that is not a message of a kernel."
+NO_MESSAGE = "The kernel sent data that is not a message of a kernel."
 
 COMM = "from comm import create_comm\n"
 SEND = """\

@@ -1,4 +1,4 @@
-"""JupyterLab for the browser tests: start it and work in it like a student."""
+"""JupyterLab for the browser tests: start it, and use it like a student."""
 
 from __future__ import annotations
 
@@ -74,11 +74,11 @@ def type_cell(page: Page, begins: str, text: str) -> None:
     cell.locator(".cm-content").click()
     page.keyboard.press("Control+a")
     page.keyboard.press("Delete")
-    # The text is pasted, because the editor would indent typed lines and close brackets.
+    # Paste the text, because the editor would indent typed lines and close brackets.
     page.keyboard.insert_text(text)
 
 
 def run_all(page: Page) -> None:
-    """Run > Run All Cells."""
+    """Choose Run All Cells in the menu Run."""
     page.get_by_role("menuitem", name="Run", exact=True).click()
     page.get_by_role("menuitem", name="Run All Cells", exact=True).click()

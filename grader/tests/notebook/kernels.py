@@ -1,4 +1,4 @@
-"""Start the course's kernel as Jupyter does, for tests that run cells in it."""
+"""Start the course's kernel as Jupyter does, for tests that execute cells."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class CourseKernel(AsyncKernelManager):
-    """Start the course's kernel, whether or not it is installed for the current user."""
+    """Starts the course's kernel, whether or not it is installed for the current user."""
 
     @property
     def kernel_spec(self) -> KernelSpec:
@@ -35,7 +35,7 @@ class Notebook:
     outputs: list[Any] = field(default_factory=list)
 
     def run(self, source: str) -> str:
-        """Run a cell. Return all text below it, errors included."""
+        """Run a cell. Return all text below it, including errors."""
         cell = nbformat.v4.new_code_cell(source)  # type: ignore[no-untyped-call]
         self.client.nb.cells.append(cell)
         self.client.execute_cell(cell, len(self.client.nb.cells) - 1)
@@ -48,7 +48,7 @@ class Notebook:
 
     @property
     def pid(self) -> int:
-        """Return the kernel's process."""
+        """Return the process id of the kernel."""
         pid: int = self.client.km.provisioner.process.pid  # type: ignore[union-attr]
         return pid
 

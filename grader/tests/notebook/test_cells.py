@@ -1,4 +1,4 @@
-"""Cells run in the course's kernel as Jupyter starts it, without sourcing anything."""
+"""Run cells in the course's kernel as Jupyter starts it, in a terminal without ROS 2."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def test_the_canvas_moves_below_the_cell_and_the_simulator_ends_with_the_kernel(
         "with simulator() as sim:\n"
         "    before = sim.picture()\n"
         "    sim.start('draw_circle')\n"
-        # The real command would leave its daemon running.
+        # Without this option, the real command would start a daemon.
         "    %ros2 node list --no-daemon\n"
         "    while sim.picture() == before: sim.wait(0.1)"
     )
@@ -99,7 +99,7 @@ def test_the_canvas_moves_below_the_cell_and_the_simulator_ends_with_the_kernel(
     assert notebook.run("sim.picture() == before") == "False"
 
     mark = notebook.run(f"import os; print(os.environ[{guardian.VARIABLE!r}])").strip()
-    assert marked_processes(mark) == set()  # it ended at the end of the `with` statement
+    assert marked_processes(mark) == set()  # the simulator ended with the `with` statement
     notebook.run("sim = simulator(); sim.__enter__(); sim.start('draw_circle')")
     notebook.run("import subprocess; subprocess.Popen(['setsid', 'sleep', '1000'])")
     until(lambda: len(marked_processes(mark)) >= 3)  # a process that is just being executed shows no environment
@@ -116,7 +116,7 @@ def test_no_work_of_a_student_is_lost(notebook: Notebook, folder: Path, home: Pa
     (own / "draw_circle.py").write_text("# my own, from the workspace\n")
     notebook.run(BEGIN)
     assert (folder / NODE).read_text() == "# my own, from the workspace\n"
-    assert (folder / "my_robot_controller" / "package.xml").is_file()  # the rest is the starting point's
+    assert (folder / "my_robot_controller" / "package.xml").is_file()  # the other files come from the starting point
 
     # The released cell does not undo the work. A cell that was changed replaces the file and keeps a copy.
     assert "stays unchanged" in notebook.run("%%node draw_circle.py\n" + START)
@@ -127,11 +127,11 @@ def test_no_work_of_a_student_is_lost(notebook: Notebook, folder: Path, home: Pa
 
 
 def test_a_mistake_is_reported_in_one_sentence(notebook: Notebook) -> None:
-    assert "Run its first cell" in notebook.run("%load_ext grader.notebook\ncheck()")
+    assert "Run the first cell" in notebook.run("%load_ext grader.notebook\ncheck()")
     assert "there is no exercise '33'" in notebook.run("%step 33")
     notebook.run(f"%step {STEP}")
     assert "needs the name of a Python file" in notebook.run("%%node ../../x.py\npass")
-    assert "There is no nothing.py" in notebook.run("with simulator() as sim:\n    sim.run('nothing')")
+    assert "has no nothing.py" in notebook.run("with simulator() as sim:\n    sim.run('nothing')")
     assert notebook.outputs[-1].traceback == [notebook.outputs[-1].evalue]
 
 

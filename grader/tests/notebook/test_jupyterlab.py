@@ -49,7 +49,7 @@ def test_a_student_solves_the_released_notebook(tmp_path: Path, monkeypatch: pyt
         page.wait_for_function(
             "before => [...document.querySelectorAll('.jp-OutputArea img')].at(-1).src !== before", arg=before
         )
-        # The cell below is used, because the image is replaced five times per second.
+        # Scroll to the cell below, because the image is replaced five times per second.
         page.get_by_role("heading", name="Check it").scroll_into_view_if_needed()
         page.screenshot(path=pictures / "lab-2-simulator.png")
 

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 class StartedError(Exception):
-    """Keep the command line. The real function would replace this process by another program."""
+    """Stores the command line. The real function would replace this process by another program."""
 
 
 @pytest.fixture
 def started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
-    """The commands that are started, with the set-up of a ROS 2 in `tmp_path`/jazzy that is not sourced."""
+    """Return the commands that are started. The ROS 2 of the set-up is in `tmp_path`/jazzy and is not sourced."""
     commands: list[list[str]] = []
 
     def execve(_program: str, argv: list[str], _env: dict[str, str]) -> None:

@@ -1,4 +1,4 @@
-"""nbgrader's tools for instructors are hidden in a learner's JupyterLab and shown in the course folder of a class."""
+"""nbgrader's tools for instructors are visible in the course folder of a class, but not in a learner's JupyterLab."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def opened(address: str) -> str:
-    """Return the page at an address. JupyterLab prints the address a moment before it listens there."""
+    """Return the page at an address. JupyterLab prints the address shortly before it accepts connections."""
     pages: list[str] = []
 
     def answers() -> bool:

@@ -1,4 +1,4 @@
-"""The notebooks of the course match their exercises, and released ones have nothing that students must not see."""
+"""The notebooks of the course match their exercises. Released ones contain nothing that students must not see."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_every_file_with_a_solution_has_a_cell(step: str) -> None:
 
 
 def with_a_solution(step: str) -> list[str]:
-    """The names of the files that are solved in this step. Later steps carry the tasks of step 07 unchanged."""
+    """Return the names of the files to solve in this step. Later steps contain the tasks of step 07 unchanged."""
     before = [ROOT / "solutions" / name for name in STEPS[: STEPS.index(step)]]
     return [
         path.name
@@ -94,8 +94,8 @@ def test_hidden_tests_are_not_released() -> None:
 @pytest.mark.parametrize(
     ("cell", "why"),
     [
-        (code("x = 1", solution=True), "a solution cell without a BEGIN SOLUTION"),
-        (code("### BEGIN HIDDEN TESTS\nx\n### END HIDDEN TESTS"), "hidden tests in a cell that is not graded"),
+        (code("x = 1", solution=True), "a solution cell has no BEGIN SOLUTION"),
+        (code("### BEGIN HIDDEN TESTS\nx\n### END HIDDEN TESTS"), "a cell that is not graded contains hidden tests"),
         (code("### BEGIN HIDDEN TESTS\nx", grade=True, points=1), "has no END HIDDEN TESTS"),
         (code("### END HIDDEN TESTS\nx", grade=True, points=1), "where hidden tests have not begun"),
     ],
@@ -110,7 +110,7 @@ def test_a_source_without_hidden_tests_stays_as_it_is() -> None:
 
 
 def test_a_cell_for_a_file_that_the_solution_lacks_is_an_error() -> None:
-    with pytest.raises(UsageError, match=r"n, cell 1: %%node other.py writes .*, which the solution does not have"):
+    with pytest.raises(UsageError, match=r"n, cell 1: %%node other.py writes .*, which is not in the solution"):
         refreshed(notebook(code("%%node other.py\nx")), find_exercise("03"), {}, "n")
 
 
