@@ -1,4 +1,4 @@
-"""nbgrader, run in this folder: solutions/ is what it calls source, exercises/ release; a class is in class/."""
+"""Configuration of nbgrader for this folder. Source: solutions/; release: exercises/; the files of a class: class/."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Sphinx: README, docs/ and the lessons as one site. `make docs` builds it from the repository's root."""
+"""Configuration of Sphinx for README, docs/ and the lessons. `make docs` builds the site from the repository's root."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ html_title = project
 html_show_copyright = False
 html_static_path = ["site.css"]
 html_css_files = ["site.css"]
-# Anchors as GitHub makes them, so that a link works in both places.
+# The same anchors as on GitHub, so that a link works in both places.
 myst_heading_anchors = 4
 
 
 def add_contents(_: Sphinx, name: str, source: list[str]) -> None:
-    """Add the contents below README, which GitHub shows without them."""
+    """Add the table of contents to README. GitHub shows README without it."""
     if name == root_doc:
         for caption, pages in PAGES.items():
             lines = "\n".join(f"/{page}" for page in pages)
@@ -44,6 +44,6 @@ def add_index(app: Sphinx, error: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> None:
-    """Called by Sphinx."""
+    """Register the functions above. Sphinx calls this function."""
     app.connect("source-read", add_contents)
     app.connect("build-finished", add_index)

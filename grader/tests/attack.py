@@ -1,8 +1,8 @@
-"""An attack: a submission that tries to harm or cheat the grader, and what must be true after its grading.
+"""Attacks: submissions that try to harm or cheat the grader, and the expected result of their grading.
 
 grader/tests/hostile/NNN-name/
   files/           added to the solution of step 03, or replacing its files; for a few lines, there is `edit`
-  make.py          make(package): makes files that git cannot store
+  make.py          make(package): creates files that git cannot store
   expected.toml    the keys are the fields of `Attack`, below
 """
 
@@ -45,7 +45,7 @@ class Attack:
     name: str
     why: str
     base: str = "03-circle-publisher"
-    """The step whose solution it is laid over, and whose exercise grades it."""
+    """The step whose solution the attack changes, and whose exercise grades it."""
     points: float = -1.0
     """The exact points. If below 0, the points are not checked, because the node may be partly right."""
     most: float = 100.0
@@ -71,7 +71,7 @@ class Attack:
 
     @property
     def is_of_the_host(self) -> bool:
-        """Return whether the sandbox prevents the trace."""
+        """Return whether the sandbox must prevent the trace."""
         return bool(self.says or self.file or self.process or self.socket or self.kills or self.secret)
 
 
@@ -91,7 +91,7 @@ def _read(folder: Path) -> Attack:
 
 
 def make_attack(attack: Attack, to: Path) -> Path:
-    """Write the package below the new folder `to`. Return its path."""
+    """Write the package below the new folder `to`, and return its path."""
     package = to / "my_robot_controller"
     copy_solution(attack.base, package)
     apply_edits(attack.edit, package, attack.name)

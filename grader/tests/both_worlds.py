@@ -1,4 +1,4 @@
-"""The two worlds in which all tests run: with the course's own ROS 2, and in a terminal with a sourced ROS 2."""
+"""Marks for tests that need the course's own ROS 2 or a sourced ROS 2. All tests run in both environments."""
 
 from __future__ import annotations
 
@@ -17,18 +17,20 @@ SET_BY_ROS = (
 SOURCED_ENV: dict[str, str] = {
     name: os.environ[name] for name in SET_BY_ROS if HERE.kind == "sourced" and name in os.environ
 }
-"""The variables of a terminal in which only the tests' ROS 2 is sourced; empty in the other world."""
+"""The variables of a terminal in which only the tests' ROS 2 is sourced. Empty if no ROS 2 is sourced."""
 PATH = os.pathsep.join([*([str(HERE.prefix / "bin")] if SOURCED_ENV else []), "/usr/bin", "/bin"])
 """PATH in such a terminal."""
 REAL_ROS2 = bool(SOURCED_ENV) and Path(HERE.prefix, "bin/ros2").is_file()
 REAL_TURTLESIM = installation.has_turtlesim(HERE)
 OUR_TURTLESIM = "grader sim" if REAL_TURTLESIM else "ros2 run turtlesim turtlesim_node"
-"""The command line of the course's turtlesim. The real one opens a window and does not know these options."""
+"""The command line of the course's turtlesim. The real one opens a window and has no such options."""
 
 of_the_wheels = pytest.mark.skipif(
-    bool(SOURCED_ENV), reason="this is about the course's own ROS 2, and one is sourced here"
+    bool(SOURCED_ENV), reason="this test needs the course's own ROS 2, but another ROS 2 is sourced"
 )
-of_our_ros2 = pytest.mark.skipif(REAL_ROS2, reason="this is about the course's own ros2, and the real one is here")
+of_our_ros2 = pytest.mark.skipif(
+    REAL_ROS2, reason="this test needs the course's own ros2, but the real one is installed"
+)
 of_our_turtlesim = pytest.mark.skipif(
-    REAL_TURTLESIM, reason="this is about the course's own turtlesim, and the real one is here"
+    REAL_TURTLESIM, reason="this test needs the course's own turtlesim, but the real one is installed"
 )

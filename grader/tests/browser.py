@@ -31,24 +31,24 @@ FLAGS = (
 
 
 def find_browser() -> str | None:
-    """The path of a Chromium."""
+    """Return the path of Chromium."""
     search = os.pathsep.join([os.environ.get("PATH", ""), *SYSTEM_PATH])
     return next(filter(None, (shutil.which(name, path=search) for name in BROWSERS)), None)
 
 
 def browser_or_reason() -> str:
-    """The path of a Chromium. If there is none, the test is skipped with the reason; in CI it fails."""
+    """Return the path of Chromium. Without Chromium, the test is skipped with the reason, or fails in CI."""
     found = find_browser()
     if found is None:
         if os.environ.get("TESTS_WITHOUT_BROWSER"):
-            pytest.skip("TESTS_WITHOUT_BROWSER is set, and there is no Chromium")
+            pytest.skip("TESTS_WITHOUT_BROWSER is set, and Chromium is not installed")
         give_up("Chromium", "chromium")
     return found
 
 
 @contextmanager
 def launched(executable: str) -> Iterator[Browser]:
-    """A Chromium without a window."""
+    """Start Chromium without a window."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
@@ -58,7 +58,7 @@ def launched(executable: str) -> Iterator[Browser]:
 
 
 def violations(page: Page) -> list[str]:
-    """Return what axe-core reports about the page in its current state, in words."""
+    """Return the violations that axe-core finds on the page in its current state, as text."""
     page.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
     found: list[str] = page.evaluate(
         "() => axe.run().then(all => all.violations.map(each => "

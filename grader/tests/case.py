@@ -1,8 +1,8 @@
-"""A case: a submission as a learner wrote it, and what `grader check` must say about it.
+"""Cases: submissions as learners write them, and the expected reports of `grader check`.
 
 grader/tests/cases/NNN-name/
-  files/           laid over the base; without a base, the whole of what is handed in
-  make.py          make(folder): what a folder in git cannot hold (links, names that are not UTF-8, ...)
+  files/           copied over the base; without a base, the whole submission
+    make.py          make(folder): creates files that git cannot store (links, names that are not UTF-8, ...)
   expected.toml    the keys are the fields of `Case`, below
 """
 
@@ -38,7 +38,7 @@ class Case:
 
     name: str
     why: str
-    """What is unusual about the submission, for the reader of the tests."""
+    """The difference from a usual submission, for the reader of the tests."""
     result: str
     """One of the keys of EXIT_CODES."""
     folder: Path = CASES
@@ -46,24 +46,24 @@ class Case:
     base: str = "03-circle-publisher"
     """`files` is copied over this: the solution of a step, or a package in bases/. Empty if there is no base."""
     exercise: str = ""
-    """The exercise by which the case is graded. Empty for the exercise of the base, if the base is a solution."""
+    """The exercise that grades the case. If empty, and the base is a solution, the exercise of the base."""
     edit: tuple[Mapping[str, str], ...] = ()
     """The edits of the base: `old` in `file` is replaced by `new` everywhere."""
     remove: tuple[str, ...] = ()
     """The paths of the base that are removed."""
     give: str = "."
-    """The path that is submitted, relative to the folder that holds the package."""
+    """The path of the submission, relative to the folder that contains the package."""
     sample: bool = False
     """Whether the case belongs to the sample that `make test` runs."""
     clock: str = ""
     """The clock that must judge with `--clock auto`; empty for any clock."""
     wall_varies: str = ""
-    """Why two runs in wall time can differ, so that the clocks are not compared. Empty for nearly all cases."""
+    """The reason why two runs in wall time can differ. If set, the clocks are not compared. Usually empty."""
     points: float | None = None
     failed: tuple[str, ...] = ()
     skipped: tuple[str, ...] = ()
     advice: tuple[str, ...] = ()
-    """The advice that is given: the checks worth 0 points that did not pass. They are not listed in `failed`."""
+    """The expected advice: the checks worth 0 points that did not pass. They are not listed in `failed`."""
     diagnosis: Mapping[str, str] = ()  # type: ignore[assignment]
     """Check -> the stable id of the cause."""
     where: Mapping[str, str] = ()  # type: ignore[assignment]

@@ -1,8 +1,8 @@
-"""The author's page: every diagnosis, what it means, and the cases that show it.
+"""The page for authors that lists every diagnosis with its meaning and its cases.
 
     python -m grader.tests.catalogue
 
-writes grader/checks/README.md anew.
+updates grader/checks/README.md.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ SHOWN_BY_TESTS = {
     "unreadable": "checks/test_judge.py",
     "wrong-centre": "checks/subjects/test_path.py",
 }
-"""Diagnosis -> the test that shows it. No ordinary submission causes it, only a hostile one or a class."""
+"""Diagnosis -> the test that shows it. Only a hostile submission or a class can cause these diagnoses."""
 HEAD = """\
 # The catalogue of mistakes
 
@@ -93,13 +93,13 @@ def page() -> str:
 
 
 def _number(case: Case) -> str:
-    """Return the number of a case, with its folder if that is not mistakes/: both folders begin at 101."""
+    """Return the number of a case, with its folder unless it is mistakes/: the numbers of both folders start at 101."""
     number = case.name.partition("-")[0]
     return number if case.folder.parent == MISTAKES else f"{case.folder.parent.name}/{number}"
 
 
 def _shown(id_: str, by_case: dict[str, list[str]]) -> str:
-    """Return what shows a diagnosis: some of its cases, or a test."""
+    """Return some of the cases that show a diagnosis, or a test."""
     names = by_case.get(id_, [])
     if not names and id_ in SHOWN_BY_TESTS:
         return f"[{Path(SHOWN_BY_TESTS[id_]).stem}](../tests/{SHOWN_BY_TESTS[id_]})"

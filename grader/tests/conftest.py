@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
     from grader.tests.gradings import Gradings
 
-# If tests are started in the background or by nohup, they ignore signals, and so would all their child processes.
+# Tests that are started in the background or by nohup ignore signals, and their child processes inherit this.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-# This domain is used neither by the user's programs nor by another test process.
+# No program of the user and no other test process uses this domain.
 os.environ["ROS_DOMAIN_ID"] = str(default_domain())
-# A daemon would remain after the test that started it.
+# A daemon would keep running after the test that started it.
 os.environ["GRADER_ROS2_DAEMON"] = "0"
 
 collect_ignore = ["cases", "mistakes", "unusual", "hostile"]
@@ -42,23 +42,23 @@ LONGEST = (
     ),
     *("view/test_view_page.py", "grading/test_grade.py", "ros/test_underlay.py", "ros2/test_bag.py"),
 )
-"""The modules that take longest. `make test` starts them first, so that no process is busy with one at the end."""
+"""The slowest modules. `make test` starts them first, so that all processes finish at about the same time."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Sort the modules: the longest ones first, the others in their order."""
+    """Sort the modules: the slowest ones first, the others in their order."""
     places = {Path(__file__).parent / name: place for place, name in enumerate(LONGEST)}
     items.sort(key=lambda item: places.get(item.path, len(LONGEST)))
 
 
 @pytest.fixture(scope="session")
 def in_ros(tmp_path_factory: pytest.TempPathFactory) -> InRos:
-    """Processes with ROS 2 and the turtlesim interfaces. The interfaces are built if that has not been done yet."""
+    """Processes with ROS 2 and the turtlesim interfaces, which are built on first use."""
     home: Path = tmp_path_factory.mktemp("ros")
     return InRos(underlay.with_turtlesim(installation.find_ros()), home)
 
 
 @pytest.fixture(scope="module")
 def gradings(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Gradings]:
-    """All cases that the tests of this module mark with `clocks`. They are graded side by side."""
+    """The results of all cases that the tests of this module mark with `clocks`. The cases are graded in parallel."""
     yield from gradings_of(request, tmp_path_factory)

@@ -1,7 +1,7 @@
-"""The command blocks of a Markdown text, so that what README and lessons promise can be run.
+"""Run the command blocks of a Markdown text, to test that README and the lessons show the real output.
 
-A block begins with ```console. It has lines of the form `$ command`, and after each one what the command prints. A line
-`...` stands for any lines. More lines may follow the last one. Numbers may differ.
+A block begins with ```console. It contains lines of the form `$ command`, each followed by the command's output. A line
+`...` matches any lines. The output may have more lines after the last one. Numbers may differ.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def run(block: Block, cwd: Path, env: Mapping[str, str], timeout_s: float) -> li
 
 
 def differs(shown: tuple[str, ...], printed: str) -> str | None:
-    """Return the first shown line that is missing in the output, or None. Numbers are not compared."""
+    """Return the first expected line that is missing in the output, or None. Numbers are not compared."""
     lines = [_plain(line) for line in printed.splitlines()]
     at, jump = 0, True
     for line in shown:

@@ -1,4 +1,4 @@
-"""ROS domains for tests: two test processes on one machine never share a domain."""
+"""ROS domains for tests. Two test processes on one machine never use the same domain."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from typing import IO
 from grader.tests.waiting import HANG_S
 
 FIRST, LAST = 2, 101
-"""The domains that tests use. Domain 1 belongs to root, who may be using this machine. Above 101, the ports of a domain
-are among those that Linux gives to any program."""
+"""The domains that tests use. Domain 1 is that of root, who may be using this machine. Domains above 101 use ports that
+Linux may assign to any program."""
 MOST = 8
-"""A process keeps this many domains besides its default one. Then it reuses the one that was unused for longest."""
+"""The number of domains that a process keeps besides its default one. Then it reuses the least recently used one."""
 _held: dict[int, IO[str]] = {}
 _own: list[int] = []
 
@@ -32,18 +32,18 @@ def default_domain() -> int:
 
 
 def own_domain() -> int:
-    """Return another domain of this process at each call; after the last one, the first one again."""
+    """Return the next domain of this process. After the last one, start again with the first one."""
     default_domain()
     domain = _free() if len(_own) < MOST else None
     if domain is None:
-        # No domain is free. The default one is better than one that another process uses.
+        # No domain is free. The default domain is better than that of another process.
         domain = _own.pop(0) if _own else default_domain()
     _own.append(domain)
     return domain
 
 
 def _free() -> int | None:
-    """Return a domain that no process tests in. This process keeps it until it ends. None if no domain is free."""
+    """Reserve a domain for this process until it ends, and return it. Return None if no domain is free."""
     for domain in range(FIRST, LAST + 1):
         if domain in _held:
             continue

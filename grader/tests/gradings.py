@@ -1,4 +1,4 @@
-"""Grade cases with the real command, side by side, and compare the reports with what the cases expect."""
+"""Grade cases in parallel with the real command, and compare the reports with those that the cases expect."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 EXERCISE = "03-circle-publisher"
 GRADER = Path(sys.executable).with_name("grader")
 AT_ONCE = max(1, (os.cpu_count() or 1) // int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")))
-"""How many gradings run side by side. With the other test processes, there is one for each processor."""
+"""How many gradings run in parallel. Together with the other test processes, they use every processor."""
 HANG_S = 300.0
 """Longer than any time limit of the grader: a command that takes longer hangs."""
 
@@ -94,7 +94,7 @@ def gradings_of(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPat
 
 
 def each(cases: Sequence[Case], *, always: bool = False) -> pytest.MarkDecorator:
-    """Run the test for each case. Cases outside of the sample run only in `make test-all`, unless `always` is set."""
+    """Run the test for each case. Cases outside the sample run only in `make test-all`, unless `always` is set."""
     return pytest.mark.parametrize(
         "case",
         [
@@ -105,7 +105,7 @@ def each(cases: Sequence[Case], *, always: bool = False) -> pytest.MarkDecorator
 
 
 def check_report(case: Case, graded: Graded) -> None:
-    """Check that the report is as the case expects, and that there is no traceback of ours."""
+    """Check that the report is as the case expects, and contains no traceback of the grader."""
     assert not [line for line in graded.stderr.splitlines() if line.startswith(("Traceback", '  File "'))], (
         graded.stderr
     )

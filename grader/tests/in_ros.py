@@ -43,7 +43,7 @@ class InRos:
         return installation.environment(self.ros, home=self.home, domain=own_domain())
 
     def run(self, name: str, *arguments: object) -> Ran:
-        """Call a function of grader.tests, named as in "turtlesim.scenarios:graph", in a process of its own."""
+        """Call a function of grader.tests in a separate process. Its name has the form "turtlesim.scenarios:graph"."""
         code = "import sys; from grader.tests import in_ros; in_ros.call(*sys.argv[1:])"
         done = subprocess.run(
             [self.ros.python, "-c", code, name, json.dumps(arguments)],
@@ -60,7 +60,7 @@ class InRos:
 
 
 def call(name: str, arguments: str) -> None:
-    """Run in the process with ROS 2."""
+    """Call the function and print its result as JSON. This runs in the process with ROS 2."""
     module, function = name.split(":")
     result = getattr(importlib.import_module(f"grader.tests.{module}"), function)(*json.loads(arguments))
     print(_RESULT + json.dumps(result))

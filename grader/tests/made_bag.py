@@ -1,4 +1,4 @@
-"""Bags as learners record them, made without a recorder."""
+"""Create bags like those that learners record, without a recorder."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ POSE, TWIST = struct.Struct("<xBxx5f"), struct.Struct("<xBxx6d")
 def poses(
     radius_m: float = 1.1, *, speed: float = 0.8, begin_s: float = 1.0, drive_s: float = 9.5, end_s: float = 0.5
 ) -> list[Message]:
-    """Poses of a turtle that stands still, drives a circle to the left, and stands still again."""
+    """Return poses of a turtle that stands still, drives a circle to the left, and stands still again."""
     found, angle = [], 0.0
     for frame in range(round((begin_s + drive_s + end_s) / FRAME_S)):
         t_s = frame * FRAME_S
@@ -38,21 +38,21 @@ def poses(
 
 
 def commands(duration_s: float = 10.0) -> list[Message]:
-    """Commands, ten times a second."""
+    """Return velocity commands with a rate of 10 Hz."""
     data = TWIST.pack(1, 0.8, 0.0, 0.0, 0.0, 0.0, 0.727)
     times = [0.1 * number for number in range(round(10 * duration_s))]
     return [Message("/turtle1/cmd_vel", "geometry_msgs/msg/Twist", data, t_s, t_s) for t_s in times]
 
 
 def record(folder: Path, messages: list[Message]) -> None:
-    """Write a bag with these messages in place of the one in `folder`."""
+    """Replace the bag in `folder` by a bag with these messages."""
     shutil.rmtree(folder, ignore_errors=True)
     ros = with_turtlesim(find_ros(), lambda _: None)
     write_bag(folder, sorted(messages, key=lambda message: message.t_s), ros.all_prefixes)
 
 
 def record_sqlite(folder: Path) -> None:
-    """Write a bag with one message, stored by SQLite."""
+    """Write a bag with one message in the SQLite format."""
     shutil.rmtree(folder, ignore_errors=True)
     store = jazzy_types()
     with Writer(folder, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:

@@ -17,7 +17,7 @@ NO_ROS = Ros("wheels", "0", Path("/"), (), Path("python3"), (), ())
 
 
 def hide_ros(cache: Path) -> None:
-    """The same as `without_ros`, until this process ends."""
+    """Hide ROS 2, as `without_ros` does, until this process ends."""
     os.environ["XDG_CACHE_HOME"] = str(cache)
     vars(grade)["find_ros"] = lambda: NO_ROS
     vars(underlay)["ensure"] = lambda *_: None

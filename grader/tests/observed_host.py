@@ -1,7 +1,7 @@
-"""A host that is examined before and after a command: a namespace with its own /tmp, home, processes and network.
+"""An observed host: a namespace with its own /tmp, home, processes and network, examined before and after a command.
 
-Everything that a submission leaves behind stays in this host. So an attack can also be run without defence: programs
-that do nothing replace bubblewrap and prlimit, usage.py sees nothing, and the command finds no sandbox.
+The effects of a submission stay in this host. So an attack can also run without a sandbox: programs that do nothing
+replace bubblewrap and prlimit, usage.py measures nothing, and the command finds no sandbox.
 
 This file also runs inside the host, as a script. There it offers what an attacker would like to reach (services,
 secrets), runs the command, and reports what is left.
@@ -37,7 +37,7 @@ SETTLE_S = 0.5
 
 @dataclass(frozen=True)
 class Left:
-    """What one command left. `exit_code` is None if the attack ended even the observer inside."""
+    """The effects of one command. `exit_code` is None if the attack killed the observer inside the host, too."""
 
     exit_code: int | None
     stdout: str
@@ -116,7 +116,7 @@ class Host:
         if ordinary:
             command += ["--unshare-user"]
         elif not defended:
-            # Nothing runs undefended as root, not even in this host.
+            # Nothing runs without a sandbox as root, not even in this host.
             command += ["--unshare-user", "--uid", str(USER), "--gid", str(USER)]
         command += ["--dev-bind", "/", "/", "--remount-ro", "/", "--tmpfs", "/home", "--tmpfs", "/run"]
         for inside, outside in {
@@ -192,7 +192,7 @@ def inside(command: list[str]) -> None:
 
 @contextlib.contextmanager
 def _services() -> Iterator[None]:
-    """A simple name server, a web server and two named sockets. All of them tell the secret to every client."""
+    """Start a simple name server, a web server and two named sockets, which send the secret to every client."""
     datagrams = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     datagrams.bind(("127.0.0.1", 5353))
     threading.Thread(target=_answer_datagrams, args=(datagrams,), daemon=True).start()

@@ -1,6 +1,6 @@
-"""The mistakes that `make test` grades: few cases that together show everything that `make test` must show.
+"""The sample of mistakes that `make test` grades.
 
-For each exercise, they show every group of diagnoses, and a few diagnoses of each group that no test of the checks
+For each exercise, it covers every group of diagnoses, and a few diagnoses of each group that no test of the checks
 expects. A test of the checks judges an invented recording, which takes milliseconds. A case takes one to three seconds,
 and at least ten if wall time judges it.
 """
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 OF_BASES = "03-circle-publisher"
 """The exercise of the packages in bases/."""
 MOST_OF_GROUP = 2
-"""How many diagnoses of a group are shown because no test of the checks expects them."""
+"""How many diagnoses of a group the sample includes because no test of the checks expects them."""
 WALL = re.compile(r"\btime\b|spin_once|sleep|thread|asyncio|datetime|subprocess")
-"""Source code with one of these words is likely to be judged in wall time."""
+"""Wall time probably judges source code with one of these words."""
 WALL_COST = 5
-"""A case in wall time is chosen only if it shows more than this many times as much as any other case."""
+"""A case in wall time is chosen only if it shows more than this many times as many diagnoses as any other case."""
 
 
 def sample(cases: Sequence[Case]) -> frozenset[str]:
@@ -44,7 +44,7 @@ def sample(cases: Sequence[Case]) -> frozenset[str]:
 
 
 def shows(case: Case) -> frozenset[object]:
-    """Return what the case shows: (exercise, group) of its diagnoses, and those of `without_test()`."""
+    """Return the (exercise, group) of the case's diagnoses, and those of its diagnoses that are in `without_test()`."""
     exercise = case.exercise or (OF_BASES if (BASES / case.base).is_dir() else case.base)
     diagnoses = frozenset(case.diagnosis.values())
     groups = {(exercise, group) for group, of_group in GROUPS.items() if diagnoses & of_group.keys()}
@@ -52,7 +52,7 @@ def shows(case: Case) -> frozenset[object]:
 
 
 def lives_in_wall_time(case: Case) -> bool:
-    """Return whether wall time is likely to judge the case."""
+    """Return whether wall time probably judges the case."""
     source = "".join(edit["new"] for edit in case.edit)
     source += "".join(path.read_text("utf-8", "replace") for path in (case.folder / "files").rglob("*.py"))
     return case.clock == "wall" or WALL.search(source) is not None
@@ -62,7 +62,7 @@ def lives_in_wall_time(case: Case) -> bool:
 def without_test() -> frozenset[str]:
     """Return MOST_OF_GROUP diagnoses of each group, or fewer, that no test of the checks expects by their id.
 
-    An id of one word may be in a test for another reason, so it does not count as expected.
+    An id of one word may appear in a test for another reason, so it does not count as expected.
     """
     source = "".join(path.read_text("utf-8") for path in sorted((BASES.parent / "checks").rglob("*.py")))
     chosen: list[str] = []

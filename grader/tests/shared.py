@@ -1,4 +1,4 @@
-"""Folders that several test processes of a session share: the first process makes them, and the others wait."""
+"""Folders that several test processes of a session share. The first process creates them, and the others wait."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], Any]) -> tuple[Path, Any]:
-    """Return the folder with this name, filled by `make`, and what `make` returned (JSON). No test may change it."""
+    """Return the folder with this name, filled by `make`, and what `make` returned (JSON). Tests must not change it."""
     base = factory.getbasetemp()
     folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / f"shared-{name}"
     folder.mkdir(exist_ok=True)

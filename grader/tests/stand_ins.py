@@ -1,4 +1,4 @@
-"""Programs that only write down their calls, instead of those that would change this machine."""
+"""Fake programs that only record their calls, in place of programs that would change this machine."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class StandIns:
         return str(self.folder)
 
     def add(self, name: str, then: str = "") -> None:
-        """Add a program. `then` are lines of shell code that it runs, with the real programs on PATH."""
+        """Add a program. `then` contains lines of shell code that it runs, with the real programs on PATH."""
         self.folder.mkdir(parents=True, exist_ok=True)
         program = self.folder / name
         note = f'echo "{name} $*" >> "{self.folder}/calls"'

@@ -1,4 +1,4 @@
-"""Each diagnosis has a case in which it is true, and a correct package that is close to the case and must not get it.
+"""Each diagnosis has a case in which it is true, and a correct package that is similar to the case and must not get it.
 
 A case is a correct package with a few edits. If a diagnosis ignored the mistake itself and appeared for everything
 that looks like the case, the correct package would get it, too. But the correct packages pass: `test_course` tests the
@@ -20,16 +20,16 @@ MOST_LINES = 13
 """A correct package is close to a case if at most this many lines were removed and added."""
 FAR = {
     "answers-empty": "every line of the answers is missing",
-    "assert-in-loop": "any other test that needs a message notices that none comes",
+    "assert-in-loop": "any other test that needs a message notices that none arrives",
     "empty-file": "every line of the file is missing",
-    "loop-without-pause": "the clocks see a node that never rests differently, so only whole files of it are cases",
+    "loop-without-pause": "the clocks judge a node that never rests differently, so its cases replace whole files",
     "no-test-function": "every test of the file is missing",
-    "polygon": "a polygon is driven by other commands than a circle",
+    "polygon": "a polygon needs other commands than a circle",
     "spin-once": "whether the first event is the timer depends on the machine; the case was written for both",
     "test-class-init": "all tests are in a class, so every line of them is indented",
-    "timer-in-callback": "thousands of timers slow a machine down; the case has a limit of its own",
+    "timer-in-callback": "thousands of timers slow a machine down; the case has its own time limit",
 }
-"""Diagnosis -> why no correct package is close to one of its cases."""
+"""Diagnosis -> the reason why no correct package is similar to one of its cases."""
 
 
 def test_a_right_package_is_close_to_a_case_of_each_diagnosis() -> None:
@@ -46,7 +46,7 @@ def test_the_packages_that_cases_are_laid_over_are_right() -> None:
 
 @cache
 def closest() -> dict[str, int]:
-    """Return diagnosis -> the number of lines by which a close case, or else its closest one, differs from its base."""
+    """Return diagnosis -> the smallest number of lines in which one of its cases differs from its base."""
     found: dict[str, int] = {}
     bases: dict[str, dict[str, list[str]]] = {}
     with TemporaryDirectory() as name:
@@ -70,13 +70,13 @@ def contents(case: Case, folder: Path) -> dict[str, list[str]]:
 
 
 def lines_of(path: Path) -> list[str]:
-    """The lines of a file. A file of a bag counts as one line, because a learner records it again as a whole."""
+    """Return the lines of a file. A file of a bag counts as one line, because a learner records it as a whole."""
     text = path.read_bytes().decode("latin-1")
     return [text] if path.suffix == ".mcap" or path.name == "metadata.yaml" else text.splitlines()
 
 
 def distance(right: dict[str, list[str]], wrong: dict[str, list[str]]) -> int:
-    """Return the number of removed and added lines. A file that only one of them has counts as one."""
+    """Return the number of removed and added lines. A file that exists in only one of them counts as one line."""
     lines = len(right.keys() ^ wrong.keys())
     for path in right.keys() & wrong.keys():
         if right[path] != wrong[path]:

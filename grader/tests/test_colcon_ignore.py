@@ -26,7 +26,7 @@ PACKAGE = ROOT / "solutions" / STEP / "my_robot_controller"
 SUBMISSIONS = ("bases", "cases", "hostile", "mistakes", "unusual")
 STEPS = [name for name in catalogue() if find_exercise(name).package]
 BROKEN = "exercises", "04-package-files"
-"""The learner repairs this package, which colcon cannot read before."""
+"""The package that the learner repairs. colcon cannot read it before that."""
 PACKAGES = [pair for pair in itertools.product(("exercises", "solutions"), STEPS) if pair != BROKEN]
 
 
@@ -45,7 +45,7 @@ def colcon_list(folder: Path) -> list[str]:
 
 
 def marker_maker(folder: Path) -> Path:
-    """Return a submission in `folder`, and a file that exists as soon as its setup.py has run."""
+    """Create a submission in `folder` whose setup.py creates a file. Return it and the path of this file."""
     shutil.copytree(PACKAGE, folder / "my_robot_controller", dirs_exist_ok=True)
     trace = folder / "setup.py was run"
     setup = folder / "my_robot_controller/setup.py"
@@ -62,7 +62,7 @@ def tracked() -> list[PurePosixPath]:
 
 
 def test_no_package_of_a_test_can_be_found_by_colcon(tracked: list[PurePosixPath]) -> None:
-    """The files are checked, because colcon itself would run each setup.py that it finds. Some attack the machine."""
+    """Check the marker files without colcon, which would run every setup.py. Some of them attack the machine."""
     packages = {path.parent for path in tracked if path.name in PACKAGE_FILES and path.is_relative_to("grader/tests")}
     assert len(packages) > 100
     above = {folder for package in packages for folder in package.parents if folder.is_relative_to("grader/tests")}
@@ -88,7 +88,7 @@ def test_nothing_that_is_copied_to_students_hides_their_package(tracked: list[Pu
 
 
 def test_a_workspace_that_holds_the_course_has_no_package_twice(tmp_path: Path) -> None:
-    """If the course is cloned into src/, colcon builds the learner's own package and no package of the course."""
+    """colcon builds only the learner's own package if the course is cloned into src/."""
     shutil.copytree(PACKAGE, tmp_path / "src/my_robot_controller")
     hand_out(tmp_path / "src/course")
     assert colcon_list(tmp_path) == ["src/my_robot_controller"]

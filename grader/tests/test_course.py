@@ -1,4 +1,4 @@
-"""The course's own solutions pass with both clocks and from any start, and their recordings are judged alike."""
+"""The solutions pass with both clocks and from any start. Regrading their recordings gives the same result."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_a_solution_passes_from_any_start(step: str, seed: int) -> None:
     "step", ["02-discover-topics", "11-bags", pytest.param("07-challenges", marks=pytest.mark.exhaustive)]
 )
 def test_a_recording_is_judged_again(step: str, tmp_path: Path) -> None:
-    """One step has no package, one has no simulator, and one has several trials."""
+    """The steps are one without a package, one without a simulator, and one with several trials."""
     first, again, kept = tmp_path / "first.json", tmp_path / "again.json", tmp_path / "kept"
     assert grader("check", f"solutions/{step}", "--json", first, "--recording", kept).returncode == 0
     done = grader("regrade", kept, "--json", again)

@@ -1,4 +1,4 @@
-"""Commands in a current folder full of traps: they load and run nothing from it, and the points are right."""
+"""Commands in a current folder full of traps load and run nothing from it, and report the correct points."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 STEP = "03-circle-publisher"
-pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="the sandbox is not available")
 
 
 class Folder:
-    """The current folder: a solution and a starting point among the traps. The results are outside of it."""
+    """The current folder: a solution and a starting point among the traps. The results are outside this folder."""
 
     def __init__(self, folder: Path) -> None:
         self.here, self.out = folder / "clone", folder / "out"

@@ -1,4 +1,4 @@
-"""Many test processes at the same time have different domains, and none of them waits."""
+"""Parallel test processes get different domains, and none of them waits."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_no_two_processes_share_a_domain(tmp_path: Path) -> None:
         subprocess.Popen(
             command,
             cwd=Path(__file__).parents[2],
-            env={"TMPDIR": str(tmp_path)},  # the locks of the tests that are running are elsewhere
+            env={"TMPDIR": str(tmp_path)},  # the tests that are running keep their locks in another folder
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 EXERCISE = "03-circle-publisher"
 ATTACKS = read_attacks()
 WAYS = ("defended", "as-user", "undefended")
-pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="the sandbox is not available")
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Graded:
 
     @property
     def said(self) -> str:
-        """The output of the build and of the node, or what the student's tests reported."""
+        """Return the output of the build and of the node, or the report of the student's tests."""
         evidence = self.evidence
         log = evidence.build.log if evidence.build else ""
         if evidence.run.bench is not None:
@@ -140,7 +140,7 @@ def test_an_attack_is_stopped_for_an_ordinary_user(attack: Attack, runs: Runs) -
 
 def assert_held(attack: Attack, done: Graded) -> None:
     left = done.left
-    # If others keep the machine busy, the report may say so. The attacker alone must not be able to cause it.
+    # If other programs keep the machine busy, the report may mention it. The attacker alone must not cause this.
     if not (done.too_busy and os.getloadavg()[0] > 2.0 * (os.cpu_count() or 1)):
         assert left.exit_code in (0, 1), left.stdout + left.stderr
     assert (sorted(left.files), left.processes, left.sockets) == ([], (), ())
@@ -218,7 +218,7 @@ def is_double(node: str) -> bool:
 
 @pytest.mark.exhaustive
 def test_an_attack_does_not_change_the_grading_of_the_next_submission(tmp_path: Path) -> None:
-    """In `make test`, the tests above find what an attack leaves, and test_hostile_class.py grades others beside it."""
+    """In `make test`, the tests above find traces of an attack, and test_hostile_class.py grades it with others."""
     host = Host(tmp_path / "host", underlay.ensure(installation.find_ros()))
     chosen = [attack for attack in ATTACKS if attack.name[:3] in ("301", "304", "406")]
     commands = []

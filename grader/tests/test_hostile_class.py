@@ -1,4 +1,4 @@
-"""A class with attacks: the other submissions get the same reports as without them, and the command ends with 0."""
+"""In a class with attacks, the other submissions get the same reports as without them, and the command exits with 0."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from grader.tests.classroom.a_class import GRADER, STEP, environment, judged, re
 if TYPE_CHECKING:
     from pathlib import Path
 
-pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="there is no sandbox here")
+pytestmark = pytest.mark.skipif(not bubblewrap.usable(), reason="the sandbox is not available")
 CLASS = 40
 HONEST = (
     "solution",
@@ -47,7 +47,7 @@ def make_honest(folder: Path, names: tuple[str, ...]) -> Path:
 
 
 def is_crowded_by_others(out: Path) -> bool:
-    """Return whether other programs keep this machine busy, and every error in the reports says so."""
+    """Return whether other programs keep this machine busy, and every error in the reports has this reason."""
     outcomes = [outcome for report in reports(out).values() for outcome in report["outcomes"]]
     errors = [str(outcome) for outcome in outcomes if outcome["status"] == "error"]
     return os.getloadavg()[0] > 2.0 * (os.cpu_count() or 1) and all(
@@ -56,7 +56,7 @@ def is_crowded_by_others(out: Path) -> bool:
 
 
 def graded(folder: Path, out: Path) -> Path:
-    """Grade a class, which must end with 0."""
+    """Grade a class. The command must exit with 0."""
     command = [GRADER, "grade", str(folder), "--exercise", STEP, "--out", str(out)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment())
     expected = (0, 3) if is_crowded_by_others(out) else (0,)
@@ -84,7 +84,7 @@ def test_a_class_with_some_attacks(tmp_path: Path) -> None:
 @pytest.mark.exhaustive
 @pytest.mark.parametrize("first", range(0, len(ATTACKS), EACH))
 def test_a_class_of_forty_with_every_attack(first: int, tmp_path: Path) -> None:
-    """The last of these classes also gets the first attacks, so that each class has forty submissions."""
+    """The last class is filled up with the first attacks, so that each class has forty submissions."""
     attacks = (*ATTACKS, *ATTACKS)[first : first + EACH]
     assert len(attacks) + len(HONEST) == CLASS
     assert_untouched(tmp_path, HONEST, attacks)

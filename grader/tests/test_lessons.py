@@ -1,4 +1,4 @@
-"""The lessons tell the truth: commands and code work, recorded answers are those of ROS 2, and pictures exist."""
+"""The lessons are correct: commands and code work, recorded answers are those of ROS 2, and pictures exist."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ENDS = re.compile(r"\n\[exit \d+\].*", re.DOTALL)
 
 
 def blocks_of(language: str, about: str) -> list[object]:
-    """Return the blocks of this kind in all lessons. Each is a parameter named after its lesson."""
+    """Return the blocks of this kind in all lessons, as test parameters named after their lessons."""
     return [
         pytest.param(block, id=f"{lesson.parent.name}-{number}")
         for lesson in LESSONS
@@ -74,7 +74,7 @@ def test_every_block_says_what_it_is(lesson: Path) -> None:
 
 
 def home_of_a_reader(folder: Path) -> dict[str, str]:
-    """Return the variables of a home folder in which the course is at the place that the lessons name."""
+    """Return the variables of a home folder that contains the course at the path that the lessons use."""
     (folder / "home/ros2-course").mkdir(parents=True)
     (folder / "home/ros2-course/.venv").symlink_to(sys.prefix)
     cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
@@ -83,7 +83,7 @@ def home_of_a_reader(folder: Path) -> dict[str, str]:
 
 @pytest.mark.parametrize("block", [*blocks_of("console", ""), *blocks_of("console", "solved")])
 def test_commands_print_what_the_lesson_shows(block: Block, tmp_path: Path, request: pytest.FixtureRequest) -> None:
-    """A reader has started the step in a workspace, and solved it where the lesson says so."""
+    """Run the commands in a workspace in which the step is started, and solved where the lesson says so."""
     step = request.node.callspec.id.rpartition("-")[0]
     env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", **home_of_a_reader(tmp_path)}
     env.pop("XDG_STATE_HOME", None)
@@ -99,7 +99,7 @@ def test_commands_print_what_the_lesson_shows(block: Block, tmp_path: Path, requ
 def test_answers_of_ros2_are_those_that_were_recorded(block: Block) -> None:
     recorded = [path.read_text("utf-8") for path in sorted(GOLDEN.glob("*.txt"))]
     for step in block.steps():
-        # The same question may have been recorded several times, in different situations.
+        # The same command may have been recorded several times, in different situations.
         answers = [ENDS.sub("", text).splitlines() for text in recorded if text.startswith(f"$ {step.command}\n")]
         assert [f"$ {step.command}", *step.printed] in answers
 
@@ -145,7 +145,7 @@ def test_lesson_05_is_typed_as_it_stands(tmp_path: Path) -> None:
 
 @pytest.fixture
 def kitchen(tmp_path: Path) -> Iterator[dict[str, str]]:
-    """Thermometer and heater run. Yields the environment of a shell that can ask about them."""
+    """Run the thermometer and the heater. Yield the environment of a shell whose ros2 finds them."""
     ros, domain = find_ros(), own_domain()
     with subprocess.Popen(
         [ros.python, Path(__file__).with_name("kitchen.py")],
@@ -168,7 +168,7 @@ def test_questions_about_the_kitchen_have_the_answers_shown(
 ) -> None:
     shell = replace(block, text=f"$ source <(grader env)\n{block.text}")
     answers = run(shell, tmp_path, kitchen, 120.0)
-    for _ in range(5):  # On a busy machine, programs may find each other late. Then the commands run again.
+    for _ in range(5):  # On a busy machine, discovery may be slow. Then the commands run again.
         if all(differs(step.printed, printed) is None for step, printed, _ in answers):
             break
         answers = run(shell, tmp_path, kitchen, 120.0)
@@ -178,7 +178,7 @@ def test_questions_about_the_kitchen_have_the_answers_shown(
 
 @pytest.mark.parametrize("block", blocks_of("python", "part"))
 def test_parts_of_files_are_in_the_step(block: Block) -> None:
-    """A lesson quotes a part of the solution, so a change there must change the lesson."""
+    """A code block that quotes a part of the solution must be equal to it."""
     assert any(block.text in path.read_text("utf-8") for path in (ROOT / "solutions").glob("*/**/*.py"))
 
 
@@ -224,7 +224,7 @@ def test_the_thermometer_runs_on_the_real_rclpy(block: Block, tmp_path: Path) ->
 
 
 def test_the_tests_of_the_kettle_pass(tmp_path: Path) -> None:
-    """The blocks of lesson 12 together are a file that pytest runs. A kettle that never switches off fails."""
+    """pytest runs the blocks of lesson 12 as one file. With a kettle that never switches off, tests fail."""
     shown = blocks((ROOT / "course/12-tests/lesson.md").read_text("utf-8"))
     code = "\n\n".join(block.text for block in shown if (block.language, block.about) == ("python", "example"))
     (tmp_path / "test_kettle.py").write_text(code, "utf-8")

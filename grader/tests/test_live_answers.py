@@ -1,4 +1,4 @@
-"""A running simulator gives the right answers of step 02: if the simulator differs, the answers differ."""
+"""The correct answers of step 02 come from a running simulator: with another simulator, other answers are correct."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SCENARIO = "[[trial]]\n"
 @pytest.fixture
 def judged(tmp_path: Path) -> Callable[[str, dict[str, str]], Report]:
     def judge(scenario: str, answers: dict[str, str]) -> Report:
-        """Return the report on the solution with some answers changed, in a scenario with additional lines."""
+        """Grade the solution with some answers changed, in a scenario with additional lines. Return the report."""
         shutil.copytree(ROOT / "course" / STEP, tmp_path / STEP)
         file = tmp_path / STEP / "exercise.toml"
         file.write_text(file.read_text().replace(SCENARIO, SCENARIO + scenario))

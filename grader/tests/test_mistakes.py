@@ -1,4 +1,4 @@
-"""Every mistake in mistakes/ gets its diagnosis, at its place, in words that a beginner understands."""
+"""Every mistake in mistakes/ gets its diagnosis with the correct file and line, in words for a beginner."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ SAMPLE = sample(ALL)
 CASES = tuple(replace(case, sample=case.name in SAMPLE) for case in ALL)
 JUDGED = [case for case in CASES if case.result != "usage"]
 MOST_SAMPLE = 90
-"""Cases: more of them take too long for `make test`."""
+"""The maximum number of cases. More would take too long for `make test`."""
 MOST_WORDS = 60
 MOST_CASES = 12
-"""The maximum number of cases about one diagnosis. There are more ways to break a rule than to lose a file."""
+"""The maximum number of cases for one diagnosis. Some rules can be broken in many ways."""
 SAID_BY_RCLPY = "rclpy.init() has not been called"
-"""A message of rclpy, which a report repeats."""
+"""A message of rclpy that a report quotes."""
 LONG = 12
-"""Characters. A shorter line of a solution, such as `pass`, gives nothing away."""
+"""The minimum length of a line (characters). A shorter line of a solution, such as `pass`, reveals nothing."""
 NOWHERE = frozenset({"node-name", "no-answers", "no-bag", "no-numbers", "rejected-file"})
 """These diagnoses may refer to no file."""
 
@@ -84,7 +84,7 @@ def test_both_clocks_name_the_same_mistake(case: Case, graded: Grade) -> None:
 
 
 def test_a_diagnosis_is_not_shown_over_and_over() -> None:
-    """A case is about the first diagnosis that it names."""
+    """A case counts for the first diagnosis that it names."""
     about = Counter(next(iter(case.diagnosis.values())) for case in CASES if case.diagnosis)
     assert [id_ for id_, amount in about.items() if amount > MOST_CASES] == []
 

@@ -1,4 +1,4 @@
-"""The mistakes of the benchmark of causes: each can be made, and the same seed makes the same mistake."""
+"""The benchmark of causes can generate each of its mistakes, and the same seed generates the same mistake."""
 
 from __future__ import annotations
 

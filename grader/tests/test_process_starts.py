@@ -1,4 +1,4 @@
-"""Every place that starts a process is known, and every Python is started through interpreter()."""
+"""The list of functions that start a process is complete, and interpreter() starts every Python process."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ OTHERS = {
     ("underlay", "_run"): "cmake and what the door made, in a folder of our own",
     ("watch", "seconds_to_verdict"): "our command grader",
 }
-"""Functions that do not start the `argv` of interpreter(), and what they start."""
+"""Functions that start something else than the `argv` of interpreter(), and what they start."""
 NAMED = {
     ("doctor", "look_at_node"): "shown",
     ("doctor", "look_at_python"): "shown",
@@ -81,7 +81,7 @@ NAMED = {
     ("underlay", "_build"): "cmake is told which, and starts it in a folder of our own",
     ("underlay", "_key_of_sources"): "part of a key",
 }
-"""Functions that name an interpreter elsewhere than in the argument `python` of interpreter(), and the reason."""
+"""Functions that use an interpreter's path other than as the argument `python` of interpreter(), and the reason."""
 
 
 def sources() -> Iterator[tuple[Path, ast.Module]]:
@@ -99,7 +99,7 @@ def in_functions(tree: ast.AST, function: str = "") -> Iterator[tuple[str, ast.A
 
 
 def process_starts(tree: ast.Module) -> Iterator[tuple[str, ast.Call]]:
-    """Yield the calls that start a process, whatever name their module has."""
+    """Yield the calls that start a process, also if their module was imported under another name."""
     names: dict[str, str] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -150,12 +150,12 @@ def test_no_other_place_names_an_interpreter() -> None:
 
 
 def names_an_interpreter(node: ast.AST) -> bool:
-    """Return whether it is `sys.executable` or the interpreter of a Ros."""
+    """Return whether the expression is `sys.executable` or the interpreter of a Ros."""
     return isinstance(node, ast.Attribute) and ast.unparse(node) in ("sys.executable", "here.python", "ros.python")
 
 
 def is_harmless(node: ast.AST, tree: ast.Module) -> bool:
-    """Return whether it is passed to interpreter() or to a Ros, or only locates our own commands."""
+    """Return whether the expression is passed to interpreter() or to a Ros, or only locates our own commands."""
     for outer in ast.walk(tree):
         if isinstance(outer, ast.Assign) and ast.unparse(outer.targets[0]) == "python" and node in ast.walk(outer):
             return True

@@ -1,4 +1,4 @@
-"""Only one process of ours reads what a student wrote: the one of submission/reader.py."""
+"""Only one kind of process reads the files of students: that of submission/reader.py."""
 
 from __future__ import annotations
 
@@ -81,11 +81,11 @@ OURS = {
     ("runner", "_pack"): "our own stream, written",
     ("workspace", "add_missing"): "a starting point",
 }
-"""Functions that read something that is not a student's, and what it is."""
+"""Functions that read data that no student wrote, and a description of the data."""
 
 
 def reading(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """Yield the functions that read, and what they call to do so."""
+    """Yield the functions that read a file or a stream, and the functions that they call for it."""
     for function, node in in_functions(tree):
         if isinstance(node, ast.Call):
             name = ast.unparse(node.func)

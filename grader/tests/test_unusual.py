@@ -1,6 +1,6 @@
-"""Correct submissions that are unlike ours get full marks. The report says nothing against them except advice.
+"""Correct submissions that differ from our solutions get full marks. Their reports contain no criticism except advice.
 
-`make test` grades every third one, and none that wall time judges, since that takes ten seconds.
+`make test` grades every third one. It leaves out those that wall time judges, since each takes ten seconds.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A folder full of traps: if a program loads anything from its current folder, a file outside gets the name."""
+"""A folder full of traps: if a program loads one, the trap writes its name into a file outside the folder."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ CONFIGURATIONS = (
 
 
 class Traps:
-    """Fills `folder` with traps. `touched` are the names of those that were loaded or run since then."""
+    """Fills `folder` with traps. `touched` contains the names of the traps that were loaded or run since then."""
 
     def __init__(self, folder: Path, marker: Path) -> None:
         self.folder, self._marker = folder, marker
@@ -86,7 +86,7 @@ def careless() -> dict[str, str]:
 
 
 def _modules() -> set[str]:
-    """Return every module that our programs may import: Python's, our own, and those of all installed packages."""
+    """Return the names of all modules that our programs may import: Python's, ours, and those of installed packages."""
     installed = {name.partition("/")[0].partition(".")[0] for name in metadata.packages_distributions()}
     known = {*sys.stdlib_module_names, *installed, "sitecustomize", "usercustomize", "trap", "turtlesim"}
     return {name for name in known if name.isidentifier()} - {"grader"}

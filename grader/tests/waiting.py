@@ -1,4 +1,4 @@
-"""Wait for an event that a test has caused. If it does not come before a deadline, the test hangs and fails."""
+"""Wait for an event that a test has caused. If it does not happen before a deadline, the test fails."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def until(there: Callable[[], bool]) -> None:
 
 
 def until_gone(pid: int) -> None:
-    """Wait until a process ends that is not our child."""
+    """Wait until a process has ended that is not a child of this process."""
     try:
         descriptor = os.pidfd_open(pid)
     except ProcessLookupError:

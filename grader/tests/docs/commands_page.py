@@ -1,4 +1,4 @@
-"""Write docs/commands.md from the help of the commands themselves: `python -m grader.tests.docs.commands_page`."""
+"""Generate docs/commands.md from the help texts of the commands: `python -m grader.tests.docs.commands_page`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 PAGE = ROOT / "docs" / "commands.md"
 HEAD = """# All commands
 
-This page is made from the help of the commands. `COMMAND --help` says more, and the Tab key completes the words.
+This page is generated from the help of the commands. `COMMAND --help` lists all options, and the Tab key completes
+commands and options.
 
 ## In each new terminal
 
@@ -29,7 +30,7 @@ This page is made from the help of the commands. `COMMAND --help` says more, and
 """
 PANELS = ("Learn", "Teach")
 NOT_USED = ("component", "daemon", "launch", "lifecycle", "multicast", "security", "wtf")
-"""Groups of `ros2` that no lesson needs; docs/ros2-differences.md has them."""
+"""Groups of `ros2` that no lesson needs; docs/ros2-differences.md describes them."""
 
 
 def page() -> str:
@@ -60,7 +61,7 @@ def ros2_table() -> list[str]:
             continue
         for verb, words in sorted(about.verbs.items()) or [("", about.about)]:
             lines.append(f"| `{f'ros2 {group} {verb}'.strip()}` | {words} |")
-    lines += ["", "`rqt_graph` draws who talks to whom (step 05)."]
+    lines += ["", "`rqt_graph` draws the nodes and topics of the running system (step 05)."]
     return lines
 
 

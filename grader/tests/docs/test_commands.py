@@ -1,4 +1,4 @@
-"""The commands that README and docs/ show are run, and their output is compared."""
+"""The commands in README and docs/ work, and print the output that the pages show."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from grader.tests.docs.pages import BESIDE_THE_CODE, PAGES, ROOT, prose_of, text
 
 CONSOLE = {page: [block for block in blocks(text_of(page)) if block.language == "console"] for page in PAGES}
 SET_UP = re.compile(r"make \w+|source \.venv/bin/activate")
-"""The set-up has already run, so these commands are left out."""
+"""Commands that are left out, because the set-up has already run."""
 FAILS = re.compile(r"grader check exercises/\S+|grader check$")
 """A starting point does not pass. Every other command ends with exit code 0."""
 ELSEWHERE = {
     *("--security-opt", "--privileged", "--ros-args", "--params-file"),
     # Options of the benchmarks.
     *("--again", "--keep"),
-    # Options of the real `ros2 bag`: docs/ros2-differences.md says that ours does not have them.
+    # Options of the real `ros2 bag`, which ours does not have according to docs/ros2-differences.md.
     *(f"--{name.replace('_', '-')}" for name in NOT_HERE),
     *("--clock-topics", "--publish-service-requests"),
     # Options of our `ros2 bag`.
@@ -37,7 +37,7 @@ ELSEWHERE = {
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    """A copy of the repository. The commands of the pages may leave files in it."""
+    """Return a copy of the repository. The commands of the pages may create files in it."""
     for name in ("course", "exercises", "solutions"):
         shutil.copytree(ROOT / name, tmp_path / name)
     (tmp_path / "home").mkdir()
@@ -62,7 +62,7 @@ def test_commands_do_what_the_page_shows(page: str, number: int, checkout: Path)
         "HOME": str(checkout / "home"),
         "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache"),
     }
-    for earlier in CONSOLE[page][:number]:  # a reader has already run the blocks above
+    for earlier in CONSOLE[page][:number]:  # a reader has run the previous blocks first
         copies = [f"$ {step.command}" for step in earlier.steps() if step.command.startswith(("cp ", "mkdir "))]
         run(Block("console", "", "\n".join(copies)), checkout, environment, 60.0)
     for step, printed, exit_code in run(without_set_up(CONSOLE[page][number]), checkout, environment, 300.0):
@@ -112,5 +112,5 @@ def options_of(commands: dict[str, object]) -> set[str]:
 
 @pytest.mark.parametrize("page", PAGES)
 def test_no_command_with_a_prompt_stands_outside_of_a_block(page: str) -> None:
-    """No test would run such a command."""
+    """No other test would run a command outside a block."""
     assert re.findall(r"^ *\$ .*", prose_of(page), re.MULTILINE) == []

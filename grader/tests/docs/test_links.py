@@ -1,4 +1,4 @@
-"""Every link of the documentation leads somewhere, every page can be reached, and README is short."""
+"""No link of the documentation is broken, links lead to every page, and README is short."""
 
 from __future__ import annotations
 

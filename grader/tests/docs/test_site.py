@@ -1,4 +1,4 @@
-"""The documentation builds as a site, and a link that leads nowhere fails."""
+"""The documentation builds as a site, and the build fails on a broken link."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SPHINX = Path(sys.executable).with_name("sphinx-build")
 
 
 def arguments() -> list[str]:
-    """The options of sphinx-build in the Makefile, without the folders."""
+    """Return the options of sphinx-build in the Makefile, without the folders."""
     recipe = re.search(r"sphinx-build (.*) -c docs -d ", (ROOT / "Makefile").read_text("utf-8"))
     assert recipe is not None
     return recipe[1].split()
@@ -29,7 +29,7 @@ def build(source: Path, to: Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the site's files that a test may change."""
+    """Return a copy of the site's files, which a test may change."""
     copy = tmp_path_factory.mktemp("site") / "source"
     left_out = shutil.ignore_patterns("__pycache__", "bases", "cases", "golden", "hostile", "mistakes", "unusual")
     for name in ("docs", "course", "grader"):
@@ -42,7 +42,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def built(source: Path) -> Path:
-    """The folder of the built site. The build gives no errors or warnings."""
+    """Build the site without errors and warnings, and return its folder."""
     to = source.parent / "built"
     done = build(source, to)
     assert (done.returncode, done.stderr) == (0, "")

@@ -63,7 +63,7 @@ def test_every_limit_of_a_cell_is_in_the_table() -> None:
 
 def test_the_budgets_of_reading_are_those_of_the_code() -> None:
     text = " ".join(text_of("docs/security.md").split())
-    reported = f"{code.MAX_BYTES // 1000} kB per Python file and {code.MOST_BYTES // 1_000_000} MB in all"
+    reported = f"{code.MAX_BYTES // 1000} kB per Python file and {code.MOST_BYTES // 1_000_000} MB in total"
     assert reported in text
     answers, manifest = (f"{one.MAX_BYTES // 1000} kB" for one in (answers_toml, package_xml))
     assert f"{manifest} for package.xml, {answers} for answers.toml" in text
@@ -76,11 +76,14 @@ def test_the_budgets_of_reading_are_those_of_the_code() -> None:
 def test_the_limits_of_the_processes_of_the_grader_are_those_of_the_code() -> None:
     text, budget = text_of("docs/security.md"), Budget()
     one, total = budget.message // MIB, budget.total // MIB
-    assert f"{budget.messages:,} messages, {one} MiB each, {total} MiB and a million JSON values in all" in text
+    assert (
+        f"{budget.messages:,} messages from its kernel, {one} MiB each, {total} MiB and a million JSON values in total"
+        in text
+    )
     assert budget.values == 1_000_000
-    assert f"{relay.MOST_MEMORY // MIB // 1024} GiB of addresses; of its kernel" in text
+    assert f"{relay.MOST_MEMORY // MIB // 1024} GiB of address space; {budget.messages:,} messages" in text
     read_s, memory, answer = reader.TIMEOUT_S, reader.MEMORY // MIB // 1024, reader.MOST_ANSWER // MIB
-    assert f"{reader.CPU_S} s of CPU, {read_s:g} s, {memory} GiB of memory, {answer} MiB of answer" in text
+    assert f"{reader.CPU_S} s of CPU, {read_s:g} s, {memory} GiB of memory, {answer} MiB of output" in text
     assert f"at most {MOST_SIGNALS} per cell" in text
     assert f"{REQUESTS_HZ} requests or {MESSAGES_HZ} messages per second" in text
 
@@ -101,7 +104,7 @@ def test_the_authors_page_lists_every_key(table: str) -> None:
 
 
 def keys_of(table: str) -> set[str]:
-    """The keys in the rows of a table of exercise.toml."""
+    """Return the keys that the page lists for a table of exercise.toml."""
     rows = text_of("docs/authors.md").split("| table | key | meaning |", 1)[1].split("\n\n", 1)[0].splitlines()[2:]
     here, keys = "", set()
     for cells in ([cell.strip() for cell in line.strip().strip("|").split("|")] for line in rows):

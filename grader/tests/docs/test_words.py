@@ -1,4 +1,4 @@
-"""The page of all commands agrees with their help, and the glossary has the words of the lessons."""
+"""The page of all commands agrees with their help, and the glossary contains the terms of the lessons."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from grader.tests.docs.pages import ROOT, text_of
 BOLD = re.compile(r"\*\*([^*]+)\*\*")
 PART_ONE = [name for name in catalogue() if name < "08"]
 NO_TERMS = re.compile(r"\d|=|^in (each|a) |^(one|comma|seconds|talk|waits|method)$|'s tools$|^every")
-"""Words that are bold for another reason: a number of the task, or a word that must not be overlooked."""
+"""Words that are bold for another reason: numbers of a task, or important words that are not terms."""
 
 
 def terms() -> dict[str, str]:
@@ -26,7 +26,7 @@ def stem(word: str) -> str:
 
 
 def test_the_page_of_commands_is_made_from_their_help() -> None:
-    """If this test fails, run: python -m grader.tests.docs.commands_page."""
+    """If this test fails, run `python -m grader.tests.docs.commands_page`."""
     assert commands_page.PAGE.read_text("utf-8") == commands_page.page()
 
 
